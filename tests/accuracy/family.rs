@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
-use sistership_fleet::bulk::{BulkSettings, Prior, refined_model, solve};
-use sistership_fleet::family::{Member, learn};
+use sistership_fleet::bulk::{BulkPrior, BulkSettings, refined_model, solve_path};
+use sistership_fleet::family::{FamilyMember, learn_family};
 use sistership_fleet::statistics::TrialStatistics;
 use sistership_model::{Law, Model};
 use sistership_simulation::state::at;
@@ -59,10 +59,15 @@ fn values(model: &Model) -> Values {
     model.coefficients.iter().map(|(name, quantity)| (name.clone(), quantity.value)).collect()
 }
 
-fn refined(frame: &Model, trials: &[TrialStatistics], prior: Prior<'_>, lambda_min: f64) -> Model {
+fn refined(
+    frame: &Model,
+    trials: &[TrialStatistics],
+    prior: BulkPrior<'_>,
+    lambda_min: f64,
+) -> Model {
     let settings = BulkSettings { lambda_min, ..BulkSettings::default() };
-    let solved = solve(trials, prior, &settings).expect("a path");
-    refined_model(frame, &solved.coefficients(0).0, "test")
+    let solved = solve_path(trials, prior, &settings).expect("a path");
+    refined_model(frame, &solved.coefficients_at(0).0, "test")
 }
 
 /// The closest in the ratios that the regressions know.
@@ -109,7 +114,7 @@ fn a_family_tells_more_of_a_new_ship_than_its_nearest_sister() {
     let source = values(&foundation);
     let own: Vec<Model> = known
         .iter()
-        .map(|one| refined(&one.ship.frame, &one.all, Prior::Source(&source), PATH))
+        .map(|one| refined(&one.ship.frame, &one.all, BulkPrior::Source(&source), PATH))
         .collect();
     println!(
         "error in yaw rate, %: the model of the nearest ship, refined on two zigzags, and held \
@@ -131,11 +136,13 @@ fn a_family_tells_more_of_a_new_ship_than_its_nearest_sister() {
         let place =
             known.iter().position(|one| one.ship.name == sister.ship.name).expect("a sister");
         let own_values = values(&own[place]);
-        let members: Vec<Member<'_>> =
-            others.iter().map(|one| Member { name: &one.ship.name, trials: &one.all }).collect();
-        let family = learn(&members).expect("a family");
-        let axes = family.axes().expect("its axes");
-        let prior = Prior::Family { axes: &axes, design_effect: family.design_effect };
+        let members: Vec<FamilyMember<'_>> = others
+            .iter()
+            .map(|one| FamilyMember { name: &one.ship.name, trials: &one.all })
+            .collect();
+        let family = learn_family(&members).expect("a family");
+        let axes = family.axis_priors().expect("its axes");
+        let prior = BulkPrior::Family { axes: &axes, design_effect: family.design_effect };
         let with = |values: &Values| {
             let mut model = out.ship.frame.clone();
             model
@@ -150,8 +157,8 @@ fn a_family_tells_more_of_a_new_ship_than_its_nearest_sister() {
             .collect();
         let models = [
             with(&own_values),
-            refined(&out.ship.frame, &out.few, Prior::Source(&own_values), PATH),
-            refined(&out.ship.frame, &out.few, Prior::Source(&own_values), HELD),
+            refined(&out.ship.frame, &out.few, BulkPrior::Source(&own_values), PATH),
+            refined(&out.ship.frame, &out.few, BulkPrior::Source(&own_values), HELD),
             with(&mean),
             refined(&out.ship.frame, &out.few, prior, PATH),
             own[index].clone(),

@@ -23,8 +23,8 @@ use rand_chacha::ChaCha8Rng;
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Zoo};
-use sistership_priors::transfer::{Approach, transfer};
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_priors::transfer::{TrialApproach, transfer_model};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 use sistership_simulation::{Method, Ship, Trajectory};
 
 use published::{Block, TABLE_5};
@@ -52,7 +52,7 @@ struct Row {
 
 #[test]
 fn table_5_of_paper_v_comes_out() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let rows = table(&zoo, SEED);
     print(&rows);
     for seed in 1..=5 {
@@ -68,7 +68,7 @@ fn table_5_of_paper_v_comes_out() {
 /// The weak form beside the paper's own refinement, chosen by manoeuvres left out.
 #[test]
 fn the_weak_form_beats_the_published_refinement_on_paper_v() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let plane = by_weak(&zoo, "abkowitz", &weak::single());
     let roll = by_weak(&zoo, "abkowitz-roll", &weak::single());
     let pooled = by_weak(&zoo, "abkowitz-roll", &weak::pooled());
@@ -97,7 +97,7 @@ fn the_weak_form_beats_the_published_refinement_on_paper_v() {
 #[test]
 #[ignore = "half a minute; for people"]
 fn the_weak_form_on_turns_of_5_and_10_degrees() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let mean = |law: &str, sets: &[Vec<(f64, f64)>]| {
         let mut rng = ChaCha8Rng::seed_from_u64(OTHER_SEED);
         let of_speed = |n_rpm| by_weak_on(&zoo, law, sets, (n_rpm, &OTHER_TURNS), &mut rng);
@@ -113,7 +113,7 @@ fn the_weak_form_on_turns_of_5_and_10_degrees() {
 #[test]
 #[ignore = "minutes; for people"]
 fn the_plain_call_on_paper_v() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let [single, pooled] = [weak::single(), weak::pooled()].map(|sets| by_plain(&zoo, &sets));
     let (single, pooled) = (mean_of(&single), mean_of(&pooled));
     println!("mean of 24 cells: plain call, single {single:.2}, pooled {pooled:.2} %");
@@ -215,10 +215,14 @@ fn case(zoo: &Zoo, blocks: &'static [Block], rng: &mut ChaCha8Rng) -> Vec<Row> {
 /// The source parameters: the Mariner's coefficients on SR108's length, with SR108's own mass and
 /// added mass.
 fn source(zoo: &Zoo, law: &Law, truth: &Truth) -> Model {
-    let mariner = zoo.model("mariner").unwrap_or_else(|error| panic!("{error}"));
+    let mariner = zoo.find_model("mariner").unwrap_or_else(|error| panic!("{error}"));
     let sr108 = zoo.vessel("sr108").expect("a ship of the zoo");
-    let mut model =
-        transfer(&mariner, law, sr108, Some(Approach { speed_m_s: truth.speed_m_s, n_rps: None }));
+    let mut model = transfer_model(
+        &mariner,
+        law,
+        sr108,
+        Some(TrialApproach { speed_m_s: truth.speed_m_s, n_rps: None }),
+    );
     let own = |name: &str| truth.model.parameters[name].value;
     // Son and Nomoto's matrix has m_y alpha_y off its diagonal, where the Abkowitz law has m x_G
     // less the derivative.
@@ -245,7 +249,7 @@ fn source(zoo: &Zoo, law: &Law, truth: &Truth) -> Model {
 fn predicted(model: &Model, law: &Law, track: &Trajectory, method: Method) -> Metrics {
     let ship = Ship::new(model, law).expect("a ready ship");
     let settings = ReplaySettings { restart_s: None, method, step_s: STEP_S };
-    let run = replay(&ship, &recorded(track, PREDICTED), &settings)
+    let run = replay_trial(&ship, &recorded(track, PREDICTED), &settings)
         .expect("every channel that the law needs");
     assert_eq!(run.stopped, None);
     Metrics::of(&run.track.states)

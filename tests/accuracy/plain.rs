@@ -6,11 +6,11 @@ use std::path::Path;
 use serde_json::Value;
 use sistership_learned::attach;
 use sistership_model::{Model, Trial, Vessel, Zoo};
-use sistership_priors::source::{best_source, similar};
-use sistership_priors::transfer::{approach_of, transfer};
+use sistership_priors::source::{best_source, rank_similar};
+use sistership_priors::transfer::{transfer_model, trial_approach};
 use sistership_simulation::Ship;
 use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 use sistership_tests::binary;
 use sistership_tests::truth::container::container;
 use sistership_tests::truth::dimensions::Dimensions;
@@ -40,9 +40,9 @@ fn error(zoo: &Zoo, model: &Model, size: &Dimensions, unseen: &[Trial]) -> f64 {
     let settings = ReplaySettings { restart_s, ..ReplaySettings::default() };
     let mut sum = SquaredError::default();
     for trial in unseen {
-        let run = replay(&ship, trial, &settings).unwrap_or_else(|error| panic!("{error}"));
+        let run = replay_trial(&ship, trial, &settings).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(run.stopped, None, "{} by {}", trial.name, model.name);
-        sum.add(&SquaredError::of(trial, &run));
+        sum.add(&SquaredError::from_trial(trial, &run));
     }
     standardised_mse(&sum, &standard_deviations(&unseen.iter().collect::<Vec<_>>())) / 6.0
 }
@@ -51,10 +51,10 @@ fn error(zoo: &Zoo, model: &Model, size: &Dimensions, unseen: &[Trial]) -> f64 {
 fn unrefined(zoo: &Zoo, seen: &[&Trial]) -> Model {
     let target = Vessel::parse("ferry.yaml", &vessel(ferry().dimensions()));
     let target = target.unwrap_or_else(|error| panic!("{error}"));
-    let source = best_source(zoo, &similar(zoo, &target, None, seen));
+    let source = best_source(zoo, &rank_similar(zoo, &target, None, seen));
     let source = source.unwrap_or_else(|reason| panic!("{reason}"));
     let law = zoo.law(&source.law).expect("the law of a zoo model");
-    transfer(&source, law, &target, approach_of(seen))
+    transfer_model(&source, law, &target, trial_approach(seen))
 }
 
 /// What the plain call makes of a ship's trials, `model.yaml` in a folder, and what it says.
@@ -82,14 +82,14 @@ fn read(zoo: &Zoo, folder: &Path) -> Model {
 
 #[test]
 fn a_branch_is_taken_where_a_rudder_stalls_and_not_where_the_law_holds() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     for (ship, is_taken) in [(&Stalled(container()) as &dyn Truth, true), (&tanker(), false)] {
         let instruments = Instruments::of(ship);
         let seen = trials(ship, &PROGRAMME, &instruments, 1);
         let unseen = trials(ship, &UNSEEN, &instruments.without_noise(), 1);
         let (folder, said) = refined(ship, &seen.iter().collect::<Vec<_>>());
         let both = read(&zoo, folder.path());
-        let (alone, size) = (both.foundation(), ship.dimensions());
+        let (alone, size) = (both.without_correction(), ship.dimensions());
         let [alone, with] = [&alone, &both].map(|model| error(&zoo, model, size, &unseen));
         println!("law alone {alone:.5}, as written {with:.5}: {}", said["ladder"]["branch"]);
         let lines = said["ladder"]["lines"].as_array().expect("what was tried");
@@ -102,7 +102,7 @@ fn a_branch_is_taken_where_a_rudder_stalls_and_not_where_the_law_holds() {
 
 #[test]
 fn the_plain_call_on_a_ferry_is_not_worse_than_its_source() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let ship = ferry();
     let instruments = Instruments::of(&ship);
     let seen = trials(&ship, &PROGRAMME[..TRIALS], &instruments, 1);

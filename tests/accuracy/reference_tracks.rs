@@ -2,9 +2,9 @@
 //! turning circles.
 
 use sistership_model::Zoo;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn};
-use sistership_simulation::state::{at, straight};
-use sistership_simulation::{Method, Order, Run, Ship, Trajectory};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn};
+use sistership_simulation::state::{at, straight_state};
+use sistership_simulation::{HelmOrder, Method, RunSettings, Ship, Trajectory};
 use sistership_tests::shared;
 
 /// Largest differences in position (m) and heading (deg) against a reference file until a time.
@@ -30,10 +30,11 @@ fn follow(
     let t = &reference["t_s"];
     let duration_s = t.iter().copied().fold(0.0, f64::max).min(until_s);
     let mut track = Trajectory::default();
-    let run = Run { start: straight(speed), duration_s, step_s: 0.1, method: Method::Rk4 };
-    ship.sail(run, &mut track, |t_s, state| {
+    let run =
+        RunSettings { start: straight_state(speed), duration_s, step_s: 0.1, method: Method::Rk4 };
+    ship.simulate_orders(run, &mut track, |t_s, state| {
         let state: [f64; 9] = (*state).into();
-        Some(Order { delta_rad: order(t_s, &state), n_rps })
+        Some(HelmOrder { delta_rad: order(t_s, &state), n_rps })
     })
     .unwrap_or_else(|stopped| panic!("{}: {stopped}", file.display()));
     let mut largest = Largest { position_m: 0.0, heading_deg: 0.0 };
@@ -54,8 +55,8 @@ fn follow(
 }
 
 fn ship(name: &str) -> (sistership_model::Model, std::sync::Arc<sistership_model::Law>) {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let model = zoo.model(name).unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
+    let model = zoo.find_model(name).unwrap_or_else(|error| panic!("{error}"));
     let law = zoo.law(&model.law).expect("the law of a zoo model").clone();
     (model, law)
 }
@@ -145,8 +146,9 @@ fn kvlcc2_turns_as_published() {
         let (model, law) = ship(name);
         let kvlcc2 = Ship::new(&model, &law).expect("a ready ship");
         for rudder in [35.0, -35.0] {
-            let metrics =
-                turn(&kvlcc2, rudder, &ManoeuvreSettings::default()).expect("a turn").metrics;
+            let metrics = simulate_turn(&kvlcc2, rudder, &ManoeuvreSettings::default())
+                .expect("a turn")
+                .metrics;
             let lengths = |m: Option<f64>| m.expect("a full turn") / kvlcc2.lpp_m();
             let (advance, diameter) =
                 (lengths(metrics.advance_m), lengths(metrics.tactical_diameter_m));

@@ -2,8 +2,8 @@
 //! Kanazawa 2023, 5.1.2.
 
 use sistership_model::Zoo;
-use sistership_priors::similarity::{CharacteristicVector, Definition};
-use sistership_priors::source::similar;
+use sistership_priors::similarity::{CharacteristicVector, VectorDefinition};
+use sistership_priors::source::rank_similar;
 
 /// Table 5 as printed: the normalised vectors.
 const TABLE_5: [(&str, [f64; 5]); 5] = [
@@ -19,16 +19,18 @@ const TABLE_6: [(&str, f64); 4] =
     [("mariner", -0.576), ("esso-tanker", 0.851), ("sr108", -0.887), ("pcc", -0.723)];
 
 fn zoo() -> Zoo {
-    Zoo::embedded().unwrap_or_else(|error| panic!("{error}"))
+    Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]
 fn tables_5_and_6_of_mei_2019() {
     let zoo = zoo();
     for (ship, printed) in TABLE_5 {
-        let normalised =
-            CharacteristicVector::of(zoo.vessel(ship).expect("in the zoo"), Definition::Mei2019)
-                .normalised();
+        let normalised = CharacteristicVector::from_vessel(
+            zoo.vessel(ship).expect("in the zoo"),
+            VectorDefinition::Mei2019,
+        )
+        .normalised_values();
         for (name, printed) in COMPONENTS.iter().zip(printed) {
             assert!(
                 (normalised[*name] - printed).abs() < 0.0011,
@@ -37,9 +39,13 @@ fn tables_5_and_6_of_mei_2019() {
             );
         }
     }
-    let ranking =
-        similar(&zoo, zoo.vessel("kvlcc2").expect("in the zoo"), Some(Definition::Mei2019), &[])
-            .ranking;
+    let ranking = rank_similar(
+        &zoo,
+        zoo.vessel("kvlcc2").expect("in the zoo"),
+        Some(VectorDefinition::Mei2019),
+        &[],
+    )
+    .ranking;
     for (ship, printed) in TABLE_6 {
         let found = ranking
             .iter()
@@ -54,7 +60,7 @@ fn tables_5_and_6_of_mei_2019() {
 #[test]
 fn mariner_is_an_eligible_source_for_sr108() {
     let zoo = zoo();
-    let ranking = similar(&zoo, zoo.vessel("sr108").expect("in the zoo"), None, &[]).ranking;
+    let ranking = rank_similar(&zoo, zoo.vessel("sr108").expect("in the zoo"), None, &[]).ranking;
     for ranked in &ranking {
         println!(
             "{:<20} {:?} {} {}",
@@ -79,9 +85,9 @@ fn vectors_of_kanazawa_2023() {
         ("sr108", [0.56, 6.89, 2.99, 6.32, 0.022, 0.77]),
     ];
     for (ship, printed) in printed {
-        let values = CharacteristicVector::of(
+        let values = CharacteristicVector::from_vessel(
             zoo.vessel(ship).expect("in the zoo"),
-            Definition::Kanazawa2023,
+            VectorDefinition::Kanazawa2023,
         )
         .values;
         let names = ["C_b", "L/B", "B/T", "L/volume^(1/3)", "Ar/(LT)", "Dp/T"];

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use sistership_cli::sea_trials::{TrialManoeuvre, record};
+use sistership_cli::sea_trials::{TrialManoeuvre, record_programme};
 use sistership_model::effect::AppliedEffect;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Channel;
@@ -54,8 +54,8 @@ fn sailed(
     hidden: Option<(&str, &[(&str, f64)])>,
     seed: u64,
 ) -> Vec<Trial> {
-    let zoo = Zoo::embedded().unwrap();
-    let mut model = zoo.model("mariner").unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let mut model = zoo.find_model("mariner").unwrap();
     if let Some((name, values)) = hidden {
         let effect = zoo.effect(name).unwrap();
         let value =
@@ -68,7 +68,7 @@ fn sailed(
         });
     }
     let ship = Ship::new(&model, zoo.law(&model.law).unwrap()).unwrap();
-    record(&ship, 7.7, programme, seed).unwrap()
+    record_programme(&ship, 7.7, programme, seed).unwrap()
 }
 
 fn written(folder: &Path, trials: &[Trial]) -> Vec<String> {

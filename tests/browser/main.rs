@@ -126,7 +126,7 @@ async fn promote(browser: &Browser, server: &TestServer, reason: &str) -> String
 #[tokio::test(flavor = "multi_thread")]
 async fn a_person_refines_and_another_promotes_in_a_browser() {
     let Some(browser) = Browser::start().await else { return };
-    let server = TestServer::on(TestDatabase::sqlite(), &["--accounts"]).await;
+    let server = TestServer::on(TestDatabase::new_sqlite(), &["--accounts"]).await;
     let [ann, bob, root] = [("ann", "engineer"), ("bob", "approver"), ("root", "admin")]
         .map(|(name, role)| user(&server, name, role));
     sign_in(&browser, &server, "root", &root).await;
@@ -221,7 +221,7 @@ async fn a_person_signs_in_at_a_provider_in_a_browser() {
                 "reader",
             ]);
     let flags: Vec<&str> = flags.collect();
-    let (server, log) = TestServer::logged(TestDatabase::sqlite(), &flags).await;
+    let (server, log) = TestServer::logged(TestDatabase::new_sqlite(), &flags).await;
     browser.go(&format!("{}/jobs", server.url())).await;
     shown(&browser, "sign-in").await;
     browser.leave_by("main a.button").await;

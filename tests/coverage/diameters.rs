@@ -1,9 +1,11 @@
 //! Tactical diameters at 35 deg of rudder.
 
-use sistership_assessment::uncertainty::{Sampling, draws};
+use sistership_assessment::uncertainty::{Sampling, draw_from_posterior};
 use sistership_model::{Law, Model};
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{Manoeuvre, ManoeuvreSettings, Turn, sail_together};
+use sistership_simulation::manoeuvre::{
+    Manoeuvre, ManoeuvreSettings, TurningCircle, simulate_manoeuvre_batch,
+};
 
 const TURN_DEG: f64 = 35.0;
 
@@ -14,10 +16,10 @@ pub fn diameter(model: &Model, law: &Law) -> Option<f64> {
 
 /// Between which 95 % of the draws from a model's posterior are, m.
 pub fn band(model: &Model, law: &Law) -> Option<(f64, f64)> {
-    let ship = Ship::sisters(model, law).ok()?;
-    let sisters: Vec<Vec<f64>> = draws(model, Sampling::default())?
+    let ship = Ship::with_open_coefficients(model, law).ok()?;
+    let sisters: Vec<Vec<f64>> = draw_from_posterior(model, Sampling::default())?
         .iter()
-        .map(|draw| ship.sister(draw))
+        .map(|draw| ship.open_coefficient_values(draw))
         .collect::<Option<_>>()?;
     let mut all: Vec<f64> = diameters(&ship, &sisters).into_iter().flatten().collect();
     all.sort_by(f64::total_cmp);
@@ -33,8 +35,10 @@ fn diameters(ship: &Ship, sisters: &[Vec<f64>]) -> Vec<Option<f64>> {
         .iter()
         .map(|sister| (Manoeuvre::Turn { rudder: TURN_DEG }, sister.as_slice()))
         .collect();
-    let sailed = sail_together(ship, &turns, &settings).into_iter();
+    let sailed = simulate_manoeuvre_batch(ship, &turns, &settings).into_iter();
     sailed
-        .map(|sailed| Turn::of(sailed.ok()?, TURN_DEG).ok()?.metrics.tactical_diameter_m)
+        .map(|sailed| {
+            TurningCircle::from_manoeuvre(sailed.ok()?, TURN_DEG).ok()?.metrics.tactical_diameter_m
+        })
         .collect()
 }

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use sistership_assessment::uncertainty::Sampling;
-use sistership_identification::refine::{Family, Method, Request, Settings, refine};
+use sistership_identification::refine::{
+    EstimationMethod, RefinementSettings, RefinementSpec, TermFamily, refine,
+};
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Vessel, Zoo};
 use sistership_simulation::Ship;
@@ -31,7 +33,7 @@ struct Case<'a> {
     vessel: &'a Vessel,
     source: Model,
     law: &'a Law,
-    settings: Settings,
+    settings: RefinementSettings,
     seed: u64,
 }
 
@@ -45,7 +47,7 @@ impl Case<'_> {
         };
         let trials: Vec<Trial> = ORDERS.iter().enumerate().map(sail).collect();
         let trials: Vec<&Trial> = trials.iter().collect();
-        let request = Request {
+        let request = RefinementSpec {
             target: self.vessel,
             source: &self.source,
             source_law: None,
@@ -61,7 +63,7 @@ impl Case<'_> {
 }
 
 fn held(source: &Model, truth: &Model, refined: &Model, law: &Law) -> Held {
-    let posterior = refined.posterior().expect("a refined model has a posterior");
+    let posterior = refined.valid_posterior().expect("a refined model has a posterior");
     let one = |(name, deviation): (&str, f64)| {
         let off = refined.coefficient(name) - truth.coefficient(name);
         (
@@ -69,7 +71,7 @@ fn held(source: &Model, truth: &Model, refined: &Model, law: &Law) -> Held {
             (off.abs() <= 1.96 * deviation, 1.96 * deviation / source.coefficient(name).abs()),
         )
     };
-    let mut held: Held = posterior.deviations().into_iter().map(one).collect();
+    let mut held: Held = posterior.deviations_by_name().into_iter().map(one).collect();
     let true_diameter = diameter(truth, law).expect("the truth turns");
     let (low, high) = band(refined, law).expect("draws that turn");
     held.insert(
@@ -92,14 +94,19 @@ fn table(replicas: &[Held]) -> BTreeMap<String, (f64, f64)> {
 }
 
 /// Prints the table and gives the shares of the coefficients in the mean and of the diameter.
-fn coverage(ship: &str, method: Method, replicas: usize) -> (f64, f64) {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let source = zoo.model(ship).unwrap_or_else(|error| panic!("{error}"));
+fn coverage(ship: &str, method: EstimationMethod, replicas: usize) -> (f64, f64) {
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
+    let source = zoo.find_model(ship).unwrap_or_else(|error| panic!("{error}"));
     let law = zoo.law(&source.law).expect("the law").clone();
     let strengths = vec![1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5];
     let bands = Sampling { samples: 0, ..Sampling::default() };
-    let settings =
-        Settings { method, families: vec![Family::Own], strengths, bands, ..Settings::default() };
+    let settings = RefinementSettings {
+        method,
+        families: vec![TermFamily::Own],
+        strengths,
+        bands,
+        ..RefinementSettings::default()
+    };
     let seed = setting("COVERAGE_SEED", "20").parse().expect("a number");
     let case =
         Case { vessel: zoo.vessel(ship).expect("the ship"), source, law: &law, settings, seed };
@@ -126,7 +133,8 @@ fn coverage(ship: &str, method: Method, replicas: usize) -> (f64, f64) {
 #[test]
 fn intervals_of_95_per_cent_cover_90_to_98() {
     let replicas: usize = setting("COVERAGE_REPLICAS", "16").parse().expect("a number");
-    let method = Method::by_name(&setting("COVERAGE_METHOD", "weak")).expect("an estimator");
+    let method =
+        EstimationMethod::by_name(&setting("COVERAGE_METHOD", "weak")).expect("an estimator");
     let (coefficients, diameter) = coverage(&setting("COVERAGE_SHIP", "mariner"), method, replicas);
     // Chance: two standard errors of a share over so few replicas. Coefficients of one replica
     // depend on each other.

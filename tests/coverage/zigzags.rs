@@ -3,7 +3,9 @@
 
 use rayon::prelude::*;
 use sistership_assessment::uncertainty::Sampling;
-use sistership_identification::refine::{Method, Request, Settings, refine};
+use sistership_identification::refine::{
+    EstimationMethod, RefinementSettings, RefinementSpec, refine,
+};
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Zoo};
 use sistership_simulation::Ship;
@@ -40,9 +42,9 @@ impl Turned {
 }
 
 /// A ship like one of the zoo, refined from it on zigzags under gusts and noise.
-fn turned(zoo: &Zoo, (seed, index): (u64, usize), method: Method) -> Turned {
+fn turned(zoo: &Zoo, (seed, index): (u64, usize), method: EstimationMethod) -> Turned {
     let ship = SHIPS[index % SHIPS.len()];
-    let source = zoo.model(ship).unwrap_or_else(|error| panic!("{error}"));
+    let source = zoo.find_model(ship).unwrap_or_else(|error| panic!("{error}"));
     let law = zoo.law(&source.law).expect("the law");
     let mut rng = replica(seed, index);
     let truth = relative(&source, law, 0.15, &mut rng);
@@ -55,9 +57,9 @@ fn turned(zoo: &Zoo, (seed, index): (u64, usize), method: Method) -> Turned {
     let trials: Vec<&Trial> = trials.iter().collect();
     let strengths = vec![1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5];
     let bands = Sampling { samples: 0, ..Sampling::default() };
-    let settings = Settings { method, strengths, bands, ..Settings::default() };
+    let settings = RefinementSettings { method, strengths, bands, ..RefinementSettings::default() };
     let target = zoo.vessel(ship).expect("the ship");
-    let request = Request {
+    let request = RefinementSpec {
         target,
         source: &source,
         source_law: None,
@@ -97,9 +99,10 @@ fn of(
 #[test]
 fn zigzags_never_spoil_the_turn_by_more_than_the_band() {
     let count: usize = setting("ZIGZAG_SHIPS", "10").parse().expect("a number");
-    let method = Method::by_name(&setting("ZIGZAG_METHOD", "weak")).expect("an estimator");
+    let method =
+        EstimationMethod::by_name(&setting("ZIGZAG_METHOD", "weak")).expect("an estimator");
     let seed: u64 = setting("ZIGZAG_SEED", "3").parse().expect("a number");
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let all: Vec<Turned> =
         (0..count).into_par_iter().map(|index| turned(&zoo, (seed, index), method)).collect();
     println!(

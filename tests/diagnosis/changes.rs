@@ -1,6 +1,6 @@
 //! What begins within a trial is found with its time.
 
-use sistership_diagnosis::{ChangeCourse, Request, Settings, Verdict, diagnose};
+use sistership_diagnosis::{ChangeCourse, DiagnosisInputs, Settings, Verdict, diagnose};
 use sistership_model::Trial;
 
 use sistership_tests::hidden_effects::baseline::{BASELINE, library};
@@ -18,7 +18,7 @@ fn lost_thrust_is_dated_and_named_a_resistance_or_a_propeller() {
     // One trial of six.
     let sailed: Vec<&Trial> = hidden.iter().take(1).chain(whole.iter().skip(1)).collect();
     let (settings, effects) = (Settings::default(), library());
-    let request = Request {
+    let request = DiagnosisInputs {
         model: &BASELINE.model,
         law: &BASELINE.law,
         effects: &effects,

@@ -15,9 +15,9 @@ use sistership_tests::undeclared_wind::{
 /// refinement makes of them that knows of no effect.
 fn refined_without_wind(baseline: &Baseline, trials: &[Trial]) -> BTreeMap<String, f64> {
     let trials: Vec<&Trial> = trials.iter().collect();
-    let settings = refine::Settings { folds: trials.len(), ..by_trajectories() };
+    let settings = refine::RefinementSettings { folds: trials.len(), ..by_trajectories() };
     let (target, source) = (ZOO.vessel(SHIP).unwrap(), &baseline.model);
-    let request = refine::Request {
+    let request = refine::RefinementSpec {
         target,
         source,
         source_law: None,

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use sistership_diagnosis::{Diagnosis, Request, Settings, Verdict, diagnose};
+use sistership_diagnosis::{Diagnosis, DiagnosisInputs, Settings, Verdict, diagnose};
 use sistership_model::{Law, Model, Trial};
 use sistership_tests::shared;
 use sistership_trials::load_path;
@@ -31,7 +31,8 @@ fn diagnosed(model: &Model, law: &Law, kind: &str) -> Option<Diagnosis> {
     let trials = trials(&folder, kind);
     let trials: Vec<&Trial> = trials.iter().collect();
     let (settings, effects) = (Settings::default(), library());
-    let request = Request { model, law, effects: &effects, trials: &trials, settings: &settings };
+    let request =
+        DiagnosisInputs { model, law, effects: &effects, trials: &trials, settings: &settings };
     let diagnosis =
         diagnose(&request, &|_, _| true).unwrap_or_else(|error| panic!("{kind}: {error}"));
     println!("{kind} by {}: {:?}", model.name, diagnosis.verdict);

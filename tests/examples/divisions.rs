@@ -56,7 +56,9 @@ impl Outcome {
 
 /// Names with their evidence.
 fn named(diagnosis: &Diagnosis) -> String {
-    let one = |found: &sistership_diagnosis::Found| format!("{} {:.0}", found.name, found.evidence);
+    let one = |found: &sistership_diagnosis::MissingEffect| {
+        format!("{} {:.0}", found.name, found.evidence)
+    };
     diagnosis.effects.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 

@@ -11,15 +11,15 @@ use std::process::Command;
 use std::time::Instant;
 
 use serde_json::Value;
-use sistership_identification::refine::Settings;
-use sistership_learned::{BranchKind, BranchSettings, corrected};
+use sistership_identification::refine::RefinementSettings;
+use sistership_learned::{BranchKind, BranchSettings, train_corrected_model};
 use sistership_model::trial::Channel;
 use sistership_model::{Model, Trial, Vessel, Zoo};
-use sistership_model_selection::{Asked, best_start};
+use sistership_model_selection::{StartRequest, best_start};
 use sistership_simulation::Ship;
 use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_simulation::recorded::{ReplaySettings, replay};
-use sistership_simulation::state::{StateVector, at, straight};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
+use sistership_simulation::state::{StateVector, at, straight_state};
 
 #[path = "../src/esso_osaka.rs"]
 #[allow(dead_code, unused_imports)]
@@ -60,7 +60,7 @@ fn main() {
     };
     let (counts, seeds) = (numbers(0, "12"), numbers(1, "1"));
     let wanted = arguments.get(2).map_or("", String::as_str);
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     println!(
         "| ship | seed | trials | selected | fitted | held out | unseen | heading, deg | best \
          correction | held out | taken | unseen | heading, deg | s |"
@@ -176,7 +176,7 @@ impl<T: Truth> Truth for Walking<T> {
     fn accelerations(&self, state: &StateVector, n_rps: f64) -> [f64; 4] {
         let mut acted = *state;
         acted[at::DELTA] += MORE * state[at::DELTA].abs();
-        let ahead = straight(self.dimensions().speed_m_s);
+        let ahead = straight_state(self.dimensions().speed_m_s);
         let mut turned = ahead;
         turned[at::DELTA] = WALK_RAD;
         let by_ship = self.0.accelerations(&acted, n_rps);
@@ -201,7 +201,7 @@ fn row(zoo: &Zoo, case: &Case, seen: &[&Trial]) -> (String, f64) {
     let begun = Instant::now();
     let (ladder, model) = refined(zoo, case, seen);
     let took_s = begun.elapsed().as_secs_f64();
-    let alone = judged(zoo, &model.foundation(), case);
+    let alone = judged(zoo, &model.without_correction(), case);
     let lines = ladder["lines"].as_array().cloned().unwrap_or_default();
     let chosen = lines.iter().find(|line| line["chosen"] == true).cloned().unwrap_or_default();
     let text = |value: &Value| value.as_str().unwrap_or("none").to_owned();
@@ -234,10 +234,11 @@ fn correction(
     let Some(best) = best else { return "- | - | - | - | -".to_owned() };
     let kind: BranchKind = serde_json::from_value(best["kind"].clone()).expect("a kind");
     let law = zoo.law(&model.law).expect("a law of the zoo");
-    let foundation = model.foundation();
-    let training = BranchSettings::default().of(kind).training(&foundation, law, seen);
+    let foundation = model.without_correction();
+    let training =
+        BranchSettings::default().with_kind(kind).complete_training(&foundation, law, seen);
     let training = training.unwrap_or_else(|error| panic!("{error}"));
-    let both = corrected(&foundation, law, seen, &training);
+    let both = train_corrected_model(&foundation, law, seen, &training);
     let both = judged(zoo, &both.unwrap_or_else(|error| panic!("{error}")), case);
     let taken = if choice["taken"].is_null() { "no" } else { "yes" };
     format!(
@@ -259,15 +260,20 @@ fn refined(zoo: &Zoo, case: &Case, seen: &[&Trial]) -> (Value, Model) {
     let target = named.unwrap_or_else(|| {
         Vessel::parse("ship.yaml", &case.vessel).unwrap_or_else(|error| panic!("{error}"))
     });
-    let (champions, settings) = (BTreeMap::new(), Settings::default());
-    let asked =
-        Asked { zoo, target: &target, champions: &champions, trials: seen, settings: &settings };
+    let (champions, settings) = (BTreeMap::new(), RefinementSettings::default());
+    let asked = StartRequest {
+        zoo,
+        target: &target,
+        champions: &champions,
+        trials: seen,
+        settings: &settings,
+    };
     let start = best_start(&asked, &|_, _| true).unwrap_or_else(|error| panic!("{error}"));
     if std::env::var_os("LADDER").is_some() {
         for line in &start.ladder.lines {
             eprintln!("{line:?}");
         }
-        eprintln!("{}\n{:?}", start.ladder.reference(), start.settings);
+        eprintln!("{}\n{:?}", start.ladder.reference_summary(), start.settings);
         for option in &start.refinement.options {
             eprintln!("{option:?}");
         }
@@ -316,11 +322,12 @@ fn judged(zoo: &Zoo, model: &Model, case: &Case) -> (f64, f64) {
         let settings = ReplaySettings { restart_s, ..ReplaySettings::default() };
         let mut sum = SquaredError::default();
         for trial in &case.unseen {
-            let run = replay(&ship, trial, &settings).unwrap_or_else(|error| panic!("{error}"));
+            let run =
+                replay_trial(&ship, trial, &settings).unwrap_or_else(|error| panic!("{error}"));
             if run.stopped.is_some() {
                 return None;
             }
-            sum.add(&SquaredError::of(trial, &run));
+            sum.add(&SquaredError::from_trial(trial, &run));
         }
         Some(sum)
     };

@@ -169,13 +169,13 @@ async fn restored(folder: &Path, empty: TestDatabase, bucket: Option<&Bucket>) -
 
 #[tokio::test]
 async fn backed_up_on_sqlite() {
-    backed_up(TestServer::sqlite().await, TestDatabase::sqlite(), None).await;
+    backed_up(TestServer::sqlite().await, TestDatabase::new_sqlite(), None).await;
 }
 
 #[tokio::test]
 async fn backed_up_on_postgres() {
     if let (Some(server), Some(empty)) =
-        (TestServer::postgres().await, TestDatabase::postgres().await)
+        (TestServer::postgres().await, TestDatabase::new_postgres().await)
     {
         backed_up(server, empty, None).await;
     }
@@ -187,6 +187,6 @@ async fn backed_up_on_postgres() {
 async fn backed_up_from_a_bucket_into_another() {
     let s3 = TestS3::start().await;
     let buckets = ["one", "another"].map(|prefix| Bucket::of(&s3, prefix));
-    let server = TestServer::with_bucket(TestDatabase::sqlite(), &buckets[0]).await;
-    backed_up(server, TestDatabase::sqlite(), Some(buckets)).await;
+    let server = TestServer::with_bucket(TestDatabase::new_sqlite(), &buckets[0]).await;
+    backed_up(server, TestDatabase::new_sqlite(), Some(buckets)).await;
 }

@@ -3,7 +3,7 @@
 
 use reqwest::Method;
 use serde_json::{Value, json};
-use sistership_model::version::sha256;
+use sistership_model::version::sha256_hex;
 use sistership_tests::binary;
 use sistership_tests::server::TestServer;
 
@@ -62,7 +62,7 @@ async fn weights(server: &TestServer, named: &Value) {
     let of = |number: i64| format!("/v1/models/{NAME}/versions/{number}/weights");
     let got = server.request(Method::GET, &of(2)).send().await.expect("an answer");
     let bytes = got.bytes().await.expect("bytes");
-    assert_eq!(json!(sha256(&bytes)), *named);
+    assert_eq!(json!(sha256_hex(&bytes)), *named);
     assert_eq!(server.get(&of(1)).await["status"], 404);
 }
 
@@ -158,7 +158,7 @@ fn a_branch_is_trained_and_sailed_on_files() {
     assert_eq!(made["branch"], json!({ "kind": "boosted trees", "mode": "parallel" }), "{made}");
     assert_eq!(made["judgement"]["trials"].as_array().map(Vec::len), Some(4), "{made}");
     let weights = std::fs::read(path("both.weights.json")).expect("weights beside the model");
-    assert_eq!(made["weights_sha256"], json!(sha256(&weights)));
+    assert_eq!(made["weights_sha256"], json!(sha256_hex(&weights)));
     let simulate = |model: &str, status: i32| {
         let restarted = ["--restart-s", "100", "--json"];
         let call = ["simulate", "--model", model, "--trials", &trials];

@@ -121,7 +121,7 @@ fn a_law_is_derived_from_a_list_of_actuators() {
 fn a_law_and_a_vessel_are_added_by_files() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     std::fs::create_dir_all(folder.path().join("vessels")).expect("a folder");
-    let copy = sistership_model::Zoo::embedded()
+    let copy = sistership_model::Zoo::load_embedded()
         .unwrap_or_else(|error| panic!("{error}"))
         .vessel_text("mariner")
         .expect("in the zoo")

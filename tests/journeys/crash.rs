@@ -99,12 +99,12 @@ async fn set_aside(database: TestDatabase) {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_job_that_ends_its_process_twice_on_sqlite() {
-    set_aside(TestDatabase::sqlite()).await;
+    set_aside(TestDatabase::new_sqlite()).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_job_that_ends_its_process_twice_on_postgres() {
-    if let Some(database) = TestDatabase::postgres().await {
+    if let Some(database) = TestDatabase::new_postgres().await {
         set_aside(database).await;
     }
 }

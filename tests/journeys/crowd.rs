@@ -101,7 +101,7 @@ async fn quickly_answered(address: &str, key: Option<&str>, named: &str) -> bool
 async fn crowded(key: Option<&str>, authorised: bool) {
     raise_descriptors();
     let (database, mut arguments) =
-        (TestDatabase::sqlite(), vec!["--workers".to_owned(), "0".to_owned()]);
+        (TestDatabase::new_sqlite(), vec!["--workers".to_owned(), "0".to_owned()]);
     if let Some(key) = key {
         let file = database.folder.path().join("key");
         std::fs::write(&file, key).expect("a key");

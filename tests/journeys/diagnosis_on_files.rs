@@ -195,7 +195,8 @@ fn an_effect_of_a_folder_is_known() {
     let message = diagnose(1);
     assert!(message.contains("effects/broken.yaml") && message.contains("nowhere"), "{message}");
     std::fs::remove_file(library.path().join("effects/broken.yaml")).expect("removed");
-    let zoo_itself = sistership_model::Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo_itself =
+        sistership_model::Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let twin = zoo_itself
         .effect_text(EFFECT)
         .expect("in the library")

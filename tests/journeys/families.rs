@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use reqwest::Method;
 use serde_json::{Value, json};
 use sistership_store::testing::TestDatabase;
-use sistership_store::{JobState, Objects, Page, Store, SystemClock};
+use sistership_store::{JobState, ObjectStorage, PageRequest, Store, SystemClock};
 use sistership_tests::binary;
 use sistership_tests::fleet::{FOUNDATION, Yard, name};
 use sistership_tests::server::TestServer;
@@ -26,7 +26,8 @@ async fn family(database: TestDatabase, ships: usize, trials: usize) -> (TestSer
     let server = TestServer::on(database, &["--no-worker"]).await;
     let store =
         Store::connect(&server.database().url, Arc::new(SystemClock)).await.expect("a store");
-    let objects = Objects::local(server.store_arguments()[3].as_ref()).expect("the samples");
+    let objects =
+        ObjectStorage::open_folder(server.store_arguments()[3].as_ref()).expect("the samples");
     Yard::new().launch(&store, &objects, 0..ships, trials).await;
     let members: Vec<String> = (0..ships).map(name).collect();
     let new = json!({ "name": "sisters", "foundation": FOUNDATION, "members": members });
@@ -78,14 +79,18 @@ async fn until_done(server: &TestServer, id: &str) -> Value {
 
 /// One outcome for each ship, one version for each that moved, and none besides.
 async fn exactly_once(store: &Store, id: &str, ships: usize) {
-    let outcomes =
-        store.bulks().outcomes(id, None, &Page::first(1000)).await.expect("the outcomes").items;
+    let outcomes = store
+        .bulks()
+        .list_outcomes(id, None, &PageRequest::first_page(1000))
+        .await
+        .expect("the outcomes")
+        .items;
     let named: BTreeSet<&str> = outcomes.iter().map(|outcome| outcome.ship.as_str()).collect();
     assert_eq!((outcomes.len(), named.len()), (ships, ships));
     for outcome in &outcomes {
         let versions = store
             .versions()
-            .list(&outcome.ship, &Page::first(1000))
+            .list(&outcome.ship, &PageRequest::first_page(1000))
             .await
             .expect("the versions")
             .items;
@@ -196,8 +201,13 @@ async fn a_family_is_learned_from_and_refined(database: TestDatabase) {
 /// A new trial of another ship's, under one's own name: its model no longer holds on it, and it is
 /// listed first.
 async fn drift_is_seen(server: &TestServer, store: &Store) {
-    let strange =
-        store.trials().list(&name(7), &Page::first(1)).await.expect("trials").items.remove(0);
+    let strange = store
+        .trials()
+        .list(&name(7), &PageRequest::first_page(1))
+        .await
+        .expect("trials")
+        .items
+        .remove(0);
     let new = sistership_store::NewTrial {
         ship: name(5),
         sha256: strange.sha256,
@@ -256,7 +266,7 @@ async fn every_ship_is_refined_once(database: TestDatabase) {
     );
     let lost = store
         .bulks()
-        .jobs(&id, None)
+        .chunk_jobs(&id, None)
         .await
         .expect("the chunks")
         .iter()
@@ -271,7 +281,8 @@ async fn every_ship_is_refined_once(database: TestDatabase) {
 async fn one_with_a_chunk(store: &Store, id: &str, workers: &[TestWorker]) -> usize {
     let begun = Instant::now();
     loop {
-        let running = store.bulks().jobs(id, Some(JobState::Running)).await.expect("the chunks");
+        let running =
+            store.bulks().chunk_jobs(id, Some(JobState::Running)).await.expect("the chunks");
         let first = running.into_iter().filter(|job| job.attempt == 1);
         let holders: Vec<String> = first.filter_map(|job| job.worker).collect();
         let holds = |worker: &TestWorker| {
@@ -307,24 +318,24 @@ async fn a_refinement_is_cancelled_and_goes_on(database: TestDatabase) {
 
 #[tokio::test]
 async fn a_family_on_sqlite() {
-    a_family_is_learned_from_and_refined(TestDatabase::sqlite()).await;
+    a_family_is_learned_from_and_refined(TestDatabase::new_sqlite()).await;
 }
 
 #[tokio::test]
 async fn a_family_on_postgres() {
-    if let Some(database) = TestDatabase::postgres().await {
+    if let Some(database) = TestDatabase::new_postgres().await {
         a_family_is_learned_from_and_refined(database).await;
     }
 }
 
 #[tokio::test]
 async fn four_workers_refine_a_family_on_postgres() {
-    if let Some(database) = TestDatabase::postgres().await {
+    if let Some(database) = TestDatabase::new_postgres().await {
         every_ship_is_refined_once(database).await;
     }
 }
 
 #[tokio::test]
 async fn a_cancelled_refinement_goes_on() {
-    a_refinement_is_cancelled_and_goes_on(TestDatabase::sqlite()).await;
+    a_refinement_is_cancelled_and_goes_on(TestDatabase::new_sqlite()).await;
 }

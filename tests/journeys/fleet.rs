@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use sistership_store::testing::TestDatabase;
-use sistership_store::{Job, JobFilter, JobState, Page, Store, SystemClock};
+use sistership_store::{Job, JobFilter, JobState, PageRequest, Store, SystemClock};
 use sistership_tests::binary;
 use sistership_tests::server::TestServer;
 use sistership_tests::worker::TestWorker;
@@ -41,7 +41,7 @@ impl Fleet {
     async fn jobs(&self) -> Vec<Job> {
         self.store
             .jobs()
-            .list(&JobFilter::default(), &Page::first(1000))
+            .list(&JobFilter::default(), &PageRequest::first_page(1000))
             .await
             .expect("the jobs")
             .items
@@ -129,8 +129,13 @@ async fn kept_once(fleet: &Fleet, jobs: &[Job]) {
     let results =
         jobs.iter().filter_map(|job| serde_json::from_str::<Value>(job.result.as_deref()?).ok());
     let made: BTreeSet<i64> = results.filter_map(|result| result["version"].as_i64()).collect();
-    let versions =
-        fleet.store.versions().list(NAME, &Page::first(1000)).await.expect("the versions").items;
+    let versions = fleet
+        .store
+        .versions()
+        .list(NAME, &PageRequest::first_page(1000))
+        .await
+        .expect("the versions")
+        .items;
     assert_eq!(
         made,
         (1..=JOBS as i64).collect(),
@@ -141,14 +146,15 @@ async fn kept_once(fleet: &Fleet, jobs: &[Job]) {
         let reports = fleet
             .store
             .reports()
-            .by_version(&version.id, &Page::first(10))
+            .by_version(&version.id, &PageRequest::first_page(10))
             .await
             .expect("the reports")
             .items;
         assert_eq!(reports.len(), 1, "one report on version {}", version.number);
     }
     let moves = |alias: &'static str| async move {
-        let moves = fleet.store.aliases().history(NAME, alias, &Page::first(1000)).await;
+        let moves =
+            fleet.store.aliases().list_history(NAME, alias, &PageRequest::first_page(1000)).await;
         moves.expect("the history").items.len()
     };
     assert_eq!(
@@ -159,12 +165,12 @@ async fn kept_once(fleet: &Fleet, jobs: &[Job]) {
 
 #[tokio::test]
 async fn four_workers_on_postgres() {
-    if let Some(database) = TestDatabase::postgres().await {
+    if let Some(database) = TestDatabase::new_postgres().await {
         every_job_is_done_once(database).await;
     }
 }
 
 #[tokio::test]
 async fn four_workers_on_sqlite() {
-    every_job_is_done_once(TestDatabase::sqlite()).await;
+    every_job_is_done_once(TestDatabase::new_sqlite()).await;
 }

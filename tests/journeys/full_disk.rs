@@ -99,7 +99,7 @@ async fn only_reads(server: &TestServer) {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_full_disk_is_answered_by_507_and_read_from() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let Some(disk) = Disk::on(database.folder.path()) else { return };
     let mut server = TestServer::on(database, &[]).await;
     create(&server).await;

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use serde_json::json;
-use sistership_cli::sea_trials::{TrialManoeuvre, record};
+use sistership_cli::sea_trials::{TrialManoeuvre, record_programme};
 use sistership_model::effect::AppliedEffect;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Trial, Zoo};
@@ -20,7 +20,7 @@ const DURATION_S: f64 = 330.0;
 const STRIDE: usize = 2;
 
 fn zoo() -> Zoo {
-    Zoo::embedded().unwrap_or_else(|error| panic!("{error}"))
+    Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Mariner under another name: a ship whose document publishes a model.
@@ -56,11 +56,12 @@ pub fn sound() -> Vec<Trial> {
 
 fn sailed(programme: &[TrialManoeuvre], offset_deg: f64, seed: u64) -> Vec<Trial> {
     let zoo = zoo();
-    let mut model = zoo.model("mariner").unwrap_or_else(|error| panic!("{error}"));
+    let mut model = zoo.find_model("mariner").unwrap_or_else(|error| panic!("{error}"));
     model.effects.extend((offset_deg != 0.0).then(|| rudder_off(&zoo, offset_deg)));
     let ship = Ship::new(&model, zoo.law(&model.law).expect("the law of a zoo model"))
         .expect("a ready ship");
-    let trials = record(&ship, 7.7, programme, seed).unwrap_or_else(|stopped| panic!("{stopped}"));
+    let trials =
+        record_programme(&ship, 7.7, programme, seed).unwrap_or_else(|stopped| panic!("{stopped}"));
     trials.into_iter().map(coarse).collect()
 }
 

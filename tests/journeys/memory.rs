@@ -9,7 +9,7 @@ use bytes::Bytes;
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 use sistership_model::trial::{Channel, Trial};
-use sistership_model::version::sha256;
+use sistership_model::version::sha256_hex;
 use sistership_store::testing::TestDatabase;
 use sistership_tests::server::{TestServer, memory_mb};
 use sistership_tests::{binary, esso_osaka, shared};
@@ -21,7 +21,7 @@ const PROGRAM: u64 = 64;
 const PARQUET: &str = "application/vnd.apache.parquet";
 
 async fn server() -> TestServer {
-    TestServer::on(TestDatabase::sqlite(), &["--no-worker"]).await
+    TestServer::on(TestDatabase::new_sqlite(), &["--no-worker"]).await
 }
 
 /// Constants by the million, in few bytes.
@@ -129,7 +129,7 @@ async fn downloads_that_nobody_reads() {
     let get = |media: &str| server.request(Method::GET, &path).header("accept", media);
     let whole = get(PARQUET).send().await.expect("an answer").bytes().await.expect("a body");
     assert_eq!(kept["trials"][0]["rows"], json!(3_750_000));
-    assert_eq!(kept["trials"][0]["sha256"], json!(sha256(&whole)), "it comes as it is kept");
+    assert_eq!(kept["trials"][0]["sha256"], json!(sha256_hex(&whole)), "it comes as it is kept");
     let (_, before) = server.memory_mb();
     let address = server.url().trim_start_matches("http://").to_owned();
     let unread = |media: &&str| {

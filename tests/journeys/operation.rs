@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use sistership_store::testing::TestDatabase;
-use sistership_store::{JobFilter, JobState, Page, Store, SystemClock};
+use sistership_store::{JobFilter, JobState, PageRequest, Store, SystemClock};
 use sistership_tests::binary;
 use sistership_tests::server::TestServer;
 use sistership_tests::worker::TestWorker;
@@ -17,7 +17,7 @@ use super::sea_trials::NAME;
 /// A job under way, a server that is told to stop, and the job afterwards: its state and how often
 /// it was begun.
 async fn stopped(drain_s: &str) -> (JobState, i64) {
-    let mut server = TestServer::on(TestDatabase::sqlite(), &["--drain-s", drain_s]).await;
+    let mut server = TestServer::on(TestDatabase::new_sqlite(), &["--drain-s", drain_s]).await;
     create(&server).await;
     upload_few(&server).await;
     let job = refine_weakly(&server, "drained").await;
@@ -55,12 +55,12 @@ async fn begun_at_once(database: TestDatabase) {
 
 #[tokio::test]
 async fn many_processes_begin_on_an_empty_sqlite_database() {
-    begun_at_once(TestDatabase::sqlite()).await;
+    begun_at_once(TestDatabase::new_sqlite()).await;
 }
 
 #[tokio::test]
 async fn many_processes_begin_on_an_empty_postgres_database() {
-    if let Some(database) = TestDatabase::postgres().await {
+    if let Some(database) = TestDatabase::new_postgres().await {
         begun_at_once(database).await;
     }
 }
@@ -104,7 +104,7 @@ fn flags_win_over_the_environment_and_that_over_the_file() {
 
 #[tokio::test]
 async fn a_server_runs_by_its_file_and_logs_in_json() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let config = database.folder.path().join("sistership.yaml");
     std::fs::write(&config, "workers: 0\nlog: info\nlog_format: json\n").expect("a file");
     let (server, log) =
@@ -115,7 +115,12 @@ async fn a_server_runs_by_its_file_and_logs_in_json() {
     tokio::time::sleep(Duration::from_millis(1500)).await;
     let store =
         Store::connect(&server.database().url, Arc::new(SystemClock)).await.expect("a store");
-    let jobs = store.jobs().list(&JobFilter::default(), &Page::first(9)).await.expect("jobs").items;
+    let jobs = store
+        .jobs()
+        .list(&JobFilter::default(), &PageRequest::first_page(9))
+        .await
+        .expect("jobs")
+        .items;
     assert!(
         jobs.iter().all(|job| job.state == JobState::Queued),
         "the file says that there are no workers"

@@ -66,7 +66,7 @@ async fn fleet(server: &TestServer) {
 }
 
 fn rudder_offset() -> Value {
-    let zoo = sistership_model::Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = sistership_model::Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let effect = zoo.effect("rudder-offset").expect("in the library");
     let form = serde_json::to_value(&effect.forms[0].file).expect("JSON");
     json!({ "name": "rudder-offset", "acts_on": effect.acts_on, "form": form,

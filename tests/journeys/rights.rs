@@ -53,12 +53,12 @@ async fn a_key_opens_what_its_role_may(database: TestDatabase) {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_key_on_sqlite() {
-    a_key_opens_what_its_role_may(TestDatabase::sqlite()).await;
+    a_key_opens_what_its_role_may(TestDatabase::new_sqlite()).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_key_on_postgres() {
-    if let Some(database) = TestDatabase::postgres().await {
+    if let Some(database) = TestDatabase::new_postgres().await {
         a_key_opens_what_its_role_may(database).await;
     }
 }

@@ -1,7 +1,7 @@
 //! A ship to create and trials to upload, sailed by SR108's own law.
 
 use serde_json::json;
-use sistership_cli::sea_trials::{TrialManoeuvre, record};
+use sistership_cli::sea_trials::{TrialManoeuvre, record_programme};
 use sistership_model::{Trial, Zoo};
 use sistership_simulation::Ship;
 use sistership_trials::samples::to_csv;
@@ -46,11 +46,11 @@ pub fn few() -> Vec<Trial> {
 
 /// Other trials of the same hull, as a sister would sail them.
 pub fn sailed(programme: &[TrialManoeuvre], seed: u64) -> Vec<Trial> {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let model = zoo.model("sr108").unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
+    let model = zoo.find_model("sr108").unwrap_or_else(|error| panic!("{error}"));
     let ship = Ship::new(&model, zoo.law(&model.law).expect("the law of a zoo model"))
         .expect("a ready ship");
-    record(&ship, 10.47, programme, seed).unwrap_or_else(|stopped| panic!("{stopped}"))
+    record_programme(&ship, 10.47, programme, seed).unwrap_or_else(|stopped| panic!("{stopped}"))
 }
 
 /// A trial as a CSV file.

@@ -16,7 +16,7 @@ const BEYOND_DRAIN: Duration = Duration::from_secs(15);
 
 #[tokio::test]
 async fn a_server_with_everything_under_way_ends_in_time() {
-    let mut server = TestServer::on(TestDatabase::sqlite(), &["--drain-s", "1"]).await;
+    let mut server = TestServer::on(TestDatabase::new_sqlite(), &["--drain-s", "1"]).await;
     create(&server).await;
     upload(&server).await;
     let job = refine(&server, "stopped").await;
@@ -57,7 +57,7 @@ async fn a_server_with_everything_under_way_ends_in_time() {
 
 #[tokio::test]
 async fn a_worker_with_a_job_ends_in_time() {
-    let server = TestServer::on(TestDatabase::sqlite(), &["--no-worker"]).await;
+    let server = TestServer::on(TestDatabase::new_sqlite(), &["--no-worker"]).await;
     create(&server).await;
     upload(&server).await;
     let mut store = server.store_arguments().to_vec();

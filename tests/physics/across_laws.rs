@@ -1,12 +1,14 @@
 //! A source of one law as the prior of another: what the trials do not tell stays as the source
 //! says.
 
-use sistership_identification::refine::{Family, Method, Refinement, Request, Settings, refine};
+use sistership_identification::refine::{
+    EstimationMethod, Refinement, RefinementSettings, RefinementSpec, TermFamily, refine,
+};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
-use sistership_priors::transfer::{approach_of, blank};
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_simulation::state::{RECORDED, at};
+use sistership_priors::transfer::{blank_model, trial_approach};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
+use sistership_simulation::state::{RECORDED_CHANNELS, at};
 
 use super::{model, ready};
 
@@ -28,10 +30,10 @@ fn zigzags(truth: &Model, law: &Law) -> Vec<Trial> {
         ..ManoeuvreSettings::default()
     };
     let one = |(rudder, switch): (f64, f64)| {
-        let track = zigzag(&ship, rudder, switch, &settings).expect("a zigzag").track;
-        let columns = RECORDED[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
+        let track = simulate_zigzag(&ship, rudder, switch, &settings).expect("a zigzag").track;
+        let columns = RECORDED_CHANNELS[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
         let mut channels: std::collections::BTreeMap<_, _> =
-            columns.map(|&(c, place)| (c, track.column(place))).collect();
+            columns.map(|&(c, place)| (c, track.state_column(place))).collect();
         channels.insert(Channel::N, track.n_rps.clone());
         Trial {
             name: format!("zigzag {rudder}/{switch}"),
@@ -44,17 +46,17 @@ fn zigzags(truth: &Model, law: &Law) -> Vec<Trial> {
 }
 
 fn refined(source: &Model, own: &Law, law: &Law, trials: &[Trial]) -> Refinement {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let target = zoo.vessel("kvlcc2").expect("in the zoo");
     let trials: Vec<&Trial> = trials.iter().collect();
     let strengths = vec![1.0, 0.1, 1e-2, 1e-3];
-    let settings = Settings {
-        method: Method::Weak,
-        families: vec![Family::Own],
+    let settings = RefinementSettings {
+        method: EstimationMethod::Weak,
+        families: vec![TermFamily::Own],
         strengths,
-        ..Settings::default()
+        ..RefinementSettings::default()
     };
-    let request = Request {
+    let request = RefinementSpec {
         target,
         source,
         source_law: Some(own),
@@ -69,7 +71,7 @@ fn refined(source: &Model, own: &Law, law: &Law, trials: &[Trial]) -> Refinement
 /// Tactical diameter at 35 deg in lengths; none where it does not turn.
 fn diameter(model: &Model, law: &Law) -> Option<f64> {
     let ship = ready(model, law);
-    let turn = turn(&ship, 35.0, &ManoeuvreSettings::default()).ok()?;
+    let turn = simulate_turn(&ship, 35.0, &ManoeuvreSettings::default()).ok()?;
     Some(turn.metrics.tactical_diameter_m? / ship.lpp_m())
 }
 
@@ -79,13 +81,13 @@ fn an_mmg_source_keeps_the_turn_of_a_polynomial_that_saw_only_zigzags() {
     let (source, own) = model("kvlcc2");
     let truth = sister(&source);
     let trials = zigzags(&truth, &own);
-    let (zoo, law) = (Zoo::embedded().unwrap_or_else(|error| panic!("{error}")), "low-speed");
+    let (zoo, law) = (Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}")), "low-speed");
     let law = zoo.law(law).expect("in the zoo");
     let across = refined(&source, &own, law, &trials);
-    let nothing = blank(
+    let nothing = blank_model(
         law,
         zoo.vessel("kvlcc2").expect("in the zoo"),
-        approach_of(&trials.iter().collect::<Vec<_>>()),
+        trial_approach(&trials.iter().collect::<Vec<_>>()),
     );
     let alone = refined(&nothing.unwrap_or_else(|error| panic!("{error}")), law, law, &trials);
     let wanted = diameter(&truth, &own).expect("the truth turns");
@@ -114,7 +116,7 @@ fn an_mmg_source_keeps_the_turn_of_a_polynomial_that_saw_only_zigzags() {
 fn a_law_under_another_name_says_the_same() {
     let (kvlcc2, mmg) = model("kvlcc2");
     let trials = zigzags(&kvlcc2, &mmg);
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let law = zoo.law("low-speed").expect("in the zoo");
     let source = refined(&kvlcc2, &mmg, law, &trials).transferred;
     let renamed = Law { name: "low-speed-again".into(), ..(**law).clone() };

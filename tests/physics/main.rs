@@ -19,8 +19,8 @@ use sistership_simulation::Ship;
 const SHIPS: [&str; 6] = ["mariner", "sr108", "kvlcc2", "kvlcc2-7m", "kcs", "esso-tanker"];
 
 fn model(name: &str) -> (Model, Arc<Law>) {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let model = zoo.model(name).unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
+    let model = zoo.find_model(name).unwrap_or_else(|error| panic!("{error}"));
     let law = zoo.law(&model.law).expect("the law of a zoo model").clone();
     (model, law)
 }

@@ -1,11 +1,13 @@
 //! Trials at constant revolutions, and the propeller stopped and reversed: whatever the law that is
 //! fitted, a ship comes to rest, stops and goes astern.
 
-use sistership_identification::refine::{Family, Method as Estimator, Request, Settings, refine};
+use sistership_identification::refine::{
+    EstimationMethod as Estimator, RefinementSettings, RefinementSpec, TermFamily, refine,
+};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Vessel, Zoo};
-use sistership_simulation::state::{StateVector, Trajectory, at, straight};
-use sistership_simulation::{Method, Order, Run, Ship};
+use sistership_simulation::state::{StateVector, Trajectory, at, straight_state};
+use sistership_simulation::{HelmOrder, Method, RunSettings, Ship};
 use sistership_tests::truth;
 use sistership_tests::truth::container::container;
 use sistership_tests::truth::family;
@@ -29,14 +31,14 @@ fn trials(ship: &dyn Truth) -> Vec<Trial> {
 }
 
 fn refined(zoo: &Zoo, target: &Vessel, (source, law): (&str, &str), trials: &[&Trial]) -> Model {
-    let source = zoo.model(source).unwrap_or_else(|error| panic!("{error}"));
-    let settings = Settings {
+    let source = zoo.find_model(source).unwrap_or_else(|error| panic!("{error}"));
+    let settings = RefinementSettings {
         method: Estimator::Weak,
-        families: vec![Family::Own],
+        families: vec![TermFamily::Own],
         strengths: vec![1.0, 1e-2, 1e-4],
-        ..Settings::default()
+        ..RefinementSettings::default()
     };
-    let request = Request {
+    let request = RefinementSpec {
         target,
         source: &source,
         source_law: zoo.law(&source.law).map(|law| &**law),
@@ -53,15 +55,16 @@ fn refined(zoo: &Zoo, target: &Vessel, (source, law): (&str, &str), trials: &[&T
 fn sailed(ship: &Ship, start: f64, turns: f64) -> Vec<StateVector> {
     let speed = ship.approach_speed_m_s();
     let length_s = ship.lpp_m() / speed;
-    let order = Order { delta_rad: 0.0, n_rps: turns * ship.revolutions_at(speed) };
-    let run = Run {
-        start: straight(start * speed),
+    let order = HelmOrder { delta_rad: 0.0, n_rps: turns * ship.revolutions_at(speed) };
+    let run = RunSettings {
+        start: straight_state(start * speed),
         duration_s: LENGTHS * length_s,
         step_s: 0.1 * length_s,
         method: Method::Rk4,
     };
     let mut track = Trajectory::default();
-    ship.sail(run, &mut track, |_, _| Some(order)).unwrap_or_else(|error| panic!("{error}"));
+    ship.simulate_orders(run, &mut track, |_, _| Some(order))
+        .unwrap_or_else(|error| panic!("{error}"));
     track.states
 }
 
@@ -83,7 +86,7 @@ fn stops_and_goes_astern(ship: &Ship, named: &str) {
 
 #[test]
 fn what_is_fitted_at_constant_revolutions_stops_and_goes_astern() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let ships: [Box<dyn Truth>; 2] =
         [Box::new(Stalled(container())), Box::new(family::single_screw(5))];
     for truth in ships {
@@ -110,8 +113,13 @@ fn half_time(ship: &Ship, truth: &dyn Truth) -> [usize; 2] {
     let speed = ship.approach_speed_m_s();
     let own = sailed(ship, 1.0, 0.0);
     let size = truth.dimensions();
-    let track =
-        sail_from(truth, straight(size.speed_m_s), 60.0 * size.length_time_s(), 0.0, |_, _| 0.0);
+    let track = sail_from(
+        truth,
+        straight_state(size.speed_m_s),
+        60.0 * size.length_time_s(),
+        0.0,
+        |_, _| 0.0,
+    );
     let after = |states: &[StateVector], each: f64| {
         let at_half = states.iter().position(|state| state[at::U] < 0.5 * speed);
         (at_half.unwrap_or(states.len()) as f64 * each) as usize

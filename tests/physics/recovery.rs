@@ -2,19 +2,19 @@
 //! source.
 
 use rand::{RngExt, SeedableRng};
-use sistership_identification::refine::{Range, Request, Settings, refine};
+use sistership_identification::refine::{RefinementSettings, RefinementSpec, TuningRange, refine};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Zoo};
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_simulation::state::{RECORDED, at};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
+use sistership_simulation::state::{RECORDED_CHANNELS, at};
 use sistership_simulation::{Method, Trajectory};
 
 use super::{model, ready};
 
 fn trial(name: &str, track: &Trajectory) -> Trial {
-    let columns = RECORDED[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
+    let columns = RECORDED_CHANNELS[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
     let mut channels: std::collections::BTreeMap<_, _> =
-        columns.map(|&(channel, index)| (channel, track.column(index))).collect();
+        columns.map(|&(channel, index)| (channel, track.state_column(index))).collect();
     channels.insert(Channel::N, track.n_rps.clone());
     Trial { name: name.into(), t_s: track.t_s.clone(), channels, ..Trial::default() }
 }
@@ -28,9 +28,11 @@ fn trials(model: &Model, law: &sistership_model::Law) -> Vec<Trial> {
         duration_s: Some(400.0),
         ..ManoeuvreSettings::default()
     };
-    let zigzags = [(10.0, 10.0), (-20.0, 20.0), (30.0, 10.0)]
-        .map(|(rudder, switch)| zigzag(&ship, rudder, switch, &settings).expect("a zigzag").track);
-    let turns = [15.0, -30.0].map(|rudder| turn(&ship, rudder, &settings).expect("a turn").track);
+    let zigzags = [(10.0, 10.0), (-20.0, 20.0), (30.0, 10.0)].map(|(rudder, switch)| {
+        simulate_zigzag(&ship, rudder, switch, &settings).expect("a zigzag").track
+    });
+    let turns =
+        [15.0, -30.0].map(|rudder| simulate_turn(&ship, rudder, &settings).expect("a turn").track);
     zigzags
         .iter()
         .chain(&turns)
@@ -41,7 +43,7 @@ fn trials(model: &Model, law: &sistership_model::Law) -> Vec<Trial> {
 
 #[test]
 fn coefficients_are_recovered_from_noise_free_trials() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     for name in ["mariner", "kvlcc2"] {
         let (truth, law) = model(name);
         let trials = trials(&truth, &law);
@@ -52,14 +54,14 @@ fn coefficients_are_recovered_from_noise_free_trials() {
             .coefficients
             .values_mut()
             .for_each(|quantity| quantity.value *= rng.random_range(0.8..1.2));
-        let settings = Settings {
-            ranges: vec![Range { lambda_min: 1e-14, lambda_max: 1e-14, alpha_max: 0.0 }],
+        let settings = RefinementSettings {
+            ranges: vec![TuningRange { lambda_min: 1e-14, lambda_max: 1e-14, alpha_max: 0.0 }],
             difference_s: Some(0.25),
             restart_s: Some(1e9),
-            ..Settings::default()
+            ..RefinementSettings::default()
         };
         let target = zoo.vessel(name).expect("in the zoo");
-        let request = Request {
+        let request = RefinementSpec {
             target,
             source: &source,
             source_law: None,

@@ -2,8 +2,8 @@
 
 use sistership_model::quantity::Quantity;
 use sistership_model::{Vessel, Zoo};
-use sistership_priors::transfer::transfer;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn};
+use sistership_priors::transfer::transfer_model;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn};
 
 use super::{model, ready};
 
@@ -12,7 +12,8 @@ fn scaled(vessel: &Vessel, ratio: f64) -> Vessel {
     let mut scaled = vessel.clone();
     scaled.file.name = "scaled".into();
     for (name, quantity) in &mut scaled.particulars {
-        let dimension = sistership_model::particulars::dimension(name).expect("a known particular");
+        let dimension =
+            sistership_model::particulars::particular_dimension(name).expect("a known particular");
         let density = name == "water_density_kg_m3";
         let exponent = if density {
             0.0
@@ -26,14 +27,14 @@ fn scaled(vessel: &Vessel, ratio: f64) -> Vessel {
 
 #[test]
 fn a_scaled_ship_turns_the_same_circle_in_lengths() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     for name in ["mariner", "kvlcc2", "esso-tanker", "sr108"] {
         let (source, law) = model(name);
         let vessel = zoo.vessel(name).expect("in the zoo");
-        let model = transfer(&source, &law, &scaled(vessel, 1.0 / 25.0), None);
+        let model = transfer_model(&source, &law, &scaled(vessel, 1.0 / 25.0), None);
         let turned = |model: &sistership_model::Model| {
             let ship = ready(model, &law);
-            let metrics = turn(&ship, 20.0, &ManoeuvreSettings::default())
+            let metrics = simulate_turn(&ship, 20.0, &ManoeuvreSettings::default())
                 .unwrap_or_else(|stopped| panic!("{name}: {stopped}"))
                 .metrics;
             [metrics.advance_m, metrics.tactical_diameter_m, metrics.steady_radius_m]

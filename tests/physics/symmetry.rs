@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use sistership_model::coefficient::{Axis, CoefficientName};
 use sistership_model::{Law, Model};
 use sistership_simulation::StateVector;
-use sistership_simulation::plant::Work;
+use sistership_simulation::plant::PlantWorkspace;
 use sistership_simulation::state::at;
 
 use super::{SHIPS, model, ready};
@@ -59,7 +59,7 @@ proptest! {
                 mirrored[odd] = -mirrored[odd];
             }
             let n = ship.revolutions_at(speed);
-            let mut work = Work::default();
+            let mut work = PlantWorkspace::default();
             let here = ship.rate_at(&state, delta, n, &mut work);
             let there = ship.rate_at(&mirrored, -delta, n, &mut work);
             for (index, sign) in [(at::U, 1.0), (at::V, -1.0), (at::R, -1.0), (at::P, -1.0)] {

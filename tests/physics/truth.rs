@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use sistership_simulation::StateVector;
-use sistership_simulation::state::{at, straight};
+use sistership_simulation::state::{at, straight_state};
 use sistership_tests::truth::causes;
 use sistership_tests::truth::container::container;
 use sistership_tests::truth::family;
@@ -60,7 +60,8 @@ fn every_ship_turns_and_ends_its_zigzags() {
 fn the_approach_is_steady() {
     for ship in ships() {
         let speed = ship.dimensions().speed_m_s;
-        let [surge, sway, yaw, roll] = ship.accelerations(&straight(speed), ship.revolutions_rps());
+        let [surge, sway, yaw, roll] =
+            ship.accelerations(&straight_state(speed), ship.revolutions_rps());
         let unit = speed * speed / ship.dimensions().lpp_m;
         assert!(surge.abs() < 1e-6 * unit, "{}: {surge} m/s2", ship.dimensions().name);
         assert!(sway.abs() + yaw.abs() + roll.abs() < 1e-12, "{}", ship.dimensions().name);
@@ -93,13 +94,13 @@ fn trials_with_nothing_hidden_are_those_of_the_ship() {
 fn energy_stays_bounded() {
     for ship in ships() {
         let size = ship.dimensions();
-        let first = energy(&*ship, &straight(size.speed_m_s));
+        let first = energy(&*ship, &straight_state(size.speed_m_s));
         for manoeuvre in [Manoeuvre::Turn(35.0), Manoeuvre::Random(35.0, 9)] {
             let track = manoeuvre.sailed(&*ship);
             let most = track.states.iter().map(|state| energy(&*ship, state)).fold(0.0, f64::max);
             assert!(most < 1.02 * first, "{} {}: {most}", size.name, manoeuvre.name());
         }
-        let mut state = straight(size.speed_m_s);
+        let mut state = straight_state(size.speed_m_s);
         state[at::V] = 0.2 * size.speed_m_s;
         let start = energy(&*ship, &state);
         for _ in 0..(40.0 * size.length_time_s() / 0.1) as usize {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use sistership_model::Trial;
-use sistership_trials::{Mapping, Source, read_manifest_file, read_trial};
+use sistership_trials::{Mapping, TrialFile, read_manifest_file, read_trial};
 
 /// How the files of the dataset are read: the columns of `../shared/data/esso-osaka/README.md`.
 pub const MANIFEST: &str = include_str!("../data/esso-osaka.yaml");
@@ -22,9 +22,9 @@ pub fn trials(folder: &Path, kinds: &[&str]) -> Vec<Trial> {
         .filter(|trial| kinds.iter().any(|kind| trial.file.starts_with(kind)));
     wanted
         .map(|entry| {
-            let source = Source::open(&entry.file, &folder.join(&entry.file))
+            let source = TrialFile::open(&entry.file, &folder.join(&entry.file))
                 .unwrap_or_else(|error| panic!("{}: {error}", entry.file));
-            read_trial(source, &Mapping::of(&manifest, entry))
+            read_trial(source, &Mapping::from_manifest(&manifest, entry))
                 .unwrap_or_else(|refusal| panic!("{refusal}"))
         })
         .collect()

@@ -10,11 +10,11 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Vessel, Zoo};
-use sistership_priors::transfer::transfer;
+use sistership_priors::transfer::transfer_model;
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_simulation::state::{RECORDED, Trajectory, at};
-use sistership_store::{NewShip, NewTrial, Objects, Store};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
+use sistership_simulation::state::{RECORDED_CHANNELS, Trajectory, at};
+use sistership_store::{NewShip, NewTrial, ObjectStorage, Store};
 use sistership_trials::samples::to_parquet;
 use tokio::task::JoinSet;
 
@@ -49,8 +49,8 @@ impl Yard {
     /// # Panics
     /// Where the zoo does not have it.
     pub fn new() -> Self {
-        let zoo = Zoo::embedded().expect("the zoo");
-        let model = zoo.model(FOUNDATION).expect("the foundation");
+        let zoo = Zoo::load_embedded().expect("the zoo");
+        let model = zoo.find_model(FOUNDATION).expect("the foundation");
         let law = Arc::clone(zoo.law(&model.law).expect("its law"));
         Self { law, vessel: Vessel::clone(zoo.vessel(FOUNDATION).expect("the ship")), model }
     }
@@ -66,7 +66,7 @@ impl Yard {
         let own = |rng: &mut ChaCha12Rng| -> f64 {
             1.0 + SCATTER * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, rng)
         };
-        let mut truth = transfer(&self.model, &self.law, &vessel, None);
+        let mut truth = transfer_model(&self.model, &self.law, &vessel, None);
         truth.coefficients.values_mut().for_each(|quantity| quantity.value *= own(&mut rng));
         let ship = Ship::new(&truth, &self.law).expect("a ship");
         let trials = (0..trials).map(|trial| self.trial(&name, &ship, trial, &mut rng)).collect();
@@ -110,10 +110,16 @@ impl Yard {
             ..ManoeuvreSettings::default()
         };
         let (what, track) = match index % 4 {
-            0 => ("zigzag 20/20", zigzag(ship, 20.0, 20.0, &settings).map(|zigzag| zigzag.track)),
-            1 => ("turn 35", turn(ship, 35.0, &settings).map(|turn| turn.track)),
-            2 => ("zigzag -10/10", zigzag(ship, -10.0, 10.0, &settings).map(|zigzag| zigzag.track)),
-            _ => ("turn -20", turn(ship, -20.0, &settings).map(|turn| turn.track)),
+            0 => (
+                "zigzag 20/20",
+                simulate_zigzag(ship, 20.0, 20.0, &settings).map(|zigzag| zigzag.track),
+            ),
+            1 => ("turn 35", simulate_turn(ship, 35.0, &settings).map(|turn| turn.track)),
+            2 => (
+                "zigzag -10/10",
+                simulate_zigzag(ship, -10.0, 10.0, &settings).map(|zigzag| zigzag.track),
+            ),
+            _ => ("turn -20", simulate_turn(ship, -20.0, &settings).map(|turn| turn.track)),
         };
         let track = track.unwrap_or_else(|stopped| panic!("{name} {stopped}"));
         let samples = Bytes::from(
@@ -142,7 +148,7 @@ impl Yard {
     pub async fn launch(
         &self,
         store: &Store,
-        objects: &Objects,
+        objects: &ObjectStorage,
         numbers: std::ops::Range<usize>,
         trials: usize,
     ) {
@@ -160,7 +166,7 @@ impl Yard {
 }
 
 /// One ship after the other would wait for the disk by itself.
-async fn keep(store: Store, objects: Objects, Made { ship, trials }: Made) {
+async fn keep(store: Store, objects: ObjectStorage, Made { ship, trials }: Made) {
     store.ships().create(&ship).await.expect("a new ship");
     for (trial, samples) in trials {
         objects.put(samples).await.expect("kept samples");
@@ -181,11 +187,11 @@ pub fn name(number: usize) -> String {
 
 fn recorded(track: &Trajectory, name: &str, rng: &mut ChaCha12Rng) -> Trial {
     let every = |column: Vec<f64>| column.into_iter().step_by(INTERVAL_S).collect::<Vec<f64>>();
-    let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> = RECORDED[..6]
+    let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> = RECORDED_CHANNELS[..6]
         .iter()
-        .map(|&(channel, index)| (channel, every(track.column(index))))
+        .map(|&(channel, index)| (channel, every(track.state_column(index))))
         .collect();
-    channels.insert(Channel::Delta, every(track.column(at::DELTA)));
+    channels.insert(Channel::Delta, every(track.state_column(at::DELTA)));
     for (channel, deviation) in NOISE {
         let shaken = channels.get_mut(&channel).expect("a recorded channel");
         let normals = StandardNormal.sample_iter(&mut *rng);

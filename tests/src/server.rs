@@ -36,23 +36,23 @@ impl Bucket {
     /// What is below a prefix.
     pub fn of(s3: &TestS3, prefix: &str) -> Self {
         let arguments = s3
-            .settings(prefix)
+            .store_options(prefix)
             .into_iter()
             .flat_map(|(flag, value)| [flag.to_owned(), value])
             .collect();
-        Self { arguments, environment: s3.credentials().to_vec() }
+        Self { arguments, environment: s3.environment_credentials().to_vec() }
     }
 }
 
 impl TestServer {
     /// On a new SQLite database.
     pub async fn sqlite() -> Self {
-        Self::on(TestDatabase::sqlite(), &[]).await
+        Self::on(TestDatabase::new_sqlite(), &[]).await
     }
 
     /// On a new PostgreSQL database; `None`, said plainly, where PostgreSQL is not installed.
     pub async fn postgres() -> Option<Self> {
-        Some(Self::on(TestDatabase::postgres().await?, &[]).await)
+        Some(Self::on(TestDatabase::new_postgres().await?, &[]).await)
     }
 
     /// On a database, with further arguments of `sistership serve`.

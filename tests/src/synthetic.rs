@@ -5,9 +5,9 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model};
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, standard};
-use sistership_simulation::state::{RECORDED, StateVector, at, straight};
-use sistership_simulation::{Method, Order, Ship, Trajectory};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_standard_manoeuvres};
+use sistership_simulation::state::{RECORDED_CHANNELS, StateVector, at, straight_state};
+use sistership_simulation::{HelmOrder, Method, Ship, Trajectory};
 
 /// What a ship is told to do.
 #[derive(Debug, Clone, Copy)]
@@ -54,22 +54,23 @@ pub fn trial(
     let time_s = ship.lpp_m() / ship.approach_speed_m_s();
     let step_s = time_s / 100.0;
     let mut pilot = Pilot { orders, reversals: 0 };
-    let (mut state, mut track) = (straight(ship.approach_speed_m_s()), Trajectory::default());
+    let (mut state, mut track) = (straight_state(ship.approach_speed_m_s()), Trajectory::default());
     let mut gusts = [0.0; 3].map(|_: f64| rng.sample::<f64, _>(StandardNormal));
     let n_rps = ship.revolutions_at(ship.approach_speed_m_s());
     let kept = (-step_s / (trouble.gust_time * time_s)).exp();
-    let mut work = sistership_simulation::plant::Work::default();
+    let mut work = sistership_simulation::plant::PlantWorkspace::default();
     for k in 0..=(100.0 * lengths) as usize {
         if k.is_multiple_of(5) {
             track.push(k as f64 * step_s, state, n_rps);
         }
         ship.envelope()
-            .check(k as f64 * step_s, &state)
+            .check_state(k as f64 * step_s, &state)
             .unwrap_or_else(|stopped| panic!("{name}: {stopped}"));
-        let order = Order { delta_rad: pilot.order_deg(&state).to_radians(), n_rps };
+        let order = HelmOrder { delta_rad: pilot.order_deg(&state).to_radians(), n_rps };
         let pushed = push(ship, &gusts, trouble);
-        state = Method::Rk4
-            .step(&state, step_s, |_, s| ship.rate_under(s, order, step_s, &mut work) + pushed);
+        state = Method::Rk4.advance_state(&state, step_s, |_, s| {
+            ship.rate_under(s, order, step_s, &mut work) + pushed
+        });
         gusts = gusts.map(|gust| {
             kept * gust + (1.0 - kept * kept).sqrt() * rng.sample::<f64, _>(StandardNormal)
         });
@@ -105,11 +106,11 @@ fn measured(
         Channel::X | Channel::Y => trouble.scatter * length,
         _ => trouble.angles_deg.to_radians(),
     };
-    let columns = RECORDED[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
+    let columns = RECORDED_CHANNELS[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
     let mut channels = std::collections::BTreeMap::new();
     for &(channel, place) in columns {
         let noisy = |value: f64| value + deviation(channel) * rng.sample::<f64, _>(StandardNormal);
-        channels.insert(channel, track.column(place).into_iter().map(noisy).collect());
+        channels.insert(channel, track.state_column(place).into_iter().map(noisy).collect());
     }
     channels.insert(Channel::N, track.n_rps.clone());
     Trial { name: name.to_owned(), t_s: track.t_s.clone(), channels, ..Trial::default() }
@@ -147,7 +148,7 @@ pub fn relative(model: &Model, law: &Law, deviation: f64, rng: &mut ChaCha12Rng)
             .for_each(|q| q.value *= 1.0 + deviation * rng.sample::<f64, _>(StandardNormal));
         let settings = ManoeuvreSettings::default();
         let Ok(ship) = Ship::new(&other, law) else { continue };
-        let sailed = standard(&ship, &settings);
+        let sailed = simulate_standard_manoeuvres(&ship, &settings);
         let turned = sailed.turns.len() == 2
             && sailed.turns.iter().all(|turn| turn.tactical_diameter_m.is_some());
         if sailed.failures.is_empty() && turned {

@@ -4,11 +4,11 @@
 use std::sync::Arc;
 
 use sistership_diagnosis::{Diagnosis, Settings};
-use sistership_identification::refine::{self, Family, Method};
+use sistership_identification::refine::{self, EstimationMethod, TermFamily};
 use sistership_model::Trial;
 use sistership_model::law::Law;
 use sistership_model::trial::Channel;
-use sistership_priors::transfer::{approach_of, blank};
+use sistership_priors::transfer::{blank_model, trial_approach};
 use sistership_store::sha256_hex;
 
 use crate::hidden_effects::baseline::{self, Baseline};
@@ -58,20 +58,20 @@ fn windless() -> Arc<Law> {
 }
 
 /// How models of these trials are fitted: by trajectories, without a prior to speak of.
-pub fn by_trajectories() -> refine::Settings {
-    refine::Settings {
-        method: Method::Trajectory,
+pub fn by_trajectories() -> refine::RefinementSettings {
+    refine::RefinementSettings {
+        method: EstimationMethod::Trajectory,
         restart_s: Some(RESTART_S),
-        families: vec![Family::Own],
+        families: vec![TermFamily::Own],
         strengths: vec![1e-1, 1e-2, 1e-3],
-        ..refine::Settings::default()
+        ..refine::RefinementSettings::default()
     }
 }
 
 /// Refined by trajectories, without a source and without any effect.
 pub fn baseline(trials: &[Trial]) -> Baseline {
     let (trials, law): (Vec<&Trial>, _) = (trials.iter().collect(), windless());
-    let source = blank(&law, ZOO.vessel(SHIP).expect("of the zoo"), approach_of(&trials))
+    let source = blank_model(&law, ZOO.vessel(SHIP).expect("of the zoo"), trial_approach(&trials))
         .unwrap_or_else(|error| panic!("{error}"));
     baseline::by(&source, &law, SHIP, &trials, &by_trajectories())
 }

@@ -9,9 +9,9 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
 use sistership_model::trial::Channel;
 use sistership_model::{Trial, Zoo};
-use sistership_simulation::plant::Work;
-use sistership_simulation::state::{RECORDED, StateVector, at, straight};
-use sistership_simulation::{Method, Order as Helm, Ship};
+use sistership_simulation::plant::PlantWorkspace;
+use sistership_simulation::state::{RECORDED_CHANNELS, StateVector, at, straight_state};
+use sistership_simulation::{HelmOrder as Helm, Method, Ship};
 
 const SPEED_M_S: f64 = 10.47;
 /// Steps of the simulation, s.
@@ -89,8 +89,8 @@ impl Voyage {
     /// # Panics
     /// The zoo does not have the ship.
     pub fn sail(self) -> Sailed {
-        let zoo = Zoo::embedded().expect("the zoo");
-        let model = zoo.model("sr108").expect("a model");
+        let zoo = Zoo::load_embedded().expect("the zoo");
+        let model = zoo.find_model("sr108").expect("a model");
         let law = zoo.law(&model.law).expect("its law");
         let ship = Ship::new(&model, law).expect("a ship");
         let mut log = Log::new(self.rows, self.each, self.seed);
@@ -98,13 +98,14 @@ impl Voyage {
             Pilot { plan: self.plan, next: 0, under: None, course: 0.0, done: Vec::new() };
         let mut sea = Sea::new(self.is_calm, self.seed);
         let n_rps = ship.revolutions_at(SPEED_M_S);
-        let (mut state, mut work) = (straight(SPEED_M_S), Work::default());
+        let (mut state, mut work) = (straight_state(SPEED_M_S), PlantWorkspace::default());
         for step in 0..self.rows / self.each {
             let t_s = step as f64 * STEP_S;
             let order = Helm { delta_rad: pilot.helm(t_s, &state), n_rps };
             let push = sea.push(t_s);
-            let after = Method::Rk4
-                .step(&state, STEP_S, |_, s| ship.rate_under(s, order, STEP_S, &mut work) + push);
+            let after = Method::Rk4.advance_state(&state, STEP_S, |_, s| {
+                ship.rate_under(s, order, STEP_S, &mut work) + push
+            });
             log.interpolate(t_s, &state, &after, n_rps);
             state = after;
         }
@@ -195,7 +196,7 @@ struct Log {
 
 impl Log {
     fn new(rows: usize, each: usize, seed: u64) -> Self {
-        let recorded = RECORDED.iter().copied().chain([(Channel::Delta, at::DELTA)]);
+        let recorded = RECORDED_CHANNELS.iter().copied().chain([(Channel::Delta, at::DELTA)]);
         let states = recorded.map(|(channel, place)| (channel, place, Vec::with_capacity(rows)));
         let rng = ChaCha12Rng::seed_from_u64(seed);
         Self {

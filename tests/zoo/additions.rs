@@ -3,7 +3,7 @@
 use sistership_model::Zoo;
 use sistership_model::trial::Channel;
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn};
 
 /// Nomoto's first-order law with a quadratic resistance: nothing the program knows.
 const LAW: &str = "
@@ -102,12 +102,12 @@ models:
 
 #[test]
 fn the_general_polynomial_sails() {
-    let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let mut zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     zoo.add_vessel("polynomial-ship.yaml", POLYNOMIAL).unwrap_or_else(|error| panic!("{error}"));
-    let model = zoo.model("polynomial-ship").unwrap_or_else(|error| panic!("{error}"));
+    let model = zoo.find_model("polynomial-ship").unwrap_or_else(|error| panic!("{error}"));
     let ship = Ship::new(&model, zoo.law(&model.law).expect("in the zoo"))
         .unwrap_or_else(|error| panic!("{error}"));
-    let sailed = turn(&ship, 20.0, &ManoeuvreSettings::default())
+    let sailed = simulate_turn(&ship, 20.0, &ManoeuvreSettings::default())
         .unwrap_or_else(|stopped| panic!("{stopped}"));
     assert!(
         sailed.metrics.tactical_diameter_m.is_some_and(|m| m > 120.0 && m < 2000.0),
@@ -119,15 +119,15 @@ fn the_general_polynomial_sails() {
 
 #[test]
 fn a_new_law_vessel_and_coefficient_set_are_files() {
-    let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let mut zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     zoo.add_law("nomoto.yaml", LAW).unwrap_or_else(|error| panic!("{error}"));
     zoo.add_vessel("barge.yaml", VESSEL).unwrap_or_else(|error| panic!("{error}"));
     zoo.add_vessel("little-sister.yaml", SISTER).unwrap_or_else(|error| panic!("{error}"));
     let rate = |name: &str| {
-        let model = zoo.model(name).unwrap_or_else(|error| panic!("{error}"));
+        let model = zoo.find_model(name).unwrap_or_else(|error| panic!("{error}"));
         let ship = Ship::new(&model, zoo.law(&model.law).expect("added"))
             .unwrap_or_else(|error| panic!("{error}"));
-        let sailed = turn(&ship, 20.0, &ManoeuvreSettings::default())
+        let sailed = simulate_turn(&ship, 20.0, &ManoeuvreSettings::default())
             .unwrap_or_else(|stopped| panic!("{name}: {stopped}"));
         sailed.track.last().expect("a state")[sistership_simulation::state::at::R]
     };
@@ -149,7 +149,7 @@ fn effect_of_the_readme() -> &'static str {
 
 #[test]
 fn the_effect_that_the_readme_shows_reads() {
-    let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let mut zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     assert!(zoo.effect("compass-offset").is_none(), "the example is not in the library");
     let text = effect_of_the_readme();
     let added =
@@ -171,7 +171,7 @@ fn the_effect_that_the_readme_shows_reads() {
 fn the_file_that_the_readme_explains_reads() {
     let readme = include_str!("../../models/effects/README.md");
     let text = readme.split("```").nth(1).expect("an example").trim_start_matches("yaml");
-    let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let mut zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let added = zoo.add_effect("my-effect.yaml", text).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(added.forms[0].parameters["share"].start, 0.05);
 }

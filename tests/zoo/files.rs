@@ -1,13 +1,13 @@
 //! Every file of the zoo.
 
 use sistership_model::Zoo;
-use sistership_model::effect::Form;
+use sistership_model::effect::EffectForm;
 use sistership_model::vessel::Status;
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, standard};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_standard_manoeuvres};
 
 fn zoo() -> Zoo {
-    Zoo::embedded().unwrap_or_else(|error| panic!("{error}"))
+    Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]
@@ -15,11 +15,12 @@ fn every_model_sails_the_standard_manoeuvres() {
     let zoo = zoo();
     for vessel in zoo.vessels() {
         for file in &vessel.file.models {
-            let model =
-                zoo.published(vessel, Some(&file.name)).unwrap_or_else(|error| panic!("{error}"));
+            let model = zoo
+                .published_model(vessel, Some(&file.name))
+                .unwrap_or_else(|error| panic!("{error}"));
             let ship = Ship::new(&model, zoo.law(&model.law).expect("checked"))
                 .unwrap_or_else(|error| panic!("{error}"));
-            let sailed = standard(&ship, &ManoeuvreSettings::default());
+            let sailed = simulate_standard_manoeuvres(&ship, &ManoeuvreSettings::default());
             assert!(sailed.failures.is_empty(), "{}: {:?}", model.name, sailed.failures);
             let passed = sailed.imo.iter().filter(|criterion| criterion.pass == Some(true)).count();
             println!("{:<28} {passed} of {} IMO criteria", model.name, sailed.imo.len());
@@ -89,7 +90,7 @@ fn every_effect_reads_and_has_a_source() {
 fn a_form_means_the_same_wherever_it_is_read() {
     for effect in zoo().effects() {
         for form in &effect.forms {
-            let again = Form::read(effect.acts_on, &form.file)
+            let again = EffectForm::from_file(effect.acts_on, &form.file)
                 .unwrap_or_else(|(field, message)| panic!("{field}: {message}"));
             assert_eq!(&again, form.as_ref(), "{}", effect.name);
         }
@@ -102,7 +103,7 @@ fn coefficients_that_shallow_water_scales_are_spelled_right() {
     let form = &zoo.effect("shallow-water").expect("in the zoo").forms[0];
     let mmg = zoo.law("mmg").expect("in the zoo");
     for name in form.coefficients.keys() {
-        assert!(mmg.term(name).is_ok(), "{name}");
+        assert!(mmg.unscaled_regressor(name).is_ok(), "{name}");
     }
     let of = |name: &str, depth: f64| {
         let lookup = |n: &str| particular(n).or((n == "draught_to_depth").then_some(depth));
@@ -118,7 +119,7 @@ fn coefficients_that_shallow_water_scales_are_spelled_right() {
     }
 }
 
-fn resolve(form: &Form, name: &str, known: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
+fn resolve(form: &EffectForm, name: &str, known: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
     known(name).or_else(|| form.values.get(name)?.value(&|n| resolve(form, n, known)))
 }
 

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use sistership_model::effect::AppliedEffect;
-use sistership_model::hybrid::{Derivation, derive};
+use sistership_model::hybrid::{LawDerivation, derive_law};
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Zoo};
 use sistership_simulation::Ship;
-use sistership_simulation::plant::Work;
+use sistership_simulation::plant::PlantWorkspace;
 use sistership_simulation::state::{StateVector, Trajectory, at};
 use sistership_simulation::{Method, ship};
 
@@ -15,11 +15,11 @@ fn models() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../models")
 }
 
-fn derived(name: &str) -> Derivation {
+fn derived(name: &str) -> LawDerivation {
     let path = models().join("hybrids").join(format!("{name}.yaml"));
     let text = std::fs::read_to_string(&path)
         .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    derive(&path.display().to_string(), &text).unwrap_or_else(|error| panic!("{error}"))
+    derive_law(&path.display().to_string(), &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn declarations() -> Vec<String> {
@@ -51,9 +51,10 @@ fn hybrids_of_the_zoo_are_what_their_declarations_give() {
 
 #[test]
 fn unknowns_of_the_hybrids_of_the_zoo() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let count =
-        |name: &str| derived(name).unknowns(&zoo).expect("its effects are in the zoo").unknowns;
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
+    let count = |name: &str| {
+        derived(name).count_unknowns(&zoo).expect("its effects are in the zoo").unknowns
+    };
     assert_eq!(count("hybrid-vectwin"), 193, "Miyauchi 2024, Table 4: second order, Submodel-3");
     // 13 terms of X, 14 of Y and of N in four quadrants, three of inertia, ten of wind.
     assert_eq!(count("hybrid-single-screw"), 4 * 41 + 3 + 10);
@@ -67,7 +68,7 @@ fn esso_osaka(values: &str) -> Ship {
 }
 
 fn esso_osaka_model(values: &str) -> (Zoo, Model) {
-    let mut zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let mut zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let law = derived("hybrid-single-screw");
     zoo.add_law("derived.yaml", &law.text).unwrap_or_else(|error| panic!("{error}"));
     let models = format!(
@@ -79,7 +80,7 @@ fn esso_osaka_model(values: &str) -> (Zoo, Model) {
     let vessel =
         zoo.vessel_text("esso-osaka-3m").expect("in the zoo").replace("models: []", &models);
     zoo.add_vessel("esso.yaml", &vessel).unwrap_or_else(|error| panic!("{error}"));
-    let model = zoo.model("esso-osaka-3m").unwrap_or_else(|error| panic!("{error}"));
+    let model = zoo.find_model("esso-osaka-3m").unwrap_or_else(|error| panic!("{error}"));
     (zoo, model)
 }
 
@@ -88,10 +89,11 @@ fn without_coefficients_the_esso_osaka_model_keeps_its_way() {
     let ship = esso_osaka("");
     let mut start = StateVector::zeros();
     start[at::U] = 0.5;
-    let run = ship::Run { start, duration_s: 100.0, step_s: 0.1, method: Method::Rk4 };
+    let run = ship::RunSettings { start, duration_s: 100.0, step_s: 0.1, method: Method::Rk4 };
     let mut track = Trajectory::default();
-    let order = ship::Order { delta_rad: 0.3, n_rps: 10.0 };
-    ship.sail(run, &mut track, |_, _| Some(order)).unwrap_or_else(|stopped| panic!("{stopped}"));
+    let order = ship::HelmOrder { delta_rad: 0.3, n_rps: 10.0 };
+    ship.simulate_orders(run, &mut track, |_, _| Some(order))
+        .unwrap_or_else(|stopped| panic!("{stopped}"));
     let last = track.states.last().expect("sailed");
     assert!(
         (last[at::X] - 50.0).abs() < 1e-9 && last[at::Y].abs() < 1e-12 && last[at::R].abs() < 1e-12,
@@ -107,7 +109,7 @@ fn a_deviation_acts_in_its_quadrant_alone() {
     let rate = |u: f64, n: f64| {
         let mut state = StateVector::zeros();
         state[at::U] = u;
-        ship.rate_at(&state, 0.0, n, &mut Work::default())[at::U]
+        ship.rate_at(&state, 0.0, n, &mut PlantWorkspace::default())[at::U]
     };
     // Bis system: forces by m g, velocities by sqrt(g L), revolutions by sqrt(g/L); m (1 + m_x) is
     // moved.
@@ -149,7 +151,7 @@ fn a_current_moves_the_conditions_with_the_water() {
     let mut state = StateVector::zeros();
     state[at::U] = 0.2;
     // Ahead over the ground, but astern through water that follows it at 0.4 m/s.
-    let drag = ship.rate_at(&state, 0.0, -8.0, &mut Work::default())[at::U];
+    let drag = ship.rate_at(&state, 0.0, -8.0, &mut PlantWorkspace::default())[at::U];
     let wanted = 0.03 * 0.2_f64.powi(2) / (9.806_65 * 3.0) * 9.806_65 / 1.05;
     assert!((drag - wanted).abs() < 1e-12, "{drag} {wanted}");
 }

@@ -5,25 +5,27 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use sistership_assessment::validation::{
-    Appraisal, Comparison, Dataset, Severity, Standing, appraise_vessel, compare, limits, review,
+    CatalogueEntry, FigureComparison, ModelAppraisal, Severity, ValidationStatus, appraise_vessel,
+    compare_published, limits, review_ship,
 };
 use sistership_model::vessel::Status;
 use sistership_model::{Vessel, Zoo};
-use sistership_priors::estimates::{LAW, Library, estimate};
+use sistership_priors::estimates::{LAW, RegressionLibrary, estimate_ship};
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::StandardManoeuvres;
 
 #[test]
 fn the_page_of_the_zoo_is_current() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     is_current("zoo.md", &page(&zoo));
 }
 
 /// One `Dataset` of schema.org a ship, each on a line of its own.
 #[test]
 fn the_catalogue_of_the_zoo_is_current() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let entries = zoo.vessels().map(|vessel| serde_json::to_string(&Dataset::of(vessel)));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
+    let entries =
+        zoo.vessels().map(|vessel| serde_json::to_string(&CatalogueEntry::from_vessel(vessel)));
     let entries: Result<Vec<String>, _> = entries.collect();
     let entries = entries.unwrap_or_else(|error| panic!("{error}"));
     is_current("zoo.jsonld", &format!("{{\"@graph\":[\n{}\n]}}\n", entries.join(",\n")));
@@ -45,13 +47,13 @@ fn is_current(name: &str, current: &str) {
 
 #[test]
 fn every_ship_of_the_zoo_passes_the_check_of_a_contributed_one() {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     for vessel in zoo.vessels() {
-        let review = review(&zoo, vessel).unwrap_or_else(|error| panic!("{error}"));
+        let review = review_ship(&zoo, vessel).unwrap_or_else(|error| panic!("{error}"));
         let refused = review.findings.iter().filter(|one| one.severity == Severity::Refused);
         let refused: Vec<String> =
             refused.map(|one| format!("{}: {}", one.about, one.message)).collect();
-        assert!(review.is_taken(), "{}:\n{}", vessel.name(), refused.join("\n"));
+        assert!(review.is_acceptable(), "{}:\n{}", vessel.name(), refused.join("\n"));
     }
 }
 
@@ -62,7 +64,7 @@ fn first_difference(stored: &str, current: &str) -> String {
 
 /// The page. Figures are rounded so that it is the same on every machine.
 fn page(zoo: &Zoo) -> String {
-    let appraised: Vec<(&Vessel, Vec<Appraisal>)> = zoo
+    let appraised: Vec<(&Vessel, Vec<ModelAppraisal>)> = zoo
         .vessels()
         .map(|vessel| {
             let models = appraise_vessel(zoo, vessel).unwrap_or_else(|error| panic!("{error}"));
@@ -78,7 +80,7 @@ fn page(zoo: &Zoo) -> String {
     text
 }
 
-fn head(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
+fn head(appraised: &[(&Vessel, Vec<ModelAppraisal>)]) -> String {
     let all = || appraised.iter().flat_map(|(_, models)| models);
     let with_model = appraised.iter().filter(|(_, models)| !models.is_empty()).count();
     let citations: BTreeSet<&str> = appraised
@@ -92,7 +94,7 @@ fn head(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
     let sail = all().filter(|model| model.manoeuvres.failures.is_empty()).count();
     let count = |standing| all().filter(|model| model.standing == standing).count();
     let by_model = tried(appraised, |models| !models.is_empty());
-    let by_estimate = tried(appraised, <[Appraisal]>::is_empty);
+    let by_estimate = tried(appraised, <[ModelAppraisal]>::is_empty);
     format!(
         "# The zoo\n\n\
          Generated: `UPDATE_ZOO=1 cargo test -p sistership-tests --test zoo page`.\n\n\
@@ -110,10 +112,10 @@ fn head(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
         all().count(),
         citations.len(),
         appraised.len(),
-        count(Standing::Validated),
-        count(Standing::Published),
-        count(Standing::Disputed),
-        count(Standing::Estimated),
+        count(ValidationStatus::Validated),
+        count(ValidationStatus::Published),
+        count(ValidationStatus::Disputed),
+        count(ValidationStatus::Estimated),
         by_model + by_estimate,
         100.0 * limits::TURN_SHARE,
         100.0 * limits::OVERSHOOT_SHARE,
@@ -123,7 +125,10 @@ fn head(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
 
 /// Ships with published trials whose models are as wanted. The same trials of a ship at several
 /// scales count once.
-fn tried(appraised: &[(&Vessel, Vec<Appraisal>)], wanted: impl Fn(&[Appraisal]) -> bool) -> usize {
+fn tried(
+    appraised: &[(&Vessel, Vec<ModelAppraisal>)],
+    wanted: impl Fn(&[ModelAppraisal]) -> bool,
+) -> usize {
     let with_trials = appraised
         .iter()
         .filter(|(vessel, models)| wanted(models) && !vessel.file.free_running.is_empty());
@@ -137,7 +142,7 @@ fn tried(appraised: &[(&Vessel, Vec<Appraisal>)], wanted: impl Fn(&[Appraisal]) 
     with_trials.map(|(vessel, _)| trials(vessel)).collect::<BTreeSet<_>>().len()
 }
 
-fn models_table(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
+fn models_table(appraised: &[(&Vessel, Vec<ModelAppraisal>)]) -> String {
     let mut text = String::from(
         "## Models\n\n\
          Turns at 35 deg to starboard (or as far as the gear goes) in ship lengths, zigzags \
@@ -156,7 +161,7 @@ fn models_table(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
             model.speed_m_s,
             model.law,
             origin(model.origin),
-            model.standing.word(),
+            model.standing.as_word(),
             turn_figure(model, |turn| turn.advance_m),
             turn_figure(model, |turn| turn.tactical_diameter_m),
             overshoots(sailed, 10.0),
@@ -181,7 +186,7 @@ fn length(lpp_m: f64) -> String {
 }
 
 fn turn_figure(
-    model: &Appraisal,
+    model: &ModelAppraisal,
     of: impl Fn(&sistership_simulation::metrics::TurningMetrics) -> Option<f64>,
 ) -> String {
     let starboard = model.manoeuvres.turns.iter().find(|turn| turn.rudder_deg > 0.0);
@@ -198,7 +203,7 @@ fn overshoots(sailed: &StandardManoeuvres, rudder_deg: f64) -> String {
     format!("{}, {}", angle(zigzag.first_overshoot_deg), angle(zigzag.second_overshoot_deg))
 }
 
-fn comparisons_table(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
+fn comparisons_table(appraised: &[(&Vessel, Vec<ModelAppraisal>)]) -> String {
     let mut text = String::from(
         "## Against published free-running trials\n\n\
          | model | figure | published | sailed | error | allowed | within | source |\n\
@@ -215,7 +220,7 @@ fn comparisons_table(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
                 one.uncertainty,
                 one.unit,
                 two(one.sailed),
-                two(Comparison::error(one)),
+                two(FigureComparison::error(one)),
                 one.limit,
                 if one.is_within() { "yes" } else { "no" },
                 one.source,
@@ -227,7 +232,7 @@ fn comparisons_table(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
 }
 
 /// What the estimate from particulars makes of the same trials, whatever models the ship has.
-fn estimates_table(zoo: &Zoo, appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
+fn estimates_table(zoo: &Zoo, appraised: &[(&Vessel, Vec<ModelAppraisal>)]) -> String {
     let mut text = String::from(
         "## Estimates from particulars against the same trials\n\n\
          What `sistership estimate` sails, which knows the particulars only and takes every ship \
@@ -235,7 +240,7 @@ fn estimates_table(zoo: &Zoo, appraised: &[(&Vessel, Vec<Appraisal>)]) -> String
          | ship | figure | published | estimate | error | source |\n\
          | --- | --- | --- | --- | --- | --- |\n",
     );
-    let library = Library::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let library = RegressionLibrary::parse_embedded().unwrap_or_else(|error| panic!("{error}"));
     for (vessel, _) in appraised {
         for one in estimated(zoo, &library, vessel) {
             let _ = writeln!(
@@ -257,16 +262,16 @@ fn estimates_table(zoo: &Zoo, appraised: &[(&Vessel, Vec<Appraisal>)]) -> String
 }
 
 /// The estimate at the speed of each trial, beside the trial.
-fn estimated(zoo: &Zoo, library: &Library, vessel: &Vessel) -> Vec<Comparison> {
+fn estimated(zoo: &Zoo, library: &RegressionLibrary, vessel: &Vessel) -> Vec<FigureComparison> {
     let law = zoo.law(LAW).unwrap_or_else(|| panic!("the law {LAW} is missing"));
     let mut all = Vec::new();
     for trial in &vessel.file.free_running {
         let speed = trial.speed_m_s.or_else(|| vessel.particular("service_speed_m_s"));
         let speed = speed.or_else(|| vessel.file.models.first()?.speed_m_s);
         let Some(speed) = speed else { continue };
-        let Ok(estimate) = estimate(library, vessel, law, speed) else { continue };
+        let Ok(estimate) = estimate_ship(library, vessel, law, speed) else { continue };
         let ship = Ship::new(&estimate.model, law).unwrap_or_else(|error| panic!("{error}"));
-        all.extend(compare(&ship, std::slice::from_ref(trial)));
+        all.extend(compare_published(&ship, std::slice::from_ref(trial)));
     }
     all
 }
@@ -275,7 +280,7 @@ fn two(value: Option<f64>) -> String {
     value.map_or_else(|| "-".into(), |value| format!("{value:.2}"))
 }
 
-fn without_model(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
+fn without_model(appraised: &[(&Vessel, Vec<ModelAppraisal>)]) -> String {
     let names: Vec<String> = appraised
         .iter()
         .filter(|(_, models)| models.is_empty())
@@ -284,7 +289,7 @@ fn without_model(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
     format!("Known by particulars only: {}.\n\n", names.join(", "))
 }
 
-fn sources_list(appraised: &[(&Vessel, Vec<Appraisal>)]) -> String {
+fn sources_list(appraised: &[(&Vessel, Vec<ModelAppraisal>)]) -> String {
     let mut text = String::from("## Sources\n\n| ship | key | citation |\n| --- | --- | --- |\n");
     for (vessel, _) in appraised {
         for (key, source) in &vessel.file.sources {

@@ -1,8 +1,10 @@
 //! The estimators on one law without a source.
 
-use sistership_identification::refine::{CmaEs, Method, Request, Settings, refine};
+use sistership_identification::refine::{
+    CmaEs, EstimationMethod, RefinementSettings, RefinementSpec, refine,
+};
 use sistership_model::{Trial, Zoo};
-use sistership_priors::transfer::{approach_of, blank};
+use sistership_priors::transfer::{blank_model, trial_approach};
 use sistership_simulation::error::SquaredError;
 use sistership_tests::{esso_osaka, shared};
 
@@ -10,12 +12,13 @@ use super::compared;
 use super::score::{KINDS, RESTART_S, by_source, of_kind, over_all, over_each, simulated};
 
 /// The estimators that take seconds.
-const QUICK: [Method; 3] = [Method::Published, Method::Weak, Method::Trajectory];
+const QUICK: [EstimationMethod; 3] =
+    [EstimationMethod::Published, EstimationMethod::Weak, EstimationMethod::Trajectory];
 
 /// Every trial simulated by a model that was fitted without it, in four folds; the parts of a trial
 /// stay together.
-fn left_out(trials: &[Trial], settings: &Settings) -> Vec<(String, SquaredError)> {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+fn left_out(trials: &[Trial], settings: &RefinementSettings) -> Vec<(String, SquaredError)> {
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let target = zoo.vessel("esso-osaka-3m").expect("the ship is in the zoo");
     let law = zoo.law("low-speed").expect("a law of the zoo");
     let fold_of = |trial: &Trial, k: usize| if trial.name.contains("15_58_08") { 0 } else { k % 4 };
@@ -27,9 +30,9 @@ fn left_out(trials: &[Trial], settings: &Settings) -> Vec<(String, SquaredError)
             .filter(|(k, t)| fold_of(t, *k) != fold)
             .map(|(_, t)| t)
             .collect();
-        let source =
-            blank(law, target, approach_of(&inside)).unwrap_or_else(|error| panic!("{error}"));
-        let request = Request {
+        let source = blank_model(law, target, trial_approach(&inside))
+            .unwrap_or_else(|error| panic!("{error}"));
+        let request = RefinementSpec {
             target,
             source: &source,
             source_law: None,
@@ -105,14 +108,15 @@ fn the_search_given_ten_times_the_time() {
     let Some(folder) = shared::data("esso-osaka") else { return };
     let trials = esso_osaka::trials(&folder, &KINDS);
     let begun = std::time::Instant::now();
-    let by_trajectory = left_out(&trials, &compared(Method::Trajectory));
+    let by_trajectory = left_out(&trials, &compared(EstimationMethod::Trajectory));
     let trajectory_s = begun.elapsed().as_secs_f64() / 4.0;
     let searched = CmaEs {
         evaluations: usize::MAX,
         wall_s: Some(10.0 * trajectory_s / 1.8),
         ..CmaEs::default()
     };
-    let settings = Settings { cma_es: Some(searched), ..compared(Method::CmaEs) };
+    let settings =
+        RefinementSettings { cma_es: Some(searched), ..compared(EstimationMethod::CmaEs) };
     let begun = std::time::Instant::now();
     let by_search = left_out(&trials, &settings);
     println!(

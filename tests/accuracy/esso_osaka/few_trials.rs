@@ -1,8 +1,10 @@
 //! Few trials, and a source of another law.
 
-use sistership_identification::refine::{Method, Request, Settings, refine};
+use sistership_identification::refine::{
+    EstimationMethod, RefinementSettings, RefinementSpec, refine,
+};
 use sistership_model::{Law, Model, Zoo};
-use sistership_priors::transfer::{approach_of, blank};
+use sistership_priors::transfer::{blank_model, trial_approach};
 use sistership_tests::{esso_osaka, shared};
 
 use super::compared;
@@ -18,15 +20,17 @@ const FEW: [(usize, usize); 6] = [(2, 0), (2, 5), (4, 1), (4, 7), (8, 2), (8, 3)
 fn a_source_of_another_law_helps_where_trials_are_few() {
     let Some(folder) = shared::data("esso-osaka") else { return };
     let trials = esso_osaka::trials(&folder, &KINDS);
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let (target, law) = (
         zoo.vessel("esso-osaka-3m").expect("in the zoo"),
         zoo.law("low-speed").expect("in the zoo"),
     );
-    let kvlcc2 = zoo.model("kvlcc2").unwrap_or_else(|error| panic!("{error}"));
+    let kvlcc2 = zoo.find_model("kvlcc2").unwrap_or_else(|error| panic!("{error}"));
     let own = zoo.law(&kvlcc2.law).expect("in the zoo");
-    let settings =
-        Settings { strengths: vec![1e1, 1.0, 1e-1, 1e-2, 1e-3], ..compared(Method::Weak) };
+    let settings = RefinementSettings {
+        strengths: vec![1e1, 1.0, 1e-1, 1e-2, 1e-3],
+        ..compared(EstimationMethod::Weak)
+    };
     let as_it_is = over_all(&trials, &by_source(&trials, "kvlcc2"), "all");
     println!(
         "standardised mean squared error of the other files; the source as it is: {as_it_is:.4}"
@@ -40,10 +44,10 @@ fn a_source_of_another_law_helps_where_trials_are_few() {
             trials.iter().enumerate().partition(|(k, _)| chosen(*k));
         let [inside, outside] = [inside, outside]
             .map(|some| some.into_iter().map(|(_, trial)| trial).collect::<Vec<_>>());
-        let nothing =
-            blank(law, target, approach_of(&inside)).unwrap_or_else(|error| panic!("{error}"));
+        let nothing = blank_model(law, target, trial_approach(&inside))
+            .unwrap_or_else(|error| panic!("{error}"));
         let error = |source: &Model, source_law: &Law| {
-            let request = Request {
+            let request = RefinementSpec {
                 target,
                 source,
                 source_law: Some(source_law),

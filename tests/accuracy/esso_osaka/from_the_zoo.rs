@@ -1,8 +1,8 @@
 //! The Esso Osaka model refined from the zoo with `auto`, judged on manoeuvres left out.
 
-use sistership_identification::refine::{Refinement, Request, Settings, refine};
+use sistership_identification::refine::{Refinement, RefinementSettings, RefinementSpec, refine};
 use sistership_model::{Trial, Zoo};
-use sistership_priors::source::{best_source, similar};
+use sistership_priors::source::{best_source, rank_similar};
 use sistership_tests::{esso_osaka, shared};
 
 /// Turning and zigzag trials; the `turn_cut` files overlap their parents and are left out.
@@ -12,10 +12,10 @@ fn trials() -> Option<Vec<Trial>> {
 }
 
 fn refined(trials: &[Trial], held_out: Vec<String>) -> Refinement {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let target = zoo.vessel("esso-osaka-3m").expect("the ship is in the zoo");
     let trials: Vec<&Trial> = trials.iter().collect();
-    let ranking = similar(&zoo, target, None, &trials);
+    let ranking = rank_similar(&zoo, target, None, &trials);
     for ranked in ranking.ranking.iter().filter(|ranked| ranked.model.is_some()) {
         println!(
             "{:<12} {:+.3} eligible {}: {}",
@@ -27,8 +27,8 @@ fn refined(trials: &[Trial], held_out: Vec<String>) -> Refinement {
     }
     let source = best_source(&zoo, &ranking).unwrap_or_else(|reason| panic!("{reason}"));
     let law = zoo.law(&source.law).expect("the law of a zoo model");
-    let settings = Settings { held_out, ..Settings::default() };
-    let request = Request {
+    let settings = RefinementSettings { held_out, ..RefinementSettings::default() };
+    let request = RefinementSpec {
         target,
         source: &source,
         source_law: None,

@@ -1,10 +1,10 @@
 //! The score of Wakita et al. 2022, Eq. 26, by kind of trial.
 
 use sistership_model::{Law, Model, Trial, Zoo};
-use sistership_priors::transfer::{approach_of, transfer};
+use sistership_priors::transfer::{transfer_model, trial_approach};
 use sistership_simulation::Ship;
 use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 
 /// Restart and scatter of the score of Wakita et al. 2022, Eq. 26.
 pub const RESTART_S: f64 = 100.0;
@@ -16,9 +16,9 @@ pub fn simulated(model: &Model, law: &Law, trials: &[&Trial]) -> Vec<(String, Sq
     ship.set_envelope_speed(1.0);
     let restarted = ReplaySettings { restart_s: Some(RESTART_S), ..ReplaySettings::default() };
     let one = |trial: &&Trial| {
-        let run = replay(&ship, trial, &restarted).expect("every channel that the law needs");
+        let run = replay_trial(&ship, trial, &restarted).expect("every channel that the law needs");
         assert_eq!(run.stopped, None, "{}", trial.name);
-        (trial.name.clone(), SquaredError::of(trial, &run))
+        (trial.name.clone(), SquaredError::from_trial(trial, &run))
     };
     trials.iter().map(one).collect()
 }
@@ -26,19 +26,21 @@ pub fn simulated(model: &Model, law: &Law, trials: &[&Trial]) -> Vec<(String, Sq
 /// Every trial simulated by a source ship's model, scaled to this one and not refined; those that
 /// leave the physical range have no error.
 pub fn by_source(trials: &[Trial], name: &str) -> Vec<(String, SquaredError)> {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let target = zoo.vessel("esso-osaka-3m").expect("the ship is in the zoo");
-    let source = zoo.model(name).unwrap_or_else(|error| panic!("{error}"));
+    let source = zoo.find_model(name).unwrap_or_else(|error| panic!("{error}"));
     let law = zoo.law(&source.law).expect("the law of a zoo model");
-    let scaled = transfer(&source, law, target, approach_of(&trials.iter().collect::<Vec<_>>()));
+    let scaled =
+        transfer_model(&source, law, target, trial_approach(&trials.iter().collect::<Vec<_>>()));
     let mut ship = Ship::new(&scaled, law).expect("a ready ship");
     ship.set_envelope_speed(1.0);
     let restarted = ReplaySettings { restart_s: Some(RESTART_S), ..ReplaySettings::default() };
-    let run =
-        |trial: &Trial| replay(&ship, trial, &restarted).expect("every channel that the law needs");
+    let run = |trial: &Trial| {
+        replay_trial(&ship, trial, &restarted).expect("every channel that the law needs")
+    };
     let sailed =
         trials.iter().map(|trial| (trial, run(trial))).filter(|(_, run)| run.stopped.is_none());
-    sailed.map(|(trial, run)| (trial.name.clone(), SquaredError::of(trial, &run))).collect()
+    sailed.map(|(trial, run)| (trial.name.clone(), SquaredError::from_trial(trial, &run))).collect()
 }
 
 pub fn of_kind<'e>(

@@ -1,8 +1,8 @@
 //! How long a refinement takes.
 
-use sistership_identification::refine::{Method, Request, refine};
+use sistership_identification::refine::{EstimationMethod, RefinementSpec, refine};
 use sistership_model::{Trial, Zoo};
-use sistership_priors::transfer::{approach_of, blank};
+use sistership_priors::transfer::{blank_model, trial_approach};
 use sistership_tests::{esso_osaka, shared};
 
 use super::compared;
@@ -35,7 +35,7 @@ fn the_time_of_a_fit_on_one_core() {
         .collect();
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     for (what, trials) in [("every file", &all), ("Train-TZRB", &few)] {
-        for method in [Method::Weak, Method::Trajectory] {
+        for method in [EstimationMethod::Weak, EstimationMethod::Trajectory] {
             let (fit_s, whole_s, taken) = one.install(|| timed(trials, method));
             println!(
                 "{what:<10} {:<10} fit {fit_s:.2} s, whole {whole_s:.2} s; taken: {taken}",
@@ -45,16 +45,17 @@ fn the_time_of_a_fit_on_one_core() {
     }
 }
 
-fn timed(trials: &[Trial], method: Method) -> (f64, f64, String) {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+fn timed(trials: &[Trial], method: EstimationMethod) -> (f64, f64, String) {
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let (target, law) = (
         zoo.vessel("esso-osaka-3m").expect("in the zoo"),
         zoo.law("low-speed").expect("in the zoo"),
     );
     let trials: Vec<&Trial> = trials.iter().collect();
-    let source = blank(law, target, approach_of(&trials)).unwrap_or_else(|error| panic!("{error}"));
+    let source =
+        blank_model(law, target, trial_approach(&trials)).unwrap_or_else(|error| panic!("{error}"));
     let settings = compared(method);
-    let request = Request {
+    let request = RefinementSpec {
         target,
         source: &source,
         source_law: None,

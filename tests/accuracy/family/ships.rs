@@ -7,13 +7,13 @@ use std::sync::Arc;
 use rand::RngExt;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
-use sistership_fleet::statistics::{Frame, TrialStatistics};
+use sistership_fleet::statistics::{RegressionFrame, TrialStatistics};
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_simulation::state::{RECORDED, Trajectory, at};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
+use sistership_simulation::state::{RECORDED_CHANNELS, Trajectory, at};
 
 use super::regressions::{Hull, derivatives};
 
@@ -34,8 +34,8 @@ pub struct Sistership {
 
 /// The foundation of the family and its law.
 pub fn foundation() -> (Model, Arc<Law>) {
-    let zoo = Zoo::embedded().expect("the zoo");
-    let model = zoo.model("kvlcc2").expect("the foundation");
+    let zoo = Zoo::load_embedded().expect("the zoo");
+    let model = zoo.find_model("kvlcc2").expect("the foundation");
     let law = zoo.law(&model.law).expect("its law").clone();
     (model, law)
 }
@@ -54,7 +54,7 @@ fn hull(rng: &mut ChaCha12Rng) -> Hull {
 /// Draws a ship.
 pub fn draw(rng: &mut ChaCha12Rng, index: usize, foundation: &Model, law: &Law) -> Sistership {
     let (name, hull) = (format!("sister-{index:02}"), hull(rng));
-    let frame = foundation.transferred(
+    let frame = foundation.transfer_to(
         law,
         &name,
         &particulars(foundation, hull),
@@ -125,9 +125,9 @@ pub fn sail(model: &Model, law: &Law, what: Sailed, lengths: f64) -> Option<Traj
         ..ManoeuvreSettings::default()
     };
     match what {
-        Sailed::Turn(angle) => turn(&ship, angle, &settings).ok().map(|turn| turn.track),
+        Sailed::Turn(angle) => simulate_turn(&ship, angle, &settings).ok().map(|turn| turn.track),
         Sailed::Zigzag(angle) => {
-            zigzag(&ship, angle, angle.abs(), &settings).ok().map(|zigzag| zigzag.track)
+            simulate_zigzag(&ship, angle, angle.abs(), &settings).ok().map(|zigzag| zigzag.track)
         }
     }
 }
@@ -139,18 +139,20 @@ pub fn statistics(
     rng: &mut ChaCha12Rng,
     sailed: &[(Sailed, f64)],
 ) -> Option<Vec<TrialStatistics>> {
-    let frame = Frame::new(&ship.frame, law, "law", None).expect("a frame");
+    let frame = RegressionFrame::new(&ship.frame, law, "law", None).expect("a frame");
     let mut one = |&(what, lengths): &(Sailed, f64)| {
         let track = sail(&ship.truth, law, what, lengths)?;
-        Some(TrialStatistics::of(&frame, &recorded(&track, rng)).expect("statistics"))
+        Some(TrialStatistics::from_trial(&frame, &recorded(&track, rng)).expect("statistics"))
     };
     sailed.iter().map(&mut one).collect()
 }
 
 fn recorded(track: &Trajectory, rng: &mut ChaCha12Rng) -> Trial {
-    let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> =
-        RECORDED.iter().map(|&(channel, index)| (channel, track.column(index))).collect();
-    channels.insert(Channel::Delta, track.column(at::DELTA));
+    let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> = RECORDED_CHANNELS
+        .iter()
+        .map(|&(channel, index)| (channel, track.state_column(index)))
+        .collect();
+    channels.insert(Channel::Delta, track.state_column(at::DELTA));
     channels.insert(Channel::N, track.n_rps.clone());
     for (channel, deviation) in NOISE {
         let shaken = channels.get_mut(&channel).expect("a recorded channel");

@@ -4,10 +4,10 @@
 use std::collections::BTreeMap;
 
 use rand_chacha::ChaCha8Rng;
-use sistership_identification::refine::Settings;
+use sistership_identification::refine::RefinementSettings;
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model, Zoo};
-use sistership_model_selection::{Asked, best_start};
+use sistership_model_selection::{StartRequest, best_start};
 use sistership_simulation::Trajectory;
 
 use super::refined::TURNS;
@@ -30,12 +30,12 @@ pub fn refined(
         tracks.iter().enumerate().map(|(k, track)| named(measured(track, rng), k)).collect();
     let trials: Vec<&Trial> = trials.iter().collect();
     let target = zoo.vessel("sr108").expect("a ship of the zoo");
-    let asked = Asked {
+    let asked = StartRequest {
         zoo,
         target,
         champions: &BTreeMap::new(),
         trials: &trials,
-        settings: &Settings::default(),
+        settings: &RefinementSettings::default(),
     };
     let start = best_start(&asked, &|_, _| true).unwrap_or_else(|error| panic!("{error}"));
     let entrant = start.entrant;

@@ -3,12 +3,15 @@
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
-use sistership_identification::refine::{Blocks, Fold, Range, Table, fit, trial_tables, tune};
+use sistership_identification::refine::{
+    RegressionBlocks, RegressionFold, RegressionTable, TuningRange, fit_regressions, trial_tables,
+    tune_choices,
+};
 use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
-use sistership_numerics::Moments;
+use sistership_numerics::RegressionMoments;
 use sistership_simulation::Trajectory;
 use sistership_simulation::state::at;
 use sistership_trials::smoothing::savitzky_golay;
@@ -31,7 +34,7 @@ pub const NOISE: [(Channel, usize, f64); 3] = [
 const SMOOTHING: (usize, usize) = (21, 3);
 /// Where lambda and alpha are tuned; the paper prints 10 for the least lambda, its results say
 /// 10^0.
-const RANGE: Range = Range { lambda_min: 1.0, lambda_max: 1e10, alpha_max: 0.1 };
+const RANGE: TuningRange = TuningRange { lambda_min: 1.0, lambda_max: 1e10, alpha_max: 0.1 };
 /// Values of lambda tried.
 const LAMBDAS: usize = 100;
 /// Share of the samples that is fitted while tuning.
@@ -39,7 +42,7 @@ const TRAINING: f64 = 0.7;
 
 /// The source refined on each of five data sets.
 pub fn refinements(source: &Model, law: &Law, truth: &Truth, rng: &mut ChaCha8Rng) -> Vec<Model> {
-    let blocks = Blocks::new(source, law).expect("a law that can be regressed");
+    let blocks = RegressionBlocks::new(source, law).expect("a law that can be regressed");
     let turns = TURNS.map(|rudder_deg| truth.turn(rudder_deg));
     let one = |(rudder_deg, heading_deg): (f64, f64)| {
         let [starboard, port] = &turns;
@@ -51,13 +54,22 @@ pub fn refinements(source: &Model, law: &Law, truth: &Truth, rng: &mut ChaCha8Rn
 }
 
 /// Tuned by the one-step error on samples kept back, then fitted on all of them.
-fn refined(source: &Model, blocks: &Blocks, trials: &[Trial], rng: &mut ChaCha8Rng) -> Model {
+fn refined(
+    source: &Model,
+    blocks: &RegressionBlocks,
+    trials: &[Trial],
+    rng: &mut ChaCha8Rng,
+) -> Model {
     let tables = samples(blocks, trials);
     let (training, validation) = split(&tables, rng);
-    let fold =
-        Fold::new(blocks, source, &moments(blocks, &training), &moments(blocks, &validation));
-    let choices = tune(&[fold], &RANGE, LAMBDAS).expect("finite errors");
-    let fit = fit(blocks, &moments(blocks, &tables), source, &choices);
+    let fold = RegressionFold::new(
+        blocks,
+        source,
+        &moments(blocks, &training),
+        &moments(blocks, &validation),
+    );
+    let choices = tune_choices(&[fold], &RANGE, LAMBDAS).expect("finite errors");
+    let fit = fit_regressions(blocks, &moments(blocks, &tables), source, &choices);
     let mut model = source.clone();
     model.coefficients.extend(
         fit.coefficients
@@ -81,18 +93,18 @@ fn measured(track: &Trajectory, rng: &mut ChaCha8Rng) -> Trial {
 pub fn noisy(track: &Trajectory, index: usize, deviation: f64, rng: &mut ChaCha8Rng) -> Vec<f64> {
     let noise = Normal::new(0.0, deviation).expect("a finite deviation");
     let noisy: Vec<f64> =
-        track.column(index).into_iter().map(|value| value + noise.sample(rng)).collect();
+        track.state_column(index).into_iter().map(|value| value + noise.sample(rng)).collect();
     let smooth =
         savitzky_golay(&noisy, SMOOTHING.0, SMOOTHING.1).expect("a record longer than the window");
     smooth[FITTED].to_vec()
 }
 
 /// One table for each regression over the samples of all trials.
-fn samples(blocks: &Blocks, trials: &[Trial]) -> Vec<Table> {
+fn samples(blocks: &RegressionBlocks, trials: &[Trial]) -> Vec<RegressionTable> {
     let tables = trials.iter().map(|trial| {
         trial_tables(blocks, trial, None, &|_, _| 0.0).expect("every channel that the law needs")
     });
-    let append = |mut all: Vec<Table>, more: Vec<Table>| {
+    let append = |mut all: Vec<RegressionTable>, more: Vec<RegressionTable>| {
         all.iter_mut()
             .flatten()
             .zip(more.iter().flatten())
@@ -103,22 +115,25 @@ fn samples(blocks: &Blocks, trials: &[Trial]) -> Vec<Table> {
 }
 
 /// Samples drawn at random for training, and the rest.
-fn split(tables: &[Table], rng: &mut ChaCha8Rng) -> (Vec<Table>, Vec<Table>) {
+fn split(
+    tables: &[RegressionTable],
+    rng: &mut ChaCha8Rng,
+) -> (Vec<RegressionTable>, Vec<RegressionTable>) {
     let mut rows: Vec<usize> = (0..tables[0][0].len()).collect();
     rows.shuffle(rng);
     let (training, validation) = rows.split_at((TRAINING * rows.len() as f64).round() as usize);
-    let keep = |rows: &[usize]| -> Vec<Table> {
+    let keep = |rows: &[usize]| -> Vec<RegressionTable> {
         let column = |column: &Vec<f64>| rows.iter().map(|&row| column[row]).collect();
         tables.iter().map(|table| table.iter().map(column).collect()).collect()
     };
     (keep(training), keep(validation))
 }
 
-fn moments(blocks: &Blocks, tables: &[Table]) -> Vec<Moments> {
+fn moments(blocks: &RegressionBlocks, tables: &[RegressionTable]) -> Vec<RegressionMoments> {
     blocks
         .blocks
         .iter()
         .zip(tables)
-        .map(|(block, table)| Moments::of_columns(table, block.regressors()))
+        .map(|(block, table)| RegressionMoments::from_columns(table, block.regressor_count()))
         .collect()
 }

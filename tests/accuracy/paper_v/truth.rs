@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Zoo};
-use sistership_simulation::state::{RECORDED, StateVector, at, straight};
-use sistership_simulation::{Method, Order, Run, Ship, Trajectory};
+use sistership_simulation::state::{RECORDED_CHANNELS, StateVector, at, straight_state};
+use sistership_simulation::{HelmOrder, Method, RunSettings, Ship, Trajectory};
 
 /// Sampling interval and Euler step, s.
 pub const STEP_S: f64 = 0.5;
@@ -32,7 +32,7 @@ pub struct Truth {
 impl Truth {
     /// At given revolutions.
     pub fn new(zoo: &Zoo, n_rpm: f64) -> Self {
-        let model = zoo.model("sr108").unwrap_or_else(|error| panic!("{error}"));
+        let model = zoo.find_model("sr108").unwrap_or_else(|error| panic!("{error}"));
         let law = zoo.law(&model.law).expect("the law of a zoo model");
         let ship = Ship::new(&model, law).expect("a ready ship");
         let n_rps = n_rpm / 60.0;
@@ -59,8 +59,8 @@ impl Truth {
 
     /// The product's manoeuvres do not take a step as long as the paper's.
     fn sail(&self, mut rudder: impl FnMut(&StateVector) -> f64) -> Trajectory {
-        let run = Run {
-            start: straight(self.speed_m_s),
+        let run = RunSettings {
+            start: straight_state(self.speed_m_s),
             duration_s: DURATION_S,
             step_s: STEP_S,
             method: Method::Euler,
@@ -68,10 +68,10 @@ impl Truth {
         let mut track = Trajectory::default();
         let bridge = |t_s: f64, state: &StateVector| {
             let delta_rad = if t_s >= EXECUTE_S { rudder(state) } else { 0.0 };
-            Some(Order { delta_rad, n_rps: self.n_rps })
+            Some(HelmOrder { delta_rad, n_rps: self.n_rps })
         };
         self.ship
-            .sail(run, &mut track, bridge)
+            .simulate_orders(run, &mut track, bridge)
             .unwrap_or_else(|stopped| panic!("the true ship {stopped}"));
         track
     }
@@ -80,8 +80,9 @@ impl Truth {
 /// A part of a track as a trial without measurement errors.
 pub fn recorded(track: &Trajectory, samples: Range<usize>) -> Trial {
     let column = |(channel, index): (Channel, usize)| {
-        (channel, track.column(index)[samples.clone()].to_vec())
+        (channel, track.state_column(index)[samples.clone()].to_vec())
     };
-    let channels = RECORDED.into_iter().chain([(Channel::Delta, at::DELTA)]).map(column).collect();
+    let channels =
+        RECORDED_CHANNELS.into_iter().chain([(Channel::Delta, at::DELTA)]).map(column).collect();
     Trial { t_s: track.t_s[samples.clone()].to_vec(), channels, ..Trial::default() }
 }

@@ -1,7 +1,7 @@
 //! What Table 5 tells of a turning circle.
 
 use sistership_simulation::StateVector;
-use sistership_simulation::state::{at, speed};
+use sistership_simulation::state::{at, horizontal_speed};
 
 /// The four rows of a turn, or the errors in them (%).
 #[derive(Debug, Clone, Copy)]
@@ -25,10 +25,10 @@ impl Metrics {
         };
         let advance = states.iter().map(|state| state[at::X] - first[at::X]).fold(0.0, f64::max);
         Self([
-            speed(last) / last[at::R].abs(),
+            horizontal_speed(last) / last[at::R].abs(),
             farthest(at::Y),
             advance,
-            speed(first) - speed(last),
+            horizontal_speed(first) - horizontal_speed(last),
         ])
     }
 

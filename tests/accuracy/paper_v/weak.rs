@@ -3,7 +3,9 @@
 //! manoeuvres left out, the turns of the table never seen.
 
 use rand_chacha::ChaCha8Rng;
-use sistership_identification::refine::{Family, Method, Request, Settings, refine};
+use sistership_identification::refine::{
+    EstimationMethod, RefinementSettings, RefinementSpec, TermFamily, refine,
+};
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
@@ -34,10 +36,14 @@ pub fn refined(
     let trials: Vec<Trial> = tracks.iter().map(|track| measured(track, rng)).collect();
     let trials: Vec<&Trial> = trials.iter().collect();
     // Of roll the source says nothing, so that its own terms are no choice.
-    let families = if law.has_roll() { vec![Family::ThirdOrder] } else { Vec::new() };
-    let settings = Settings { method: Method::Weak, families, ..Settings::default() };
+    let families = if law.has_roll() { vec![TermFamily::ThirdOrder] } else { Vec::new() };
+    let settings = RefinementSettings {
+        method: EstimationMethod::Weak,
+        families,
+        ..RefinementSettings::default()
+    };
     let target = zoo.vessel("sr108").expect("a ship of the zoo");
-    let request = Request {
+    let request = RefinementSpec {
         target,
         source,
         source_law: None,
@@ -89,7 +95,8 @@ pub fn with_roll(source: &Model, law: &Law, truth: &Truth) -> Model {
         }),
     );
     let of_ship = |name: &str| {
-        particulars::value(&truth.model.particulars, name).expect("a particular of the true ship")
+        particulars::particular_value(&truth.model.particulars, name)
+            .expect("a particular of the true ship")
     };
     let length = of_ship("lpp_m");
     let stiffness = 2.0 * of_ship("displacement_m3") * of_ship("gm_m") / length.powi(4);

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use serde_json::{Value, json};
-use sistership_cli::sea_trials::{TrialManoeuvre, record};
+use sistership_cli::sea_trials::{TrialManoeuvre, record_programme};
 use sistership_model::{Trial, Zoo};
 use sistership_simulation::Ship;
 use sistership_trials::samples::to_csv;
@@ -57,7 +57,7 @@ pub fn version(ship: &str, origin: &str) -> Result<Value, Failure> {
         Some(model) => model.clone(),
         None => {
             let made = serde_json::to_value(
-                Zoo::embedded()?.model(PATTERN).map_err(|error| error.to_string())?,
+                Zoo::load_embedded()?.find_model(PATTERN).map_err(|error| error.to_string())?,
             )?;
             MODEL.get_or_init(|| made).clone()
         }
@@ -77,8 +77,8 @@ pub fn rows(number: u64) -> String {
 /// # Errors
 /// The pattern ship does not sail them.
 pub fn trials() -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    let zoo = Zoo::embedded()?;
-    let model = zoo.model(PATTERN).map_err(|error| error.to_string())?;
+    let zoo = Zoo::load_embedded()?;
+    let model = zoo.find_model(PATTERN).map_err(|error| error.to_string())?;
     let ship = Ship::new(&model, zoo.law(&model.law).ok_or("no law")?)
         .map_err(|error| error.to_string())?;
     let programme = [
@@ -88,7 +88,7 @@ pub fn trials() -> Result<Vec<(String, Vec<u8>)>, Failure> {
         TrialManoeuvre::Turn(-20.0),
     ];
     let trials: Vec<Trial> =
-        record(&ship, 10.47, &programme, 3).map_err(|stopped| stopped.to_string())?;
+        record_programme(&ship, 10.47, &programme, 3).map_err(|stopped| stopped.to_string())?;
     let csv = |trial: &Trial| -> Result<_, Failure> {
         let mut bytes = Vec::new();
         to_csv(&mut bytes, trial).map_err(|error| error.to_string())?;

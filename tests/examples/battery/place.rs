@@ -36,9 +36,9 @@ impl Database {
     /// PostgreSQL is not installed.
     pub async fn empty(self) -> Result<TestDatabase, Failure> {
         match self {
-            Self::Sqlite => Ok(TestDatabase::sqlite()),
+            Self::Sqlite => Ok(TestDatabase::new_sqlite()),
             Self::Postgres => {
-                Ok(TestDatabase::postgres().await.ok_or("PostgreSQL is not installed")?)
+                Ok(TestDatabase::new_postgres().await.ok_or("PostgreSQL is not installed")?)
             }
         }
     }

@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use sistership_identification::refine::{Family, Method, Request, Settings, refine};
+use sistership_identification::refine::{
+    EstimationMethod, RefinementSettings, RefinementSpec, TermFamily, refine,
+};
 use sistership_model::{Law, Model, Trial, Zoo};
-use sistership_priors::transfer::{approach_of, blank};
+use sistership_priors::transfer::{blank_model, trial_approach};
 
 use crate::esso_osaka;
 use crate::score::{KINDS, RESTART_S};
@@ -35,22 +37,22 @@ pub fn law(zoo: &Zoo) -> &Law {
 /// The law without anything known of it.
 pub fn nothing(zoo: &Zoo, inside: &[&Trial]) -> Model {
     let target = zoo.vessel("esso-osaka-3m").expect("the ship is in the zoo");
-    blank(law(zoo), target, approach_of(inside)).unwrap_or_else(|error| panic!("{error}"))
+    blank_model(law(zoo), target, trial_approach(inside)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The law refined on trials as in docs/evidence/estimators.md.
 pub fn refined(zoo: &Zoo, inside: &[&Trial]) -> Model {
     let target = zoo.vessel("esso-osaka-3m").expect("the ship is in the zoo");
     let source = nothing(zoo, inside);
-    let settings = Settings {
-        method: Method::Trajectory,
+    let settings = RefinementSettings {
+        method: EstimationMethod::Trajectory,
         restart_s: Some(RESTART_S),
-        families: vec![Family::Own],
+        families: vec![TermFamily::Own],
         strengths: vec![1e-1, 1e-2, 1e-3],
-        ..Settings::default()
+        ..RefinementSettings::default()
     };
     let law = law(zoo);
-    let request = Request {
+    let request = RefinementSpec {
         target,
         source: &source,
         source_law: None,

@@ -3,13 +3,16 @@
 //! that no figure printed has been looked at for a choice.
 
 use rayon::prelude::*;
-use sistership_learned::{Row, Training, importance, rows, ship, train};
-use sistership_model::branch::{BranchMode, Learner, Signal};
+use sistership_learned::{
+    CorrectionTraining, WindowRow, corrected_ship, permutation_importance, train_correction,
+    window_rows,
+};
+use sistership_model::branch::{CorrectionMode, Learner, Signal};
 use sistership_model::coefficient::Axis;
 use sistership_model::{Law, Model, Trial, Zoo};
 use sistership_simulation::Ship;
 use sistership_simulation::error::SquaredError;
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 
 use crate::measured::{fold_of, law, nothing, refined, trials};
 use crate::score::{KINDS, RESTART_S, over_all};
@@ -44,10 +47,10 @@ pub fn learners() -> [[Learner; 3]; 4] {
     ]
 }
 
-pub fn training(learner: Learner, mode: BranchMode, window_s: f64) -> Training {
+pub fn training(learner: Learner, mode: CorrectionMode, window_s: f64) -> CorrectionTraining {
     let signals = vec![Signal::U, Signal::V, Signal::R, Signal::Delta, Signal::N];
     let inputs = [Axis::X, Axis::Y, Axis::N].map(|axis| (axis, signals.clone())).to_vec();
-    Training { mode, inputs, learner, seed: 1, window_s, hop_s: 0.5, fade: 1.0 }
+    CorrectionTraining { mode, inputs, learner, seed: 1, window_s, hop_s: 0.5, fade: 1.0 }
 }
 
 /// Trials simulated by a ship, which must sail them all.
@@ -55,9 +58,9 @@ fn simulated(mut ship: Ship, trials: &[&Trial]) -> Errors {
     ship.set_envelope_speed(1.0);
     let restarted = ReplaySettings { restart_s: Some(RESTART_S), ..ReplaySettings::default() };
     let one = |trial: &&Trial| {
-        let run = replay(&ship, trial, &restarted).expect("every channel that the law needs");
+        let run = replay_trial(&ship, trial, &restarted).expect("every channel that the law needs");
         assert_eq!(run.stopped, None, "{}", trial.name);
-        (trial.name.clone(), SquaredError::of(trial, &run))
+        (trial.name.clone(), SquaredError::from_trial(trial, &run))
     };
     trials.par_iter().map(one).collect()
 }
@@ -68,13 +71,16 @@ fn with_branch(
     law: &Law,
     inside: &[&Trial],
     outside: &[&Trial],
-    training: &Training,
+    training: &CorrectionTraining,
 ) -> Errors {
     let (branch, weights) =
-        train(model, law, inside, training).unwrap_or_else(|error| panic!("{error}"));
+        train_correction(model, law, inside, training).unwrap_or_else(|error| panic!("{error}"));
     let model = Model { branch: Some(branch), ..model.clone() };
-    let bytes = weights.bytes().unwrap_or_else(|error| panic!("{error}"));
-    simulated(ship(&model, law, &bytes).unwrap_or_else(|error| panic!("{error}")), outside)
+    let bytes = weights.to_bytes().unwrap_or_else(|error| panic!("{error}"));
+    simulated(
+        corrected_ship(&model, law, &bytes).unwrap_or_else(|error| panic!("{error}")),
+        outside,
+    )
 }
 
 fn split<'t>(trials: &[&'t Trial], folds: usize, fold: usize) -> (Vec<&'t Trial>, Vec<&'t Trial>) {
@@ -97,7 +103,7 @@ fn within(zoo: &Zoo, inside: &[&Trial], window_s: f64) -> (f64, [[f64; 3]; 4]) {
         let bare = Ship::new(&model, law).unwrap_or_else(|error| panic!("{error}"));
         alone.extend(simulated(bare, &unseen));
         for (learner, errors) in learners().into_iter().flatten().zip(beside.iter_mut().flatten()) {
-            let wanted = training(learner, BranchMode::Parallel, window_s);
+            let wanted = training(learner, CorrectionMode::Parallel, window_s);
             errors.extend(with_branch(&model, law, &seen, &unseen, &wanted));
         }
     }
@@ -122,11 +128,18 @@ fn fold(zoo: &Zoo, all: &[&Trial], number: usize, window_s: f64) -> Fold {
     println!("fold {number}: within its trials {without:.4} by the law alone; {with:.4?}");
     let best = with.map(|kind| least(&kind));
     let beside = std::array::from_fn(|kind| {
-        let wanted = training(learners()[kind][best[kind]].clone(), BranchMode::Parallel, window_s);
+        let wanted =
+            training(learners()[kind][best[kind]].clone(), CorrectionMode::Parallel, window_s);
         with_branch(&model, law, &inside, &outside, &wanted)
     });
     let data = learners().map(|[free, ..]| {
-        with_branch(&bare, law, &inside, &outside, &training(free, BranchMode::Convert, window_s))
+        with_branch(
+            &bare,
+            law,
+            &inside,
+            &outside,
+            &training(free, CorrectionMode::Convert, window_s),
+        )
     });
     let kind = least(&std::array::from_fn::<f64, 4, _>(|kind| with[kind][best[kind]]));
     let wins = with[kind][best[kind]] < without;
@@ -144,21 +157,22 @@ fn least(errors: &[f64]) -> usize {
 fn tell_importance(zoo: &Zoo, all: &[&Trial]) {
     let (inside, outside) = split(all, 4, 1);
     let (law, model, [[forest, ..], ..]) = (law(zoo), refined(zoo, &inside), learners());
-    let wanted = training(forest, BranchMode::Parallel, WINDOW_S);
+    let wanted = training(forest, CorrectionMode::Parallel, WINDOW_S);
     let (branch, weights) =
-        train(&model, law, &inside, &wanted).unwrap_or_else(|error| panic!("{error}"));
+        train_correction(&model, law, &inside, &wanted).unwrap_or_else(|error| panic!("{error}"));
     let alone = Ship::new(&model, law).unwrap_or_else(|error| panic!("{error}"));
-    let of = |trial: &&Trial| rows(&alone, trial, wanted.window_s, wanted.hop_s);
-    let unseen: Vec<Row> = outside.iter().flat_map(|trial| of(trial).unwrap_or_default()).collect();
+    let of = |trial: &&Trial| window_rows(&alone, trial, wanted.window_s, wanted.hop_s);
+    let unseen: Vec<WindowRow> =
+        outside.iter().flat_map(|trial| of(trial).unwrap_or_default()).collect();
     println!("rise of the squared error of unseen files where an input is shuffled, by variance");
-    for told in importance(&branch, &weights, &unseen, 1) {
+    for told in permutation_importance(&branch, &weights, &unseen, 1) {
         println!("  {} {:<6} {:+.3}", told.axis, format!("{:?}", told.signal), told.rise);
     }
 }
 
 pub fn run(window_s: f64) {
     let Some(trials) = trials() else { return };
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let all: Vec<&Trial> = trials.iter().collect();
     let folds: Vec<Fold> = (0..4).map(|number| fold(&zoo, &all, number, window_s)).collect();
     let joined = |of: &dyn Fn(&Fold) -> Errors| folds.iter().flat_map(of).collect::<Errors>();

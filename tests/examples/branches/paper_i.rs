@@ -2,8 +2,10 @@
 //! and corrected once by an LSTM that is told the foundation's end; against the foundation and an
 //! LSTM without one, which is told the orders instead.
 
-use sistership_learned::horizon::{Example, HorizonTraining, OneShot, Predictor, Told, train};
-use sistership_learned::recurrent::Cell;
+use sistership_learned::horizon::{
+    HorizonTraining, OneShotSettings, OrderEncoding, TrackExample, TrackPredictor, train_predictor,
+};
+use sistership_learned::recurrent::RecurrentCell;
 use sistership_model::{Trial, Zoo};
 use sistership_simulation::Ship;
 
@@ -40,8 +42,9 @@ pub struct Misses {
 }
 
 impl Misses {
-    fn of(examples: &[Example], added: impl Fn(&Example) -> Vec<f64>) -> Self {
-        let all: Vec<Vec<f64>> = examples.iter().map(|one| one.misses(&added(one))).collect();
+    fn of(examples: &[TrackExample], added: impl Fn(&TrackExample) -> Vec<f64>) -> Self {
+        let all: Vec<Vec<f64>> =
+            examples.iter().map(|one| one.position_errors(&added(one))).collect();
         let column = |k: usize| {
             let mut column: Vec<f64> = all.iter().map(|misses| misses[k]).collect();
             column.sort_unstable_by(f64::total_cmp);
@@ -70,7 +73,7 @@ pub struct Outcome {
 
 pub fn training(epochs: usize) -> HorizonTraining {
     HorizonTraining {
-        cell: Cell::Lstm,
+        cell: RecurrentCell::Lstm,
         width: 24,
         epochs,
         patience: 10,
@@ -80,13 +83,19 @@ pub fn training(epochs: usize) -> HorizonTraining {
     }
 }
 
-fn one_shot(told: Told) -> OneShot {
-    OneShot { steps: HORIZON, told, memory: MEMORY }
+fn one_shot(told: OrderEncoding) -> OneShotSettings {
+    OneShotSettings { steps: HORIZON, told, memory: MEMORY }
 }
 
-fn examples(how: OneShot, ship: Option<&Ship>, trials: &[Trial], hop: usize) -> Vec<Example> {
-    let of =
-        |trial: &Trial| how.examples(ship, trial, hop).unwrap_or_else(|error| panic!("{error}"));
+fn examples(
+    how: OneShotSettings,
+    ship: Option<&Ship>,
+    trials: &[Trial],
+    hop: usize,
+) -> Vec<TrackExample> {
+    let of = |trial: &Trial| {
+        how.trial_examples(ship, trial, hop).unwrap_or_else(|error| panic!("{error}"))
+    };
     trials.iter().flat_map(of).collect()
 }
 
@@ -103,21 +112,26 @@ fn parts(hull: &Hull, force: u8, count: usize) -> [Vec<Trial>; 3] {
 }
 
 pub fn outcomes(size: Size) -> Vec<Outcome> {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let hull = Hull::new(&zoo);
     println!("left by the hull's fit, of surge, sway and yaw: {:.3?}", hull.left);
     let foundation = ship(&zoo, VESSEL, LOW_FIDELITY);
     let by_force = [3, 4].map(|force| parts(&hull, force, size.scenarios / 2));
-    let learned = |how: OneShot, ship: Option<&Ship>| -> Predictor {
-        let of = |part: usize| -> Vec<Example> {
+    let learned = |how: OneShotSettings, ship: Option<&Ship>| -> TrackPredictor {
+        let of = |part: usize| -> Vec<TrackExample> {
             by_force.iter().flat_map(|all| examples(how, ship, &all[part], size.hop)).collect()
         };
-        let trained = train(&of(0), &of(1), &training(size.epochs), None);
+        let trained = train_predictor(&of(0), &of(1), &training(size.epochs), None);
         trained.unwrap_or_else(|error| panic!("{error}"))
     };
-    let (alone, both) = (one_shot(Told::Orders { parts: 6 }), one_shot(Told::End));
+    let (alone, both) =
+        (one_shot(OrderEncoding::Orders { parts: 6 }), one_shot(OrderEncoding::End));
     let (data, hybrid) = (learned(alone, None), learned(both, Some(&foundation)));
-    println!("epochs and least validation: data {:?}, both {:?}", data.epochs(), hybrid.epochs());
+    println!(
+        "epochs and least validation: data {:?}, both {:?}",
+        data.training_summary(),
+        hybrid.training_summary()
+    );
     let judged = |(force, all): (u8, &[Vec<Trial>; 3])| {
         let with = examples(both, Some(&foundation), &all[2], 1);
         let without = examples(alone, None, &all[2], 1);
@@ -126,8 +140,8 @@ pub fn outcomes(size: Size) -> Vec<Outcome> {
             force,
             misses: [
                 Misses::of(&with, |_| nothing.clone()),
-                Misses::of(&without, |one| data.answer(&one.inputs)),
-                Misses::of(&with, |one| hybrid.answer(&one.inputs)),
+                Misses::of(&without, |one| data.predict_correction(&one.inputs)),
+                Misses::of(&with, |one| hybrid.predict_correction(&one.inputs)),
             ],
         }
     };

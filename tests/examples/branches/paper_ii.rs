@@ -2,8 +2,10 @@
 //! which serves as a simulator alone: on its simulations in calm water the perceptron is trained
 //! first, then on few trials.
 
-use sistership_learned::horizon::{Example, HorizonTraining, OneShot, Predictor, Told, train};
-use sistership_learned::recurrent::Cell;
+use sistership_learned::horizon::{
+    HorizonTraining, OneShotSettings, OrderEncoding, TrackExample, TrackPredictor, train_predictor,
+};
+use sistership_learned::recurrent::RecurrentCell;
 use sistership_model::trial::Channel;
 use sistership_model::{Trial, Zoo};
 
@@ -12,7 +14,8 @@ use crate::vessel::hull::{Hull, VESSEL};
 use crate::vessel::scenarios;
 
 const HORIZON: usize = 30;
-const HOW: OneShot = OneShot { steps: HORIZON, told: Told::Orders { parts: 6 }, memory: 1 };
+const HOW: OneShotSettings =
+    OneShotSettings { steps: HORIZON, told: OrderEncoding::Orders { parts: 6 }, memory: 1 };
 const WIND: [Channel; 2] = [Channel::WindSpeed, Channel::WindFrom];
 /// As in Paper I.
 const LOW_FIDELITY: Shift = Shift { damping: 0.6, inertia: 0.0, seed: 1 };
@@ -52,7 +55,7 @@ pub struct Outcomes {
 
 fn training(epochs: usize, seed: u64) -> HorizonTraining {
     HorizonTraining {
-        cell: Cell::Rnn,
+        cell: RecurrentCell::Rnn,
         width: 40,
         epochs,
         patience: 30,
@@ -63,18 +66,18 @@ fn training(epochs: usize, seed: u64) -> HorizonTraining {
 }
 
 /// What the perceptron is told, as the paper's: no wind, of which the simulations know nothing.
-fn examples(trials: &[Trial], hop: usize) -> Vec<Example> {
+fn examples(trials: &[Trial], hop: usize) -> Vec<TrackExample> {
     let of = |trial: &Trial| {
         let mut trial = trial.clone();
         trial.channels.retain(|channel, _| !WIND.contains(channel));
-        HOW.examples(None, &trial, hop).unwrap_or_else(|error| panic!("{error}"))
+        HOW.trial_examples(None, &trial, hop).unwrap_or_else(|error| panic!("{error}"))
     };
     trials.iter().flat_map(of).collect()
 }
 
 /// Examples to learn from, and those at the end of each trial, of which none sees the same seconds.
-fn parts(trials: &[Trial]) -> [Vec<Example>; 2] {
-    let mut parts: [Vec<Example>; 2] = Default::default();
+fn parts(trials: &[Trial]) -> [Vec<TrackExample>; 2] {
+    let mut parts: [Vec<TrackExample>; 2] = Default::default();
     for trial in trials {
         let from = ((1.0 - KEPT) * trial.len() as f64) as usize - HORIZON / 2;
         for one in examples(std::slice::from_ref(trial), 1) {
@@ -89,20 +92,21 @@ fn parts(trials: &[Trial]) -> [Vec<Example>; 2] {
 }
 
 fn learned(
-    parts: &[Vec<Example>; 2],
+    parts: &[Vec<TrackExample>; 2],
     how: &HorizonTraining,
-    start: Option<&Predictor>,
-) -> Predictor {
-    train(&parts[0], &parts[1], how, start).unwrap_or_else(|error| panic!("{error}"))
+    start: Option<&TrackPredictor>,
+) -> TrackPredictor {
+    train_predictor(&parts[0], &parts[1], how, start).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn miss(examples: &[Example], added: impl Fn(&Example) -> Vec<f64>) -> f64 {
-    let one = |one: &Example| one.misses(&added(one)).iter().sum::<f64>() / HORIZON as f64;
+fn miss(examples: &[TrackExample], added: impl Fn(&TrackExample) -> Vec<f64>) -> f64 {
+    let one =
+        |one: &TrackExample| one.position_errors(&added(one)).iter().sum::<f64>() / HORIZON as f64;
     examples.iter().map(one).sum::<f64>() / examples.len() as f64
 }
 
 pub fn outcomes(size: Size<'_>) -> Outcomes {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let hull = Hull::new(&zoo);
     let simulator = Hull::in_calm(ship(&zoo, VESSEL, LOW_FIDELITY), &hull);
     let simulated =
@@ -124,24 +128,24 @@ pub fn outcomes(size: Size<'_>) -> Outcomes {
             let share = 1.0 / size.draws as f64;
             for (sum, start) in [(&mut untrained, None), (&mut pretrained, Some(&first))] {
                 let learned = learned(&parts, &how, start);
-                *sum += share * miss(&test, |one| learned.answer(&one.inputs));
+                *sum += share * miss(&test, |one| learned.predict_correction(&one.inputs));
             }
         }
         Outcome { trials: *trials, untrained, pretrained }
     };
     let by_amount = size.trials.iter().map(of_amount).collect();
-    let simulated = miss(&test, |one| first.answer(&one.inputs));
+    let simulated = miss(&test, |one| first.predict_correction(&one.inputs));
     Outcomes { foundation, simulated, by_amount }
 }
 
 /// The foundation itself, under the orders to come.
 fn foundation(zoo: &Zoo, judged: &[Trial]) -> f64 {
     let ship = ship(zoo, VESSEL, LOW_FIDELITY);
-    let how = OneShot { told: Told::Nothing, ..HOW };
+    let how = OneShotSettings { told: OrderEncoding::Nothing, ..HOW };
     let of = |trial: &Trial| {
-        how.examples(Some(&ship), trial, 1).unwrap_or_else(|error| panic!("{error}"))
+        how.trial_examples(Some(&ship), trial, 1).unwrap_or_else(|error| panic!("{error}"))
     };
-    let examples: Vec<Example> = judged.iter().flat_map(of).collect();
+    let examples: Vec<TrackExample> = judged.iter().flat_map(of).collect();
     miss(&examples, |_| vec![0.0; 2 * HORIZON])
 }
 

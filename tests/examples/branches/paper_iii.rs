@@ -1,9 +1,9 @@
 //! Paper III (Kanazawa 2023, sec. 3.2): docking, perceptrons on what the foundation's accelerations
 //! lack, asked at every step.
 
-use sistership_learned::horizon::{Example, OneShot, Told};
-use sistership_learned::{Training, ship as joined, train};
-use sistership_model::branch::{BranchMode, Learner, Signal};
+use sistership_learned::horizon::{OneShotSettings, OrderEncoding, TrackExample};
+use sistership_learned::{CorrectionTraining, corrected_ship as joined, train_correction};
+use sistership_model::branch::{CorrectionMode, Learner, Signal};
 use sistership_model::coefficient::Axis;
 use sistership_model::{Model, Trial, Zoo};
 use sistership_simulation::Ship;
@@ -31,10 +31,10 @@ impl Size {
 /// Distances at 15, 30 and 60 s, m, means and ninth tenths.
 pub type Row = [(f64, f64); 3];
 
-pub fn training(epochs: usize) -> Training {
+pub fn training(epochs: usize) -> CorrectionTraining {
     use Signal::{Delta, N, R, U, V};
-    Training {
-        mode: BranchMode::Parallel,
+    CorrectionTraining {
+        mode: CorrectionMode::Parallel,
         inputs: [Axis::X, Axis::Y, Axis::N].map(|axis| (axis, vec![U, V, R, N, Delta])).to_vec(),
         learner: Learner::Perceptron {
             hidden: vec![16, 16],
@@ -51,24 +51,24 @@ pub fn training(epochs: usize) -> Training {
     }
 }
 
-fn both(zoo: &Zoo, model: &Model, trials: &[Trial], training: &Training) -> Ship {
+fn both(zoo: &Zoo, model: &Model, trials: &[Trial], training: &CorrectionTraining) -> Ship {
     let law = zoo.law(&model.law).expect("its law");
     let trials: Vec<&Trial> = trials.iter().collect();
-    let trained = train(model, law, &trials, training);
+    let trained = train_correction(model, law, &trials, training);
     let (branch, weights) = trained.unwrap_or_else(|error| panic!("{error}"));
     let model = Model { branch: Some(branch), ..model.clone() };
-    let bytes = weights.bytes().unwrap_or_else(|error| panic!("{error}"));
+    let bytes = weights.to_bytes().unwrap_or_else(|error| panic!("{error}"));
     joined(&model, law, &bytes).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn row(ship: &Ship, trials: &[Trial]) -> Row {
-    let how = OneShot { steps: HORIZON, told: Told::Nothing, memory: 1 };
+    let how = OneShotSettings { steps: HORIZON, told: OrderEncoding::Nothing, memory: 1 };
     let of = |trial: &Trial| {
-        how.examples(Some(ship), trial, 5).unwrap_or_else(|error| panic!("{error}"))
+        how.trial_examples(Some(ship), trial, 5).unwrap_or_else(|error| panic!("{error}"))
     };
     let nothing = vec![0.0; 2 * HORIZON];
     let all: Vec<Vec<f64>> =
-        trials.iter().flat_map(of).map(|one: Example| one.misses(&nothing)).collect();
+        trials.iter().flat_map(of).map(|one: TrackExample| one.position_errors(&nothing)).collect();
     [15, 30, 60].map(|seconds| {
         let mut column: Vec<f64> = all.iter().map(|misses| misses[seconds - 1]).collect();
         column.sort_unstable_by(f64::total_cmp);
@@ -78,7 +78,7 @@ fn row(ship: &Ship, trials: &[Trial]) -> Row {
 
 /// Foundation and both.
 pub fn outcomes(size: Size) -> [Row; 2] {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let hull = Hull::new(&zoo);
     let sailed = |count, seed| scenarios::all(count, seed, |seed| scenarios::docking(&hull, seed));
     let (seen, judged) = (sailed(size.trained, 30), sailed(size.judged, 31));

@@ -2,8 +2,10 @@
 //! of data and with how far the foundation is off. For the virtual ship, or for any ship of the
 //! zoo, whose own model then sails in its place, in weather of its size.
 
-use sistership_learned::horizon::{Example, HorizonTraining, OneShot, Told, train};
-use sistership_learned::recurrent::Cell;
+use sistership_learned::horizon::{
+    HorizonTraining, OneShotSettings, OrderEncoding, TrackExample, train_predictor,
+};
+use sistership_learned::recurrent::RecurrentCell;
 use sistership_model::{Trial, Zoo};
 use sistership_simulation::Ship;
 
@@ -12,7 +14,8 @@ use crate::vessel::hull::{Hull, VESSEL};
 use crate::vessel::scenarios;
 
 const HORIZON: usize = 30;
-const HOW: OneShot = OneShot { steps: HORIZON, told: Told::Nothing, memory: 1 };
+const HOW: OneShotSettings =
+    OneShotSettings { steps: HORIZON, told: OrderEncoding::Nothing, memory: 1 };
 
 /// How much of it.
 #[derive(Debug, Clone, Copy)]
@@ -55,7 +58,7 @@ pub struct Row {
 
 fn training(epochs: usize) -> HorizonTraining {
     HorizonTraining {
-        cell: Cell::Rnn,
+        cell: RecurrentCell::Rnn,
         width: 32,
         epochs,
         patience: 20,
@@ -65,13 +68,16 @@ fn training(epochs: usize) -> HorizonTraining {
     }
 }
 
-fn examples(ship: Option<&Ship>, trials: &[Trial]) -> Vec<Example> {
-    let of = |trial: &Trial| HOW.examples(ship, trial, 2).unwrap_or_else(|error| panic!("{error}"));
+fn examples(ship: Option<&Ship>, trials: &[Trial]) -> Vec<TrackExample> {
+    let of = |trial: &Trial| {
+        HOW.trial_examples(ship, trial, 2).unwrap_or_else(|error| panic!("{error}"))
+    };
     trials.iter().flat_map(of).collect()
 }
 
-fn miss(examples: &[Example], added: impl Fn(&Example) -> Vec<f64>) -> f64 {
-    let one = |one: &Example| one.misses(&added(one)).iter().sum::<f64>() / HORIZON as f64;
+fn miss(examples: &[TrackExample], added: impl Fn(&TrackExample) -> Vec<f64>) -> f64 {
+    let one =
+        |one: &TrackExample| one.position_errors(&added(one)).iter().sum::<f64>() / HORIZON as f64;
     examples.iter().map(one).sum::<f64>() / examples.len() as f64
 }
 
@@ -84,9 +90,9 @@ fn row(ship: Option<&Ship>, trials: &[Trial], judged: &[Trial], size: Size<'_>) 
             own.filter(|(k, _)| (k % 5 == 4) == kept).map(|(_, trial)| trial.clone()).collect()
         };
         let (seen, kept) = (examples(ship, &part(false)), examples(ship, &part(true)));
-        let learned = train(&seen, &kept, &training(size.epochs), None);
+        let learned = train_predictor(&seen, &kept, &training(size.epochs), None);
         let learned = learned.unwrap_or_else(|error| panic!("{error}"));
-        miss(&test, |one| learned.answer(&one.inputs))
+        miss(&test, |one| learned.predict_correction(&one.inputs))
     };
     let foundation = ship.map(|_| miss(&test, |_| vec![0.0; 2 * HORIZON]));
     Row { foundation, errors: size.amounts.iter().map(of_amount).collect() }
@@ -94,7 +100,7 @@ fn row(ship: Option<&Ship>, trials: &[Trial], judged: &[Trial], size: Size<'_>) 
 
 /// Rows by foundation, and without one.
 pub fn map(vessel: &str, size: Size<'_>) -> Vec<Row> {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let hull = if vessel == VESSEL { Hull::new(&zoo) } else { Hull::of_zoo(&zoo, vessel) };
     let most = size.amounts.iter().copied().max().unwrap_or_default();
     let sailed = |count, seed| scenarios::all(count, seed, |seed| scenarios::turning(&hull, seed));

@@ -2,7 +2,7 @@
 //! closed-form responses, by those with a factor for each motion, and with a factor that is learned
 //! from samples of which the common ones are thinned out.
 
-use sistership_learned::seakeeping::{WaveHull, factor, thinned};
+use sistership_learned::seakeeping::{WaveHull, balance_samples, fit_factor};
 
 use crate::vessel::seaway::{Sample, assumed, samples};
 
@@ -29,16 +29,16 @@ fn of_motion(hull: &WaveHull, samples: &[Sample], axis: usize, draw: u64) -> Err
     let motion = WaveHull::MOTIONS[axis];
     let measured: Vec<f64> = samples.iter().map(|sample| sample.moved[axis]).collect();
     let drawn: Vec<f64> =
-        samples.iter().map(|sample| sample.radar.deviation(hull, motion)).collect();
+        samples.iter().map(|sample| sample.radar.motion_deviation(hull, motion)).collect();
     let mut predicted = vec![[0.0; 3]; samples.len()];
     for fold in 0..FOLDS {
         let of = |k: usize| FOLDS * k / samples.len() == fold;
         let seen: Vec<usize> = (0..samples.len()).filter(|k| !of(*k)).collect();
         let pick = |all: &[f64], kept: &[usize]| kept.iter().map(|k| all[*k]).collect::<Vec<f64>>();
         let learned = |kept: &[usize]| {
-            factor(&pick(&drawn, kept), &pick(&measured, kept)).expect("seas that move it")
+            fit_factor(&pick(&drawn, kept), &pick(&measured, kept)).expect("seas that move it")
         };
-        let balanced = thinned(&pick(&measured, &seen), RARE, 100 * draw + fold as u64);
+        let balanced = balance_samples(&pick(&measured, &seen), RARE, 100 * draw + fold as u64);
         let balanced: Vec<usize> = balanced.into_iter().map(|place| seen[place]).collect();
         let factors = [1.0, learned(&seen), learned(&balanced)];
         (0..samples.len())

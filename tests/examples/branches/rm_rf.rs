@@ -4,12 +4,12 @@
 //! For work: zigzags 15/15 and 25/20, on which window and fade were settled. For judgement: the
 //! paper's own two, the turn with 35 deg of rudder and the zigzag 20/10.
 
-use sistership_learned::{Training, ship, train};
+use sistership_learned::{CorrectionTraining, corrected_ship, train_correction};
 use sistership_model::Model;
-use sistership_model::branch::{BranchMode, Learner, Signal};
+use sistership_model::branch::{CorrectionMode, Learner, Signal};
 use sistership_model::coefficient::Axis;
 use sistership_model::trial::{Channel, Trial};
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 use sistership_simulation::state::{StateVector, at};
 use sistership_simulation::{Ship, Trajectory};
 
@@ -52,10 +52,10 @@ fn alone() -> Vec<(Axis, Vec<Signal>)> {
     [Axis::X, Axis::Y, Axis::N].map(|axis| (axis, vec![U, V, R, Delta])).to_vec()
 }
 
-fn forest(pair: &Pair, window: f64, fade: f64) -> Training {
+fn forest(pair: &Pair, window: f64, fade: f64) -> CorrectionTraining {
     let lengths_s = pair.truth.lpp_m() / pair.truth.approach_speed_m_s();
-    Training {
-        mode: BranchMode::Parallel,
+    CorrectionTraining {
+        mode: CorrectionMode::Parallel,
         inputs: published(),
         // Trees of Table 1 with a third of the inputs, as Hastie and others 2009, Sec. 15.3.
         learner: Learner::RandomForest { trees: 100, tried: 2, leaf: 5, depth: 20 },
@@ -66,18 +66,18 @@ fn forest(pair: &Pair, window: f64, fade: f64) -> Training {
     }
 }
 
-fn joined(pair: &Pair, trials: &[Trial], training: &Training) -> Ship {
+fn joined(pair: &Pair, trials: &[Trial], training: &CorrectionTraining) -> Ship {
     let trials: Vec<&Trial> = trials.iter().collect();
-    let trained = train(&pair.reference, &pair.law, &trials, training);
+    let trained = train_correction(&pair.reference, &pair.law, &trials, training);
     let (branch, weights) = trained.unwrap_or_else(|error| panic!("{error}"));
     let model = Model { branch: Some(branch), ..pair.reference.clone() };
-    let bytes = weights.bytes().unwrap_or_else(|error| panic!("{error}"));
-    ship(&model, &pair.law, &bytes).unwrap_or_else(|error| panic!("{error}"))
+    let bytes = weights.to_bytes().unwrap_or_else(|error| panic!("{error}"));
+    corrected_ship(&model, &pair.law, &bytes).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A trial simulated.
 fn sailed(ship: &Ship, trial: &Trial) -> Trajectory {
-    let run = replay(ship, trial, &ReplaySettings::default());
+    let run = replay_trial(ship, trial, &ReplaySettings::default());
     let run = run.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(run.stopped, None, "{}", trial.name);
     run.track
@@ -100,7 +100,7 @@ fn track_of(trial: &Trial) -> Trajectory {
 fn scores(trial: &Trial, track: &Trajectory) -> [(f64, f64); 6] {
     std::array::from_fn(|k| {
         let measured = trial.channel(CHANNELS[k]).unwrap_or_default();
-        let found = track.column(PLACES[k]);
+        let found = track.state_column(PLACES[k]);
         let count = measured.len() as f64;
         let square: f64 = measured.iter().zip(&found).map(|(a, b)| (a - b).powi(2)).sum();
         let most = measured.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
@@ -153,7 +153,8 @@ pub fn run() {
     let reference = Ship::new(&pair.reference, &pair.law).unwrap_or_else(|error| panic!("{error}"));
     settle(&pair, &trials, &reference);
     let hybrid = forest(&pair, WINDOW, FADE);
-    let bare = Training { mode: BranchMode::Convert, inputs: alone(), ..hybrid.clone() };
+    let bare =
+        CorrectionTraining { mode: CorrectionMode::Convert, inputs: alone(), ..hybrid.clone() };
     let ships = [reference, joined(&pair, &trials, &bare), joined(&pair, &trials, &hybrid)];
     for (order, printed) in JUDGED.into_iter().zip(PRINTED) {
         judge(&pair, &ships, order, &printed);

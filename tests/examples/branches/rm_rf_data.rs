@@ -9,11 +9,11 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
-use sistership_priors::similarity::Definition;
-use sistership_priors::source::similar;
-use sistership_priors::transfer::{Approach, transfer};
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_simulation::state::{RECORDED, Trajectory, at};
+use sistership_priors::similarity::VectorDefinition;
+use sistership_priors::source::rank_similar;
+use sistership_priors::transfer::{TrialApproach, transfer_model};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
+use sistership_simulation::state::{RECORDED_CHANNELS, Trajectory, at};
 use sistership_simulation::{Ship, metrics};
 
 /// The ship and the four among which the paper chooses its reference model.
@@ -38,18 +38,18 @@ pub struct Pair {
 
 impl Pair {
     pub fn new() -> Self {
-        let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-        let own = zoo.model(TARGET).unwrap_or_else(|error| panic!("{error}"));
+        let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
+        let own = zoo.find_model(TARGET).unwrap_or_else(|error| panic!("{error}"));
         let truth = Ship::new(&own, zoo.law(&own.law).expect("its law"))
             .unwrap_or_else(|error| panic!("{error}"));
         let target = zoo.vessel(TARGET).expect("in the zoo");
         let name = most_similar(&zoo);
-        let source = zoo.model(&name).unwrap_or_else(|error| panic!("{error}"));
+        let source = zoo.find_model(&name).unwrap_or_else(|error| panic!("{error}"));
         let law = Law::clone(zoo.law(&source.law).expect("its law"));
         let speed_m_s = truth.approach_speed_m_s();
         // Without revolutions they are its source's by Froude's law.
-        let approach = Approach { speed_m_s, n_rps: None };
-        let reference = transfer(&source, &law, target, Some(approach));
+        let approach = TrialApproach { speed_m_s, n_rps: None };
+        let reference = transfer_model(&source, &law, target, Some(approach));
         Self { truth, reference, law, speed_m_s }
     }
 
@@ -57,8 +57,10 @@ impl Pair {
     pub fn sailed(&self, (rudder, switch): Order) -> Trial {
         let settings = ManoeuvreSettings { duration_s: Some(1400.0), ..Default::default() };
         let track = match switch {
-            Some(switch) => zigzag(&self.truth, rudder, switch, &settings).map(|z| z.track),
-            None => turn(&self.truth, rudder, &settings).map(|t| t.track),
+            Some(switch) => {
+                simulate_zigzag(&self.truth, rudder, switch, &settings).map(|z| z.track)
+            }
+            None => simulate_turn(&self.truth, rudder, &settings).map(|t| t.track),
         };
         let track = track.unwrap_or_else(|stopped| panic!("{stopped}"));
         self.recorded(&format!("{rudder}/{switch:?}"), &track)
@@ -66,9 +68,9 @@ impl Pair {
 
     fn recorded(&self, name: &str, track: &Trajectory) -> Trial {
         let thin = |column: Vec<f64>| column.into_iter().step_by(10).collect::<Vec<f64>>();
-        let columns = RECORDED[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
+        let columns = RECORDED_CHANNELS[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
         let mut channels: BTreeMap<Channel, Vec<f64>> =
-            columns.map(|&(channel, place)| (channel, thin(track.column(place)))).collect();
+            columns.map(|&(channel, place)| (channel, thin(track.state_column(place)))).collect();
         // The reference model runs at its own revolutions: the paper's Eq. 6 knows speeds alone.
         let n_rps = self.reference.revolutions_rps.unwrap_or_default();
         channels.insert(Channel::N, vec![n_rps; channels[&Channel::U].len()]);
@@ -94,7 +96,7 @@ impl Pair {
 /// The most similar of the paper's four by Eqs. 4 and 5; prints its Table 6 beside ours.
 fn most_similar(zoo: &Zoo) -> String {
     let target = zoo.vessel(TARGET).expect("in the zoo");
-    let ranking = similar(zoo, target, Some(Definition::Mei2019), &[]).ranking;
+    let ranking = rank_similar(zoo, target, Some(VectorDefinition::Mei2019), &[]).ranking;
     println!("correlation with {TARGET} (Mei, Table 6: printed, here)");
     let mut best = (f64::NEG_INFINITY, String::new());
     for (name, printed) in CANDIDATES {
@@ -110,7 +112,7 @@ fn most_similar(zoo: &Zoo) -> String {
 
 /// Advance and tactical diameter by the length.
 pub fn turning(track: &Trajectory, rudder_deg: f64, lpp_m: f64) -> [f64; 2] {
-    let metrics = metrics::TurningMetrics::of(track, rudder_deg);
+    let metrics = metrics::TurningMetrics::from_track(track, rudder_deg);
     let of = |value: Option<f64>| value.map_or(f64::NAN, |metres| metres / lpp_m);
     metrics.map_or([f64::NAN; 2], |m| [of(m.advance_m), of(m.tactical_diameter_m)])
 }

@@ -6,11 +6,12 @@
 //! narrower than the paper's 200 neurons and see fewer epochs, for a computer without a GPU.
 
 use sistership_learned::recurrent::{
-    Cell, Fit, Loss, Memory, Motion, SequenceTraining, Shape, fit,
+    LossKind, NetworkMemory, NetworkShape, RecordedMotion, RecurrentCell, SequenceTraining,
+    TrainedNetwork, train_network,
 };
 use sistership_model::{Trial, Zoo};
 use sistership_simulation::Ship;
-use sistership_simulation::plant::Work;
+use sistership_simulation::plant::PlantWorkspace;
 use sistership_simulation::recorded::instants_along;
 use sistership_simulation::state::{StateVector, at};
 
@@ -65,9 +66,14 @@ fn is_of(trial: &Trial, names: &[&str]) -> bool {
     names.iter().any(|name| trial.name.contains(&format!("{name}.csv")))
 }
 
-fn training(memory: Memory, loss: Loss, cell: Cell, epochs: usize) -> SequenceTraining {
+fn training(
+    memory: NetworkMemory,
+    loss: LossKind,
+    cell: RecurrentCell,
+    epochs: usize,
+) -> SequenceTraining {
     SequenceTraining {
-        shape: Shape { cell, memory, inputs: 0, width: WIDTH, outputs: 3 },
+        shape: NetworkShape { cell, memory, inputs: 0, width: WIDTH, outputs: 3 },
         loss,
         steps: STEPS,
         hop: STEPS,
@@ -79,16 +85,22 @@ fn training(memory: Memory, loss: Loss, cell: Cell, epochs: usize) -> SequenceTr
 }
 
 /// Motions of trials, with what a law gives along them.
-fn motions(trials: &[&Trial], ship: Option<&Ship>) -> Vec<Motion> {
+fn motions(trials: &[&Trial], ship: Option<&Ship>) -> Vec<RecordedMotion> {
     let of = |trial: &&Trial| {
         let instants = ship.map(|ship| instants_along(ship, trial).expect("every channel"));
-        Motion::parts(trial, instants.as_deref()).expect("every channel, and numbers")
+        RecordedMotion::from_trial(trial, instants.as_deref()).expect("every channel, and numbers")
     };
     trials.iter().flat_map(of).collect()
 }
 
 /// What a law gives at a sample and simulated velocities.
-fn rate(ship: &Ship, motion: &Motion, k: usize, [u, v, r]: &[f64; 3], work: &mut Work) -> [f64; 3] {
+fn rate(
+    ship: &Ship,
+    motion: &RecordedMotion,
+    k: usize,
+    [u, v, r]: &[f64; 3],
+    work: &mut PlantWorkspace,
+) -> [f64; 3] {
     let [delta, n, ..] = motion.known[k][..] else { return [0.0; 3] };
     let mut state = StateVector::zeros();
     (state[at::U], state[at::V], state[at::R], state[at::DELTA]) = (*u, *v, *r, delta);
@@ -100,8 +112,13 @@ fn rate(ship: &Ship, motion: &Motion, k: usize, [u, v, r]: &[f64; 3], work: &mut
 type Deviations = [[f64; 3]; 2];
 
 /// Eq. 26: simulated anew every 100 s; and the number of samples.
-fn score(fit: &Fit, ship: Option<&Ship>, test: &[Motion], deviations: &Deviations) -> (f64, u32) {
-    let (mut sum, mut count, mut work) = (0.0, 0, Work::default());
+fn score(
+    fit: &TrainedNetwork,
+    ship: Option<&Ship>,
+    test: &[RecordedMotion],
+    deviations: &Deviations,
+) -> (f64, u32) {
+    let (mut sum, mut count, mut work) = (0.0, 0, PlantWorkspace::default());
     for motion in test {
         let length = (RESTART_S / motion.interval_s) as usize;
         for start in (0..motion.len()).step_by(length) {
@@ -109,7 +126,9 @@ fn score(fit: &Fit, ship: Option<&Ship>, test: &[Motion], deviations: &Deviation
             let mut law = |k: usize, velocities: &[f64; 3]| {
                 ship.map_or([0.0; 3], |ship| rate(ship, motion, k, velocities, &mut work))
             };
-            for (k, (p, v)) in fit.sail(motion, own, MEMORY, &mut law).into_iter().enumerate() {
+            for (k, (p, v)) in
+                fit.simulate_motion(motion, own, MEMORY, &mut law).into_iter().enumerate()
+            {
                 let there = start + k;
                 let off = |a: &[f64; 3], b: &[f64; 3], d: &[f64; 3]| -> f64 {
                     (0..3).map(|axis| ((a[axis] - b[axis]) / d[axis]).powi(2)).sum()
@@ -123,26 +142,26 @@ fn score(fit: &Fit, ship: Option<&Ship>, test: &[Motion], deviations: &Deviation
     (sum / f64::from(count), count)
 }
 
-fn deviations(test: &[Motion]) -> Deviations {
-    let scales = sistership_learned::recurrent::Scales::of(test);
+fn deviations(test: &[RecordedMotion]) -> Deviations {
+    let scales = sistership_learned::recurrent::MotionScales::from_motions(test);
     [scales.positions, scales.velocities]
 }
 
 /// A network, and what stands beside it.
 struct Entrant<'a> {
     name: &'a str,
-    fit: Fit,
+    fit: TrainedNetwork,
     ship: Option<&'a Ship>,
 }
 
 /// Its name, what it is trained on, its memory, loss and cells, and whether it stands beside the
 /// law.
-type Plan<'a> = (&'a str, &'a [&'a Trial], Memory, Loss, Cell, bool);
+type Plan<'a> = (&'a str, &'a [&'a Trial], NetworkMemory, LossKind, RecurrentCell, bool);
 
 /// `wanted` are some of the plans by name; none are all.
 pub fn run(epochs: usize, wanted: &[String]) {
     let Some(trials) = trials() else { return };
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let names = TEST.map(|(name, _)| name);
     let of = |wanted: &dyn Fn(&Trial) -> bool| -> Vec<&Trial> {
         trials.iter().filter(|trial| wanted(trial)).collect()
@@ -154,17 +173,17 @@ pub fn run(epochs: usize, wanted: &[String]) {
     );
     let model = refined(&zoo, &all);
     let ship = Ship::new(&model, law(&zoo)).unwrap_or_else(|error| panic!("{error}"));
-    let (short, long) = (Memory::Steps(MEMORY), Memory::All);
+    let (short, long) = (NetworkMemory::Steps(MEMORY), NetworkMemory::All);
     let plans: [Plan<'_>; 9] = [
-        ("law alone", &[], short, Loss::States, Cell::Rnn, true),
-        ("Type-1", &all, short, Loss::States, Cell::Rnn, false),
-        ("Type-2", &all, long, Loss::States, Cell::Rnn, false),
-        ("Type-3", &all, short, Loss::Accelerations, Cell::Rnn, false),
-        ("Type-4", &tzb, short, Loss::States, Cell::Rnn, false),
-        ("Type-5", &tzrb, short, Loss::States, Cell::Rnn, false),
-        ("Type-2 on TZRB", &tzrb, long, Loss::States, Cell::Rnn, false),
-        ("LSTM", &all, short, Loss::States, Cell::Lstm, false),
-        ("law, Type-1", &all, short, Loss::States, Cell::Rnn, true),
+        ("law alone", &[], short, LossKind::States, RecurrentCell::Rnn, true),
+        ("Type-1", &all, short, LossKind::States, RecurrentCell::Rnn, false),
+        ("Type-2", &all, long, LossKind::States, RecurrentCell::Rnn, false),
+        ("Type-3", &all, short, LossKind::Accelerations, RecurrentCell::Rnn, false),
+        ("Type-4", &tzb, short, LossKind::States, RecurrentCell::Rnn, false),
+        ("Type-5", &tzrb, short, LossKind::States, RecurrentCell::Rnn, false),
+        ("Type-2 on TZRB", &tzrb, long, LossKind::States, RecurrentCell::Rnn, false),
+        ("LSTM", &all, short, LossKind::States, RecurrentCell::Lstm, false),
+        ("law, Type-1", &all, short, LossKind::States, RecurrentCell::Rnn, true),
     ];
     let mut entrants = Vec::new();
     let asked = |name: &str| wanted.is_empty() || wanted.iter().any(|asked| asked == name);
@@ -177,7 +196,7 @@ pub fn run(epochs: usize, wanted: &[String]) {
         let epochs = if seen.is_empty() { 0 } else { epochs };
         let seen = if seen.is_empty() { &tzrb[..] } else { seen };
         let training = training(memory, loss, cell, epochs);
-        let mut fit = fit(&motions(seen, ship), &training).expect("enough samples");
+        let mut fit = train_network(&motions(seen, ship), &training).expect("enough samples");
         if epochs == 0 {
             fit.network.numbers.iter_mut().for_each(|number| *number = 0.0);
         }

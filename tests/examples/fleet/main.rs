@@ -12,8 +12,10 @@ use std::time::{Duration, Instant};
 
 use sistership_api::{Config, Workers};
 use sistership_jobs::Archive;
-use sistership_jobs::fleet::{Asked, PriorChoice, Rule, Standing, learn, order_refinement};
-use sistership_store::{Bulk, MAX_LIMIT, Page, Store};
+use sistership_jobs::fleet::{
+    BulkProgress, BulkRefinementRequest, PriorChoice, Rule, learn_family_prior, order_refinement,
+};
+use sistership_store::{FamilyRefinement, MAX_LIMIT, PageRequest, Store};
 use sistership_tests::fleet::{FOUNDATION, Yard, name};
 
 const TRIALS: usize = 4;
@@ -87,7 +89,7 @@ async fn load(archive: &Archive, ships: usize, families: usize) -> String {
         let (own, members): (String, Vec<String>) =
             (family(number), (number..ships).step_by(families).map(name).collect());
         archive.store.families().create(&own, "Sisters", &foundation.id).await.expect("a family");
-        archive.store.families().add(&own, &members).await.expect("members");
+        archive.store.families().add_members(&own, &members).await.expect("members");
     }
     format!(" ({} trials, {families} families)", ships * TRIALS)
 }
@@ -101,21 +103,27 @@ async fn list(store: &Store, families: usize) -> String {
 }
 
 async fn pages_of(store: &Store, family: &str) -> usize {
-    let (mut page, mut pages) = (Page::first(MAX_LIMIT), 0);
+    let (mut page, mut pages) = (PageRequest::first_page(MAX_LIMIT), 0);
     loop {
-        let list = store.families().members(family, &page).await.expect("members");
+        let list = store.families().list_members(family, &page).await.expect("members");
         pages += 1;
         let Some(next) = list.next else { return pages };
-        page = Page::after(next, MAX_LIMIT);
+        page = PageRequest::after_key(next, MAX_LIMIT);
     }
 }
 
 async fn teach(archive: &Archive, families: usize) -> String {
     let mut said = String::new();
     for number in 0..families {
-        let prior = learn(archive, &family(number), &|_, _| true).await.expect("a prior");
+        let prior =
+            learn_family_prior(archive, &family(number), &|_, _| true).await.expect("a prior");
         let document = serde_json::to_string(&prior).expect("a document");
-        archive.store.families().teach(&family(number), &document).await.expect("a kept prior");
+        archive
+            .store
+            .families()
+            .insert_prior(&family(number), &document)
+            .await
+            .expect("a kept prior");
         said = format!(" ({} steps, design effect {:.1})", prior.steps, prior.design_effect);
     }
     said
@@ -123,7 +131,11 @@ async fn teach(archive: &Archive, families: usize) -> String {
 
 /// All families at once, one bulk job each.
 async fn refine(store: &Store, families: usize, prior: PriorChoice) -> String {
-    let asked = Asked { prior, rule: Rule { no_worse_than: Some(0.02) }, ..Asked::default() };
+    let asked = BulkRefinementRequest {
+        prior,
+        rule: Rule { no_worse_than: Some(0.02) },
+        ..BulkRefinementRequest::default()
+    };
     let mut bulks = Vec::new();
     for number in 0..families {
         bulks.push(order_refinement(store, &family(number), &asked).await.expect("a refinement"));
@@ -137,9 +149,9 @@ async fn refine(store: &Store, families: usize, prior: PriorChoice) -> String {
     last
 }
 
-async fn until_done(store: &Store, bulk: &Bulk) -> Standing {
+async fn until_done(store: &Store, bulk: &FamilyRefinement) -> BulkProgress {
     loop {
-        let standing = Standing::of(store, bulk).await.expect("its standing");
+        let standing = BulkProgress::read_current(store, bulk).await.expect("its standing");
         if !matches!(standing.state, "queued" | "running") {
             return standing;
         }

@@ -18,13 +18,13 @@ const TAG: &str = "own";
 /// Puts the tag on some ships.
 pub async fn tag(archive: &Archive, ships: usize) {
     for ship in (0..ships).step_by(TAGGED) {
-        archive.store.ships().tag(&name(ship), TAG).await.expect("a tag");
+        archive.store.ships().add_tag(&name(ship), TAG).await.expect("a tag");
     }
 }
 
 /// Writes down what ships are found by, as a server does behind each change.
 pub async fn index(archive: &Archive) -> String {
-    search::catch_up(archive).await.expect("facts");
+    search::update_index(archive).await.expect("facts");
     String::new()
 }
 

@@ -9,10 +9,10 @@ use std::time::Instant;
 use rayon::prelude::*;
 use sistership_model::trial::Channel;
 use sistership_model::{Law, Model, Trial};
-use sistership_numerics::cma_es::Spent;
+use sistership_numerics::cma_es::SearchUsage;
 use sistership_simulation::Ship;
 use sistership_simulation::error::SquaredError;
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 
 /// A method with its points.
 type Kept = (String, Vec<Point>);
@@ -34,7 +34,7 @@ pub struct Point {
 pub struct Curve {
     pub method: String,
     pub points: Vec<Point>,
-    spent: Spent,
+    spent: SearchUsage,
     paused_s: f64,
     paused_cpu_s: f64,
     file: std::fs::File,
@@ -53,8 +53,8 @@ pub fn held_out_error(
     ship.set_envelope_speed(2.0);
     let settings = ReplaySettings { restart_s: Some(restart_s), ..ReplaySettings::default() };
     let one = |trial: &Trial| {
-        let run = replay(&ship, trial, &settings).unwrap_or_else(|error| panic!("{error}"));
-        run.stopped.is_none().then(|| SquaredError::of(trial, &run))
+        let run = replay_trial(&ship, trial, &settings).unwrap_or_else(|error| panic!("{error}"));
+        run.stopped.is_none().then(|| SquaredError::from_trial(trial, &run))
     };
     let errors: Option<Vec<SquaredError>> = trials.par_iter().map(one).collect();
     let mut sum = SquaredError::default();
@@ -75,7 +75,7 @@ impl Curve {
         Self {
             method: method.to_owned(),
             points: Vec::new(),
-            spent: Spent::nothing(),
+            spent: SearchUsage::start_now(),
             paused_s: 0.0,
             paused_cpu_s: 0.0,
             file,

@@ -1,7 +1,7 @@
 //! The law that is fitted: Abkowitz-MMG of third order for one screw and one rudder, in four
 //! submodels.
 
-use sistership_model::hybrid::derive;
+use sistership_model::hybrid::derive_law;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Law, Model};
 
@@ -24,7 +24,7 @@ submodels:
 ";
 
 pub fn hybrid() -> Law {
-    derive("hybrid-race.yaml", DECLARATION).unwrap_or_else(|error| panic!("{error}")).law
+    derive_law("hybrid-race.yaml", DECLARATION).unwrap_or_else(|error| panic!("{error}")).law
 }
 
 /// The model with no coefficient but zero. Masses are those of the truth, by the mass of the ship.
@@ -34,7 +34,7 @@ pub fn blank(truth: &Model, law: &Law) -> Model {
     model.name = format!("{}/{}", model.ship, law.name);
     let of = |name: &str| truth.parameters[name].value;
     let value = |name: &str| {
-        sistership_model::particulars::value(&truth.particulars, name)
+        sistership_model::particulars::particular_value(&truth.particulars, name)
             .expect("a particular of the ship")
     };
     let own = value("mass_kg")

@@ -18,7 +18,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use sistership_identification::refine::{
-    CmaEs, Family, Iterate, Method, Request, Settings, refine_watched,
+    CmaEs, EstimationMethod, FitIterate, RefinementSettings, RefinementSpec, TermFamily,
+    refine_watched,
 };
 use sistership_model::{Law, Model, Trial, Vessel, Zoo};
 use sistership_simulation::Method as Integration;
@@ -33,7 +34,7 @@ struct Arguments {
     minutes: f64,
     cpu_minutes: Option<f64>,
     out: String,
-    method: Option<Method>,
+    method: Option<EstimationMethod>,
     search: CmaEs,
 }
 
@@ -47,8 +48,11 @@ fn main() {
         race.duration_s(),
         race.held_out_s()
     );
-    let runs = |method: Method| arguments.method.is_none_or(|only| only == method);
-    for method in [Method::Trajectory, Method::CmaEs].into_iter().filter(|method| runs(*method)) {
+    let runs = |method: EstimationMethod| arguments.method.is_none_or(|only| only == method);
+    for method in [EstimationMethod::Trajectory, EstimationMethod::CmaEs]
+        .into_iter()
+        .filter(|method| runs(*method))
+    {
         race.run(method, &arguments, &folder);
         folder.show();
     }
@@ -76,7 +80,9 @@ fn arguments() -> Arguments {
             "--minutes" => arguments.minutes = number(),
             "--cpu-minutes" => arguments.cpu_minutes = Some(number()),
             "--out" => arguments.out = value,
-            "--method" => arguments.method = Some(Method::by_name(&value).expect("an estimator")),
+            "--method" => {
+                arguments.method = Some(EstimationMethod::by_name(&value).expect("an estimator"))
+            }
             "--seed" => arguments.search.seed = number() as u64,
             "--spread" => arguments.search.spread = number(),
             "--box" => arguments.search.box_width = number(),
@@ -100,9 +106,9 @@ struct Race {
 
 impl Race {
     fn new() -> Self {
-        let zoo = Zoo::embedded().expect("the zoo");
+        let zoo = Zoo::load_embedded().expect("the zoo");
         let vessel = zoo.vessel("kvlcc2-7m").expect("a ship of the zoo").clone();
-        let truth = zoo.model("kvlcc2-7m").expect("a model of the zoo");
+        let truth = zoo.find_model("kvlcc2-7m").expect("a model of the zoo");
         let of_truth = zoo.law(&truth.law).expect("a law of the zoo");
         let law = law::hybrid();
         let trials = truth::trials(&truth, of_truth, 12, 617.0, 1);
@@ -118,12 +124,12 @@ impl Race {
         self.held_out.iter().map(Trial::duration_s).sum()
     }
 
-    fn run(&self, method: Method, arguments: &Arguments, folder: &Folder) {
+    fn run(&self, method: EstimationMethod, arguments: &Arguments, folder: &Folder) {
         let training: Vec<&Trial> = self.trials.iter().collect();
         let deviations = standard_deviations(&training);
         let curve = Mutex::new(Curve::new(method.name(), folder));
         let settings = settings(method, arguments);
-        let request = Request {
+        let request = RefinementSpec {
             target: &self.vessel,
             source: &self.blank,
             source_law: None,
@@ -132,7 +138,7 @@ impl Race {
             population: &[],
             settings: &settings,
         };
-        let look = |glimpse: &Iterate<'_>| {
+        let look = |glimpse: &FitIterate<'_>| {
             let error = || {
                 held_out_error(
                     &(glimpse.model)(),
@@ -145,7 +151,7 @@ impl Race {
             curve.lock().expect("a curve").see(
                 glimpse.evaluations,
                 glimpse.objective,
-                method == Method::Trajectory,
+                method == EstimationMethod::Trajectory,
                 &error,
             );
         };
@@ -192,20 +198,20 @@ fn chosen(options: &[sistership_identification::refine::StepOption]) -> &str {
     options.iter().find(|option| option.chosen).map_or("nothing", |option| option.step.as_str())
 }
 
-fn settings(method: Method, arguments: &Arguments) -> Settings {
+fn settings(method: EstimationMethod, arguments: &Arguments) -> RefinementSettings {
     let search = CmaEs {
         evaluations: usize::MAX,
         wall_s: Some(60.0 * arguments.minutes),
         cpu_s: arguments.cpu_minutes.map(|m| 60.0 * m),
         ..arguments.search.clone()
     };
-    let cma_es = (method == Method::CmaEs).then_some(search);
-    Settings {
+    let cma_es = (method == EstimationMethod::CmaEs).then_some(search);
+    RefinementSettings {
         method,
-        families: vec![Family::Own],
+        families: vec![TermFamily::Own],
         restart_s: Some(SUBSEQUENCE_S),
         folds: 4,
         cma_es,
-        ..Settings::default()
+        ..RefinementSettings::default()
     }
 }

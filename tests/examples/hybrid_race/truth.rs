@@ -7,8 +7,10 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model};
-use sistership_simulation::state::{RECORDED, StateVector, Trajectory, at, straight};
-use sistership_simulation::{Method, Order, Ship};
+use sistership_simulation::state::{
+    RECORDED_CHANNELS, StateVector, Trajectory, at, straight_state,
+};
+use sistership_simulation::{HelmOrder, Method, Ship};
 use sistership_tests::synthetic::replica;
 
 const STEP_S: f64 = 0.1;
@@ -30,11 +32,11 @@ pub fn trials(model: &Model, law: &Law, count: usize, duration_s: f64, seed: u64
 
 fn trial(ship: &Ship, name: &str, duration_s: f64, rng: &mut ChaCha12Rng) -> Trial {
     let approach_n = ship.revolutions_at(ship.approach_speed_m_s());
-    let mut state = straight(rng.random_range(0.5..1.0) * ship.approach_speed_m_s());
-    let mut order = Order { delta_rad: 0.0, n_rps: 0.8 * approach_n };
+    let mut state = straight_state(rng.random_range(0.5..1.0) * ship.approach_speed_m_s());
+    let mut order = HelmOrder { delta_rad: 0.0, n_rps: 0.8 * approach_n };
     let (mut n_rps, mut until) = (order.n_rps, [0.0; 2]);
     let mut track = Trajectory::default();
-    let mut work = sistership_simulation::plant::Work::default();
+    let mut work = sistership_simulation::plant::PlantWorkspace::default();
     for k in 0..=(duration_s / STEP_S) as usize {
         let t_s = k as f64 * STEP_S;
         if t_s >= until[0] {
@@ -48,21 +50,24 @@ fn trial(ship: &Ship, name: &str, duration_s: f64, rng: &mut ChaCha12Rng) -> Tri
         // The engine follows its order in some seconds.
         n_rps += STEP_S / 3.0 * (order.n_rps - n_rps);
         track.push(t_s, state, n_rps);
-        let now = Order { n_rps, ..order };
-        state = Method::Rk4.step(&state, STEP_S, |_, s| ship.rate_under(s, now, STEP_S, &mut work));
-        ship.envelope().check(t_s, &state).unwrap_or_else(|stopped| panic!("{name}: {stopped}"));
+        let now = HelmOrder { n_rps, ..order };
+        state = Method::Rk4
+            .advance_state(&state, STEP_S, |_, s| ship.rate_under(s, now, STEP_S, &mut work));
+        ship.envelope()
+            .check_state(t_s, &state)
+            .unwrap_or_else(|stopped| panic!("{name}: {stopped}"));
     }
     measured(name, &track, rng)
 }
 
 fn measured(name: &str, track: &Trajectory, rng: &mut ChaCha12Rng) -> Trial {
     let mut channels: BTreeMap<Channel, Vec<f64>> = BTreeMap::new();
-    for (&(channel, place), noise) in RECORDED[..6].iter().zip(NOISE) {
+    for (&(channel, place), noise) in RECORDED_CHANNELS[..6].iter().zip(NOISE) {
         let mut noisy =
             |state: &StateVector| state[place] + noise * rng.sample::<f64, _>(StandardNormal);
         channels.insert(channel, track.states.iter().map(&mut noisy).collect());
     }
-    channels.insert(Channel::Delta, track.column(at::DELTA));
+    channels.insert(Channel::Delta, track.state_column(at::DELTA));
     channels.insert(Channel::N, track.n_rps.clone());
     Trial { name: name.to_owned(), t_s: track.t_s.clone(), channels, ..Trial::default() }
 }

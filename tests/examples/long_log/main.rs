@@ -17,8 +17,8 @@ use serde_json::Value;
 use sistership_model::Trial;
 use sistership_tests::voyage::{Order, Sailed, Voyage, write_csv};
 use sistership_trials::samples::{to_csv, write_parquet};
-use sistership_trials::segmentation::{Finder, Sample};
-use sistership_trials::{Mapping, Steering, scan};
+use sistership_trials::segmentation::{LogSample, SegmentFinder};
+use sistership_trials::{Mapping, SteeringSample, scan_file};
 
 const ROWS: usize = 10_000_000;
 /// Rows to half a second.
@@ -112,7 +112,7 @@ fn in_process(path: &Path) {
     let mapping = mapping(path);
     let mut kept = Vec::new();
     let (mut count, began) = (0_u64, thread_s());
-    let read = scan(path, &mapping, |steering: &Steering| {
+    let read = scan_file(path, &mapping, |steering: &SteeringSample| {
         count += 1;
         if kept.len() < 1_000_000 {
             kept.push(sample(steering));
@@ -121,7 +121,7 @@ fn in_process(path: &Path) {
     read.expect("the log is read");
     let rate = |rows: f64, began: f64| rows / (thread_s() - began) / 1e6;
     println!("reading alone: {:.2} million rows a second and core", rate(count as f64, began));
-    let (mut finder, began) = (Finder::new(Some(175.0)), thread_s());
+    let (mut finder, began) = (SegmentFinder::new(Some(175.0)), thread_s());
     kept.iter().for_each(|sample| finder.push(sample));
     println!("finding alone: {:.1} million rows a second and core", rate(kept.len() as f64, began));
     assert!(finder.finish().is_ok_and(|found| found.rows == kept.len() as u64));
@@ -129,12 +129,12 @@ fn in_process(path: &Path) {
 
 /// The columns of the log as `import` proposes them.
 fn mapping(path: &Path) -> Mapping {
-    let proposal = sistership_trials::propose("voyager", &[path]).expect("a manifest");
-    proposal.manifest.mapping(&proposal.manifest.manifest.trials[0])
+    let proposal = sistership_trials::propose_manifest("voyager", &[path]).expect("a manifest");
+    proposal.manifest.trial_mapping(&proposal.manifest.manifest.trials[0])
 }
 
-fn sample(steering: &Steering) -> Sample {
-    Sample {
+fn sample(steering: &SteeringSample) -> LogSample {
+    LogSample {
         t_s: steering.t_s,
         rudder_rad: steering.rudder_rad,
         revolutions_rps: steering.revolutions_rps,

@@ -30,7 +30,7 @@ const RISE: f64 = 1.03;
 
 /// Prints the rise of the error.
 pub fn run(program: &Program, arguments: &Arguments) {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let models = drawn(&zoo, arguments.seed);
     let ships = yard::each(arguments, |seed, ship| {
         let data = synthetic(ship, TRIALS, seed);
@@ -64,7 +64,7 @@ pub fn run(program: &Program, arguments: &Arguments) {
 /// Models of the zoo with every coefficient scattered, each of which sails the standard manoeuvres.
 fn drawn(zoo: &Zoo, seed: u64) -> Vec<Model> {
     let published: Vec<Model> =
-        zoo.vessels().filter_map(|vessel| zoo.published(vessel, None).ok()).collect();
+        zoo.vessels().filter_map(|vessel| zoo.published_model(vessel, None).ok()).collect();
     let one = |k: usize| {
         let model = &published[k % published.len()];
         let law = zoo.law(&model.law).expect("the law of a zoo model");

@@ -129,7 +129,8 @@ fn explicit(data: &DataSet) -> Vec<Call> {
     let mut calls = Vec::new();
     let sources: Vec<Option<String>> = names(data).into_iter().map(Some).chain([None]).collect();
     for source in sources {
-        let own = source.as_ref().and_then(|name| data.zoo.model(name).ok()).map(|model| model.law);
+        let own =
+            source.as_ref().and_then(|name| data.zoo.find_model(name).ok()).map(|model| model.law);
         let others = laws.iter().filter(|law| Some(*law) != own.as_ref()).cloned().map(Some);
         for law in others.chain(own.as_ref().map(|_| None)) {
             for method in METHODS {

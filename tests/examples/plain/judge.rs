@@ -3,7 +3,7 @@
 use sistership_model::Model;
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::error::{SquaredError, standardised_mse};
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 use sistership_simulation::{Ship, StateVector};
 
 use crate::data::DataSet;
@@ -55,14 +55,14 @@ fn trial_errors(model: &Model, data: &DataSet) -> Result<Vec<SquaredError>, Stri
     ship.set_envelope_speed(data.unseen.iter().map(fastest).fold(0.0, f64::max));
     let settings = ReplaySettings { restart_s: Some(data.restart_s), ..ReplaySettings::default() };
     let errors = data.unseen.iter().map(|trial| {
-        let run = replay(&ship, trial, &settings).map_err(|error| error.to_string())?;
+        let run = replay_trial(&ship, trial, &settings).map_err(|error| error.to_string())?;
         if let Some(stopped) = run.stopped {
             return Err(format!("{}: {stopped}", trial.name));
         }
         if !run.track.states.iter().all(|state: &StateVector| state.iter().all(|x| x.is_finite())) {
             return Err(format!("{}: not a number", trial.name));
         }
-        Ok(SquaredError::of(trial, &run))
+        Ok(SquaredError::from_trial(trial, &run))
     });
     errors.collect()
 }

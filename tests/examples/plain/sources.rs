@@ -1,7 +1,7 @@
 //! Sources as they are, not refined.
 
 use sistership_model::Model;
-use sistership_priors::transfer::{approach_of, transfer};
+use sistership_priors::transfer::{transfer_model, trial_approach};
 
 use crate::data::DataSet;
 use crate::judge::judge;
@@ -19,7 +19,7 @@ pub struct Unrefined {
 /// The unrefined sources of a data set.
 pub fn unrefined(program: &Program, data: &DataSet) -> Unrefined {
     let error = |name: &String| {
-        let model = data.zoo.model(name).ok()?;
+        let model = data.zoo.find_model(name).ok()?;
         judge(&transferred(&model, data)?, data).ok().map(|judged| judged.error)
     };
     let errors: Vec<f64> = names(data).iter().filter_map(error).collect();
@@ -29,7 +29,8 @@ pub fn unrefined(program: &Program, data: &DataSet) -> Unrefined {
 
 /// The models of the zoo, that of the ship itself left out.
 pub fn names(data: &DataSet) -> Vec<String> {
-    let published = data.zoo.vessels().filter_map(|vessel| data.zoo.published(vessel, None).ok());
+    let published =
+        data.zoo.vessels().filter_map(|vessel| data.zoo.published_model(vessel, None).ok());
     published.map(|model| model.name).filter(|name| !data.is_own(name)).collect()
 }
 
@@ -40,8 +41,8 @@ fn transferred(source: &Model, data: &DataSet) -> Option<Model> {
         Some(text) => std::sync::Arc::new(sistership_model::Vessel::parse("ship", &text).ok()?),
         None => data.zoo.vessel(&data.ship)?.clone(),
     };
-    let approach = approach_of(&data.seen.iter().collect::<Vec<_>>());
-    Some(transfer(source, law, &vessel, approach))
+    let approach = trial_approach(&data.seen.iter().collect::<Vec<_>>());
+    Some(transfer_model(source, law, &vessel, approach))
 }
 
 /// The model that the program's own ranking has first among the eligible.

@@ -11,10 +11,10 @@ mod speeds;
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
-use sistership_identification::refine::Settings;
+use sistership_identification::refine::RefinementSettings;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Zoo};
-use sistership_model_selection::{Asked, best_start};
+use sistership_model_selection::{StartRequest, best_start};
 use sistership_simulation::Ship;
 
 use ships::{Stranger, of_truth, of_zoo};
@@ -34,7 +34,7 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let has = |word: &str| arguments.iter().any(|argument| argument == word);
     let most = arguments.iter().find_map(|word| word.parse().ok()).unwrap_or(usize::MAX);
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let mut all: Vec<Stranger> = Vec::new();
     if !has("truth") {
         all.extend(of_zoo(&zoo).into_iter().take(most));
@@ -54,8 +54,8 @@ fn main() {
 
 fn row(zoo: &Zoo, stranger: &Stranger) -> Result<Row, String> {
     let trials: Vec<&Trial> = stranger.trials.iter().collect();
-    let (champions, settings) = (BTreeMap::new(), Settings::default());
-    let asked = Asked {
+    let (champions, settings) = (BTreeMap::new(), RefinementSettings::default());
+    let asked = StartRequest {
         zoo,
         target: &stranger.vessel,
         champions: &champions,

@@ -36,7 +36,7 @@ pub fn of_zoo(zoo: &Zoo) -> Vec<Stranger> {
 }
 
 fn of_vessel(zoo: &Zoo, vessel: &Vessel) -> Option<Stranger> {
-    let model = zoo.published(vessel, None).ok()?;
+    let model = zoo.published_model(vessel, None).ok()?;
     let ship = Ship::new(&model, zoo.law(&model.law)?).ok()?;
     let trouble = Trouble { gusts: 0.0, scatter: 0.0, angles_deg: 0.0, ..Trouble::default() };
     let zigzags = ZIGZAGS.map(|angle| (Orders::Zigzag(angle, angle.abs()), 25.0));

@@ -1,7 +1,7 @@
 //! Where a ship is after her propeller was stopped or reversed.
 
-use sistership_simulation::state::{StateVector, Trajectory, at, straight};
-use sistership_simulation::{Method, Order, Run, Ship};
+use sistership_simulation::state::{StateVector, Trajectory, at, straight_state};
+use sistership_simulation::{HelmOrder, Method, RunSettings, Ship};
 use sistership_tests::truth::motion::{Truth, sail_from};
 
 /// Speeds by that of the approach, so many times after the order as the ship sails its length in;
@@ -24,15 +24,15 @@ pub fn of_model(ship: &Ship) -> Speeds {
     let speed = ship.approach_speed_m_s();
     let length_s = ship.lpp_m() / speed;
     let last = |start: f64, turns: f64| {
-        let order = Order { delta_rad: 0.0, n_rps: turns * ship.revolutions_at(speed) };
-        let run = Run {
-            start: straight(start * speed),
+        let order = HelmOrder { delta_rad: 0.0, n_rps: turns * ship.revolutions_at(speed) };
+        let run = RunSettings {
+            start: straight_state(start * speed),
             duration_s: LENGTHS * length_s,
             step_s: 0.05 * length_s,
             method: Method::Rk4,
         };
         let mut track = Trajectory::default();
-        ship.sail(run, &mut track, |_, _| Some(order)).ok()?;
+        ship.simulate_orders(run, &mut track, |_, _| Some(order)).ok()?;
         track.states.last().map(|state| state[at::U] / speed)
     };
     Speeds { stopped: last(1.0, 0.0), reversed: last(1.0, -1.0), astern: last(0.0, -1.0) }
@@ -43,7 +43,7 @@ pub fn of_truth(ship: &dyn Truth) -> Speeds {
     let size = ship.dimensions();
     let still = |_: f64, _: &StateVector| 0.0;
     let track =
-        sail_from(ship, straight(size.speed_m_s), LENGTHS * size.length_time_s(), 0.0, still);
+        sail_from(ship, straight_state(size.speed_m_s), LENGTHS * size.length_time_s(), 0.0, still);
     let stopped = track.states.last().map(|state| state[at::U] / size.speed_m_s);
     Speeds { stopped, reversed: None, astern: None }
 }

@@ -2,7 +2,7 @@
 
 use sistership_model::{Model, Zoo};
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, standard};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_standard_manoeuvres};
 
 /// Tactical diameter in ship lengths and first overshoots at 10/10 and 20/20 in deg, to starboard.
 #[derive(Debug, Clone, Copy)]
@@ -37,7 +37,10 @@ impl Figures {
 pub fn sailed(zoo: &Zoo, model: &Model) -> Option<Figures> {
     let ship = Ship::new(model, zoo.law(&model.law)?).ok()?;
     let settings = ManoeuvreSettings { reversals_within_steps: true, ..Default::default() };
-    let all = standard(&ship, &ManoeuvreSettings { step_s: Some(step(&ship)), ..settings });
+    let all = simulate_standard_manoeuvres(
+        &ship,
+        &ManoeuvreSettings { step_s: Some(step(&ship)), ..settings },
+    );
     let turn = all.turns.iter().find(|turn| turn.rudder_deg > 0.0);
     let zigzag = |rudder: f64| {
         let zigzag = all.zigzags.iter().find(|zigzag| zigzag.rudder_deg == rudder);

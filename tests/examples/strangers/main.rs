@@ -16,10 +16,10 @@ mod with_trials;
 
 use std::sync::Arc;
 
-use sistership_model::categories::comparable;
+use sistership_model::categories::are_comparable;
 use sistership_model::{Model, Vessel, Zoo};
-use sistership_priors::estimates::{LAW, Library, estimate};
-use sistership_priors::transfer::transfer;
+use sistership_priors::estimates::{LAW, RegressionLibrary, estimate_ship};
+use sistership_priors::transfer::transfer_model;
 
 use figures::{Figures, error, sailed};
 use sailing::Strangers;
@@ -60,11 +60,12 @@ fn drawn() -> Strangers {
 }
 
 fn particulars_alone() {
-    let (zoo, library) = (Zoo::embedded().unwrap(), Library::embedded().unwrap());
+    let (zoo, library) =
+        (Zoo::load_embedded().unwrap(), RegressionLibrary::parse_embedded().unwrap());
     let ships: Vec<(Arc<Vessel>, Model)> = zoo
         .vessels()
         .filter(|vessel| !vessel.file.models.is_empty())
-        .map(|vessel| (Arc::clone(vessel), zoo.published(vessel, None).unwrap()))
+        .map(|vessel| (Arc::clone(vessel), zoo.published_model(vessel, None).unwrap()))
         .collect();
     let strangers: Vec<Stranger> =
         ships.iter().filter_map(|one| stranger(&zoo, &library, &ships, one)).collect();
@@ -80,7 +81,7 @@ fn particulars_alone() {
 
 fn stranger(
     zoo: &Zoo,
-    library: &Library,
+    library: &RegressionLibrary,
     ships: &[(Arc<Vessel>, Model)],
     (target, model): &(Arc<Vessel>, Model),
 ) -> Option<Stranger> {
@@ -91,10 +92,10 @@ fn stranger(
     let others = ships.iter().filter(|(vessel, _)| !kin(vessel.name(), target.name()));
     let candidates = others.filter_map(|(vessel, source)| {
         let law = zoo.law(&source.law)?;
-        let figures = sailed(zoo, &transfer(source, law, &bare, None))?;
+        let figures = sailed(zoo, &transfer_model(source, law, &bare, None))?;
         Some(Candidate {
             ship: vessel.name().to_owned(),
-            group: comparable(&vessel.file.category, &target.file.category),
+            group: are_comparable(&vessel.file.category, &target.file.category),
             error: error(&figures, &own),
             figures,
             likeness: likeness(target, vessel),
@@ -103,7 +104,7 @@ fn stranger(
     let candidates: Vec<Candidate> = candidates.collect();
     let law = zoo.law(LAW)?;
     let speed = model.speed_m_s?;
-    let estimated = estimate(library, &bare, law, speed).ok();
+    let estimated = estimate_ship(library, &bare, law, speed).ok();
     let estimated = estimated.and_then(|estimated| sailed(zoo, &estimated.model));
     Some(Stranger { ship: target.name().to_owned(), own, candidates, estimated })
 }

@@ -2,11 +2,13 @@
 //! mixture's weights are learned from.
 
 use sistership_model::{Model, Vessel, Zoo};
-use sistership_priors::estimates::{LAW, Library, estimate};
-use sistership_priors::transfer::transfer;
+use sistership_priors::estimates::{LAW, RegressionLibrary, estimate_ship};
+use sistership_priors::transfer::transfer_model;
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, STANDARD, sail_together};
-use sistership_simulation::plant::Work;
+use sistership_simulation::manoeuvre::{
+    ManoeuvreSettings, STANDARD_MANOEUVRES, simulate_manoeuvre_batch,
+};
+use sistership_simulation::plant::PlantWorkspace;
 use sistership_simulation::state::{StateVector, at};
 
 use crate::ships::{bare, is_for_work, kin, likeness};
@@ -25,7 +27,8 @@ pub struct Errors(pub [[f64; 3]; 3]);
 
 /// Prints the errors of every ship, and their medians over those for work and for judgement.
 pub fn run() {
-    let (zoo, library) = (Zoo::embedded().unwrap(), Library::embedded().unwrap());
+    let (zoo, library) =
+        (Zoo::load_embedded().unwrap(), RegressionLibrary::parse_embedded().unwrap());
     println!(
         "| ship | for | source | X: source | estimate | common | Y: source | estimate | common | \
          N: source | estimate | common |"
@@ -54,12 +57,12 @@ fn cells(errors: &[[f64; 3]; 3]) -> String {
     errors.iter().flatten().map(|value| format!("{value:.3}")).collect::<Vec<_>>().join(" | ")
 }
 
-fn of_ship(zoo: &Zoo, library: &Library, vessel: &Vessel) -> Option<(String, Errors)> {
-    let model = zoo.published(vessel, None).ok()?;
+fn of_ship(zoo: &Zoo, library: &RegressionLibrary, vessel: &Vessel) -> Option<(String, Errors)> {
+    let model = zoo.published_model(vessel, None).ok()?;
     let bare = bare(vessel, &model);
     let source = most_alike(zoo, vessel)?;
-    let estimated = estimate(library, &bare, zoo.law(LAW)?, model.speed_m_s?).ok()?;
-    let carried = transfer(&source, zoo.law(&source.law)?, &bare, None);
+    let estimated = estimate_ship(library, &bare, zoo.law(LAW)?, model.speed_m_s?).ok()?;
+    let carried = transfer_model(&source, zoo.law(&source.law)?, &bare, None);
     let ship = |model: &Model| Ship::new(model, zoo.law(&model.law)?).ok();
     let errors = errors(&ship(&model)?, &ship(&carried)?, &ship(&estimated.model)?)?;
     Some((source.ship, errors))
@@ -68,13 +71,13 @@ fn of_ship(zoo: &Zoo, library: &Library, vessel: &Vessel) -> Option<(String, Err
 fn most_alike(zoo: &Zoo, target: &Vessel) -> Option<Model> {
     let others = zoo.vessels().filter(|vessel| {
         !kin(vessel.name(), target.name())
-            && sistership_model::categories::comparable(
+            && sistership_model::categories::are_comparable(
                 &vessel.file.category,
                 &target.file.category,
             )
     });
     let known = others.filter_map(|vessel| {
-        let model = zoo.published(vessel, None).ok()?;
+        let model = zoo.published_model(vessel, None).ok()?;
         Some((likeness(target, vessel)[MEASURE]?, model))
     });
     known.max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, model)| model)
@@ -82,8 +85,8 @@ fn most_alike(zoo: &Zoo, target: &Vessel) -> Option<Model> {
 
 /// Over the ship's own standard manoeuvres; each asked at its own revolutions of straight running.
 fn errors(truth: &Ship, source: &Ship, estimate: &Ship) -> Option<Errors> {
-    let manoeuvres = STANDARD.map(|manoeuvre| (manoeuvre, &[][..]));
-    let sailed = sail_together(truth, &manoeuvres, &ManoeuvreSettings::default());
+    let manoeuvres = STANDARD_MANOEUVRES.map(|manoeuvre| (manoeuvre, &[][..]));
+    let sailed = simulate_manoeuvre_batch(truth, &manoeuvres, &ManoeuvreSettings::default());
     let states: Vec<StateVector> = sailed
         .into_iter()
         .flatten()
@@ -105,9 +108,9 @@ fn errors(truth: &Ship, source: &Ship, estimate: &Ship) -> Option<Errors> {
 
 fn rates(ship: &Ship, truth: &Ship, states: &[StateVector]) -> Vec<StateVector> {
     let n_rps = ship.revolutions_at(truth.approach_speed_m_s());
-    let mut work = Work::default();
+    let mut work = PlantWorkspace::default();
     let rate = |state: &StateVector| {
-        ship.rate_with(state, &ship.inputs(state[at::DELTA], n_rps), &mut work)
+        ship.rate_with(state, &ship.inputs_for(state[at::DELTA], n_rps), &mut work)
     };
     states.iter().map(rate).collect()
 }

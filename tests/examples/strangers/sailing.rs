@@ -78,7 +78,7 @@ pub fn strangers(zoo: &Zoo, of: &Strangers) -> Vec<Sailed> {
 fn of_zoo(zoo: &Zoo, vessel: &Vessel) -> Option<Sailed> {
     let needed = ["lpp_m", "beam_m", "draught_m", "displacement_m3"];
     needed.iter().all(|name| vessel.particular(name).is_some()).then_some(())?;
-    let model: Model = zoo.published(vessel, None).ok()?;
+    let model: Model = zoo.published_model(vessel, None).ok()?;
     let figures = sailed(zoo, &model).filter(Figures::complete)?;
     let ship = Ship::new(&model, zoo.law(&model.law)?).ok()?;
     let calm = Trouble { gusts: 0.0, scatter: 0.0, angles_deg: 0.0, ..Trouble::default() };

@@ -2,7 +2,7 @@
 
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Vessel};
-use sistership_priors::similarity::{CharacteristicVector, Definition};
+use sistership_priors::similarity::{CharacteristicVector, VectorDefinition};
 
 /// Ships that are one hull at several scales or in several hands, or sisters that were identified
 /// together: none may be the source of its own kin.
@@ -45,9 +45,12 @@ pub const MEASURES: [&str; 4] =
 /// By each measure, larger for ships that are more alike.
 pub fn likeness(a: &Vessel, b: &Vessel) -> Vec<Option<f64>> {
     let vectors = |definition| {
-        (CharacteristicVector::of(a, definition), CharacteristicVector::of(b, definition))
+        (
+            CharacteristicVector::from_vessel(a, definition),
+            CharacteristicVector::from_vessel(b, definition),
+        )
     };
-    let definitions = [Definition::Mei2019, Definition::Kanazawa2023];
+    let definitions = [VectorDefinition::Mei2019, VectorDefinition::Kanazawa2023];
     let correlations = definitions.map(|definition| {
         let (a, b) = vectors(definition);
         a.correlation(&b)

@@ -2,14 +2,16 @@
 //! nothing but the prior differs.
 
 use rayon::prelude::*;
-use sistership_identification::refine::{Method, Prior, Request, Settings, refine};
-use sistership_model::categories::comparable;
+use sistership_identification::refine::{
+    EstimationMethod, Prior, RefinementSettings, RefinementSpec, refine,
+};
+use sistership_model::categories::are_comparable;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Zoo};
-use sistership_priors::estimates::{LAW, Library, estimate};
+use sistership_priors::estimates::{LAW, RegressionLibrary, estimate_ship};
 use sistership_simulation::Ship;
 use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 
 use crate::figures::{error, sailed};
 use crate::sailing::{Sailed, Strangers, strangers};
@@ -41,7 +43,8 @@ struct Row {
 
 /// Prints the tables of some strangers.
 pub fn run(of: &Strangers) {
-    let (zoo, library) = (Zoo::embedded().unwrap(), Library::embedded().unwrap());
+    let (zoo, library) =
+        (Zoo::load_embedded().unwrap(), RegressionLibrary::parse_embedded().unwrap());
     let all = strangers(&zoo, of);
     for count in COUNTS {
         let rows: Vec<Row> =
@@ -55,10 +58,10 @@ pub fn run(of: &Strangers) {
     }
 }
 
-fn row(zoo: &Zoo, library: &Library, stranger: &Sailed, count: usize) -> Option<Row> {
+fn row(zoo: &Zoo, library: &RegressionLibrary, stranger: &Sailed, count: usize) -> Option<Row> {
     let speed = stranger.vessel.particular("service_speed_m_s")?;
     let trials: Vec<&Trial> = stranger.trials.iter().take(count).collect();
-    let estimated = estimate(library, &stranger.vessel, zoo.law(LAW)?, speed).ok()?;
+    let estimated = estimate_ship(library, &stranger.vessel, zoo.law(LAW)?, speed).ok()?;
     let errors = |source: &Model, prior| errors(zoo, stranger, source, prior, &trials);
     let sources = (0..MEASURES.len()).map(|measure| {
         let source = chosen(zoo, stranger, measure).filter(|_| SHOWN.contains(&measure))?;
@@ -77,11 +80,11 @@ fn row(zoo: &Zoo, library: &Library, stranger: &Sailed, count: usize) -> Option<
 fn chosen(zoo: &Zoo, stranger: &Sailed, measure: usize) -> Option<Model> {
     let target = &stranger.vessel;
     let others = zoo.vessels().filter(|vessel| {
-        let alike = measure < 2 || comparable(&vessel.file.category, &target.file.category);
+        let alike = measure < 2 || are_comparable(&vessel.file.category, &target.file.category);
         alike && !kin(vessel.name(), target.name())
     });
     let known = others.filter_map(|vessel| {
-        Some((likeness(target, vessel)[measure]?, zoo.published(vessel, None).ok()?))
+        Some((likeness(target, vessel)[measure]?, zoo.published_model(vessel, None).ok()?))
     });
     known.max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, model)| model)
 }
@@ -99,17 +102,17 @@ fn refined(
     prior: Prior,
     trials: &[&Trial],
 ) -> Option<Model> {
-    let settings = Settings {
-        method: Method::Weak,
+    let settings = RefinementSettings {
+        method: EstimationMethod::Weak,
         prior,
         in_parts: trials.len() < 3,
         steering_from_trials: true,
         steering_above_noise: true,
         recorded_terms: true,
-        ..Settings::default()
+        ..RefinementSettings::default()
     };
-    let settings = settings.as_ordered();
-    let request = Request {
+    let settings = settings.with_request_defaults();
+    let request = RefinementSpec {
         target: &stranger.vessel,
         source,
         source_law: zoo.law(&source.law).map(|law| &**law),
@@ -131,9 +134,9 @@ fn unseen(zoo: &Zoo, stranger: &Sailed, model: &Model) -> Option<f64> {
     let ship = Ship::new(model, zoo.law(&model.law)?).ok()?;
     let deviations = standard_deviations(&stranger.unseen.iter().collect::<Vec<_>>());
     let one = |trial: &Trial| {
-        let replay = replay(&ship, trial, &ReplaySettings::default()).ok()?;
+        let replay = replay_trial(&ship, trial, &ReplaySettings::default()).ok()?;
         let is_whole = replay.stopped.is_none();
-        let mse = standardised_mse(&SquaredError::of(trial, &replay), &deviations);
+        let mse = standardised_mse(&SquaredError::from_trial(trial, &replay), &deviations);
         Some(if is_whole { mse.min(LOST[1].powi(2)) } else { LOST[1].powi(2) })
     };
     let all: Option<Vec<f64>> = stranger.unseen.iter().map(one).collect();

@@ -1,7 +1,7 @@
 //! Formulas.
 
 use sistership_formula::{Expr, Function, parse};
-use sistership_simulation::tape::{Binding, TapeBuilder};
+use sistership_simulation::tape::{NameBinding, TapeBuilder};
 
 const INPUTS: [&str; 3] = ["u", "v", "r"];
 const VALUES: [f64; 3] = [1.25, -0.5, 0.01];
@@ -9,7 +9,11 @@ const VALUES: [f64; 3] = [1.25, -0.5, 0.01];
 /// A formula that is read is lowered to a tape of the same value.
 pub fn run(data: &[u8]) {
     let Some(expr) = super::text(data).and_then(|text| parse(text).ok()) else { return };
-    if expr.names().iter().any(|name| !INPUTS.contains(name) && !matches!(*name, "pi" | "g")) {
+    if expr
+        .mentioned_names()
+        .iter()
+        .any(|name| !INPUTS.contains(name) && !matches!(*name, "pi" | "g"))
+    {
         return;
     }
     let lookup = |name: &str| INPUTS.iter().position(|known| *known == name).map(|k| VALUES[k]);
@@ -34,12 +38,12 @@ fn is_angle_by_sign_of_zero(expr: &Expr, lookup: &dyn Fn(&str) -> Option<f64>) -
 }
 
 fn lowered(expr: &Expr, value: f64) {
-    let bind = |_: &str| None::<Binding>;
+    let bind = |_: &str| None::<NameBinding>;
     let mut lowering = TapeBuilder::new(&INPUTS, bind);
-    if lowering.output(expr).is_err() {
+    if lowering.add_output(expr).is_err() {
         return;
     }
-    let of_tape = lowering.finish().values(&VALUES)[0];
+    let of_tape = lowering.finish().evaluate_point(&VALUES)[0];
     let close = (of_tape - value).abs() <= 1e-9 * value.abs().max(1.0);
     assert!(
         close || !value.is_finite() || !of_tape.is_finite(),

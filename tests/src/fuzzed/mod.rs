@@ -13,7 +13,7 @@ pub mod version;
 pub mod vessel;
 
 use sistership_model::Trial;
-use sistership_trials::{Limits, Mapping};
+use sistership_trials::{FileLimits, Mapping};
 
 /// The input as text, where it is text.
 fn text(data: &[u8]) -> Option<&str> {
@@ -22,8 +22,9 @@ fn text(data: &[u8]) -> Option<&str> {
 
 /// Bounds small enough that an input of a few kB cannot ask for more.
 fn small() -> Mapping {
-    let mut mapping = Mapping::canonical();
-    mapping.limits = Limits { rows: 10_000, columns: 50, line_bytes: 4096, ..Limits::default() };
+    let mut mapping = Mapping::with_canonical_names();
+    mapping.limits =
+        FileLimits { rows: 10_000, columns: 50, line_bytes: 4096, ..FileLimits::default() };
     mapping
 }
 

@@ -2,8 +2,8 @@
 
 use std::sync::{Arc, LazyLock};
 
-use sistership_diagnosis::{self as diagnose, CalibrationSettings, Diagnosis, calibrate};
-use sistership_identification::refine::{Request, Settings, refine};
+use sistership_diagnosis::{self as diagnose, CalibrationSettings, Diagnosis, calibrate_model};
+use sistership_identification::refine::{RefinementSettings, RefinementSpec, refine};
 use sistership_model::{Effect, Law, Model, Trial};
 
 use super::truth::{Hidden, Manoeuvre, Sailing, ZOO, trials};
@@ -30,13 +30,13 @@ pub fn library() -> Vec<Arc<Effect>> {
 
 /// A source of the zoo refined on a ship's trials and calibrated on them.
 pub fn fitted(source: &str, ship: &str, trials: &[&Trial]) -> Baseline {
-    refined(&ZOO.model(source).unwrap_or_else(|error| panic!("{error}")), ship, trials)
+    refined(&ZOO.find_model(source).unwrap_or_else(|error| panic!("{error}")), ship, trials)
 }
 
 /// As [`fitted`], from a model.
 pub fn refined(source: &Model, ship: &str, trials: &[&Trial]) -> Baseline {
     let law = ZOO.law(&source.law).unwrap().clone();
-    by(source, &law, ship, trials, &Settings::default())
+    by(source, &law, ship, trials, &RefinementSettings::default())
 }
 
 /// As [`refined`], by a law and settings.
@@ -45,11 +45,11 @@ pub fn by(
     law: &Arc<Law>,
     ship: &str,
     trials: &[&Trial],
-    settings: &Settings,
+    settings: &RefinementSettings,
 ) -> Baseline {
     let target = ZOO.vessel(ship).unwrap();
     let request =
-        Request { target, source, source_law: None, law, trials, population: &[], settings };
+        RefinementSpec { target, source, source_law: None, law, trials, population: &[], settings };
     let refinement = refine(&request, &|_, _| true).unwrap_or_else(|error| panic!("{error}"));
     let (before, after) = (&refinement.held_out.source, &refinement.held_out.refined);
     println!("refined from {}, held-out errors:", refinement.source);
@@ -62,7 +62,7 @@ pub fn by(
         reading_interval: true,
         ..CalibrationSettings::default()
     };
-    let uncertainty = calibrate(&model, law, &library(), trials, settings)
+    let uncertainty = calibrate_model(&model, law, &library(), trials, settings)
         .unwrap_or_else(|error| panic!("{error}"));
     println!("discrepancy {:?}", uncertainty.discrepancy);
     model.uncertainty = Some(uncertainty);
@@ -76,7 +76,7 @@ pub fn diagnosed(
     settings: &diagnose::Settings,
 ) -> Diagnosis {
     let trials: Vec<&Trial> = trials.iter().collect();
-    let request = diagnose::Request {
+    let request = diagnose::DiagnosisInputs {
         model: &baseline.model,
         law: &baseline.law,
         effects: &library(),

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use outcome::Outcome;
-use sistership_diagnosis::{Request, Settings, diagnose};
+use sistership_diagnosis::{DiagnosisInputs, Settings, diagnose};
 use sistership_model::Trial;
 
 use super::baseline::{BASELINE, library};
@@ -62,7 +62,7 @@ fn run(case: &Case) -> Outcome {
     let trials = trials(&case.hidden, &programme(), case.seed);
     let trials: Vec<&Trial> = trials.iter().collect();
     let (settings, effects) = (Settings::default(), library());
-    let request = Request {
+    let request = DiagnosisInputs {
         model: &BASELINE.model,
         law: &BASELINE.law,
         effects: &effects,

@@ -18,7 +18,7 @@ pub use weather::Weather;
 
 /// The ships, laws and effects that everybody knows.
 pub static ZOO: LazyLock<Zoo> =
-    LazyLock::new(|| Zoo::embedded().unwrap_or_else(|error| panic!("{error}")));
+    LazyLock::new(|| Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}")));
 
 /// What the trials hide.
 #[derive(Debug, Clone, Default)]
@@ -55,7 +55,7 @@ pub fn effect(name: &str, form: &str, values: &[(&str, f64)]) -> AppliedEffect {
             sistership_model::coefficient::Axis::Y,
             sistership_model::coefficient::Axis::N,
         ];
-        let terms = effect.grammar.as_ref()?.forms(&axes, &|_| false, &|_| true);
+        let terms = effect.grammar.as_ref()?.list_forms(&axes, &|_| false, &|_| true);
         terms.into_iter().find(|term| term.file.name == form)
     };
     let form = listed.or_else(spelled).unwrap_or_else(|| panic!("no form `{form}` of `{name}`"));
@@ -90,5 +90,5 @@ pub fn trials(hidden: &Hidden, programme: &[Sailing], seed: u64) -> Vec<Trial> {
 
 /// SR108 as published.
 pub fn published() -> Model {
-    ZOO.model("sr108").unwrap_or_else(|error| panic!("{error}"))
+    ZOO.find_model("sr108").unwrap_or_else(|error| panic!("{error}"))
 }

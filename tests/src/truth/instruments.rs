@@ -6,7 +6,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
 use sistership_model::trial::{Channel, Trial};
-use sistership_simulation::state::{RECORDED, Trajectory, at};
+use sistership_simulation::state::{RECORDED_CHANNELS, Trajectory, at};
 
 use super::motion::{STEP_S, Truth};
 
@@ -85,7 +85,7 @@ impl Instruments {
     ) -> Trial {
         let kept = (self.interval_s / STEP_S).round() as usize;
         let rolls = ship.dimensions().upright.is_some();
-        let recorded = &RECORDED[..if rolls { 8 } else { 6 }];
+        let recorded = &RECORDED_CHANNELS[..if rolls { 8 } else { 6 }];
         let mut channels = BTreeMap::new();
         for &(channel, place) in recorded.iter().chain(&[(Channel::Delta, at::DELTA)]) {
             let true_values = track.states.iter().step_by(kept).map(|state| state[place]);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rand::RngExt;
 use sistership_simulation::metrics::{TurningMetrics, ZigzagMetrics};
-use sistership_simulation::state::{StateVector, Trajectory, at, straight};
+use sistership_simulation::state::{StateVector, Trajectory, at, straight_state};
 
 use super::motion::{STEP_S, Truth, sail, sail_from};
 use crate::synthetic::replica;
@@ -60,7 +60,7 @@ impl Manoeuvre {
         let mut helm = Helm::new(*self, time_s);
         let order =
             |t_s: f64, state: &StateVector| helm.order_deg(t_s - before_s, state).to_radians();
-        let start = straight(approach.speed * ship.dimensions().speed_m_s);
+        let start = straight_state(approach.speed * ship.dimensions().speed_m_s);
         let n_rps = approach.speed * ship.revolutions_rps();
         sail_from(ship, start, before_s + duration_s, n_rps, order)
     }
@@ -174,7 +174,7 @@ fn turning(ship: &dyn Truth, rudder_deg: f64) -> TurningMetrics {
     let duration_s = 18.0 * ship.dimensions().length_time_s();
     let order = |_: f64, _: &StateVector| rudder_deg.to_radians();
     let track = sail(ship, duration_s, ship.revolutions_rps(), order);
-    TurningMetrics::of(&track, rudder_deg).expect("a track")
+    TurningMetrics::from_track(&track, rudder_deg).expect("a track")
 }
 
 fn zigzag(ship: &dyn Truth, rudder_deg: f64, switch_deg: f64) -> ZigzagMetrics {
@@ -183,7 +183,7 @@ fn zigzag(ship: &dyn Truth, rudder_deg: f64, switch_deg: f64) -> ZigzagMetrics {
     let order = |t_s: f64, state: &StateVector| helm.order_deg(t_s, state).to_radians();
     let track = sail(ship, 40.0 * time_s, ship.revolutions_rps(), order);
     let reversals_s: Vec<f64> = helm.reversals_s.iter().map(|t_s| snapped(*t_s)).collect();
-    ZigzagMetrics::of(&track, rudder_deg, switch_deg, &reversals_s).expect("a track")
+    ZigzagMetrics::from_track(&track, rudder_deg, switch_deg, &reversals_s).expect("a track")
 }
 
 /// The time of a sample.

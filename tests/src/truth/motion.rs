@@ -1,7 +1,7 @@
 //! Equations of motion that every ship of the truth shares, and how it is sailed.
 
 use sistership_simulation::Method;
-use sistership_simulation::state::{StateVector, Trajectory, at, straight};
+use sistership_simulation::state::{StateVector, Trajectory, at, straight_state};
 
 use super::dimensions::Dimensions;
 
@@ -100,7 +100,7 @@ fn rudder_rate(ship: &dyn Truth, angle_rad: f64, order_rad: f64) -> f64 {
 
 /// The state one step later.
 pub fn step(ship: &dyn Truth, state: &StateVector, order_rad: f64, n_rps: f64) -> StateVector {
-    Method::Rk4.step(state, STEP_S, |_, at| rate(ship, at, order_rad, n_rps))
+    Method::Rk4.advance_state(state, STEP_S, |_, at| rate(ship, at, order_rad, n_rps))
 }
 
 /// Sails from straight running at the approach speed: one sample a step; `order` gives the rudder,
@@ -111,7 +111,7 @@ pub fn sail(
     n_rps: f64,
     order: impl FnMut(f64, &StateVector) -> f64,
 ) -> Trajectory {
-    sail_from(ship, straight(ship.dimensions().speed_m_s), duration_s, n_rps, order)
+    sail_from(ship, straight_state(ship.dimensions().speed_m_s), duration_s, n_rps, order)
 }
 
 /// The same from a state.

@@ -1,6 +1,6 @@
 //! Whether a ship keeps a straight line with the rudder amidships.
 
-use sistership_simulation::state::{at, straight};
+use sistership_simulation::state::{at, straight_state};
 
 use super::motion::{STEP_S, Truth, step};
 
@@ -13,7 +13,7 @@ const LENGTHS: [f64; 2] = [15.0, 30.0];
 /// that is straight-line stable.
 pub fn growth_rate(ship: &dyn Truth) -> f64 {
     let (size, n_rps) = (ship.dimensions(), ship.revolutions_rps());
-    let mut state = straight(size.speed_m_s);
+    let mut state = straight_state(size.speed_m_s);
     state[at::R] = DISTURBANCE / size.length_time_s();
     let mut yaw = [0.0; 2];
     for (after, lengths) in yaw.iter_mut().zip([LENGTHS[0], LENGTHS[1] - LENGTHS[0]]) {

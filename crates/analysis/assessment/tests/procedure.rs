@@ -5,20 +5,21 @@ use sistership_assessment::validation::{TrialOfShip, Validation, Verdict, valida
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Zoo};
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_simulation::state::{RECORDED, Trajectory, at};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
+use sistership_simulation::state::{RECORDED_CHANNELS, Trajectory, at};
 
 /// A record of a track by instruments that show lengths and headings wrong by a share.
 fn record(name: &str, track: &Trajectory, wrong: f64) -> Trial {
-    let columns = RECORDED[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
+    let columns = RECORDED_CHANNELS[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
     let shown = |channel: Channel, values: Vec<f64>| match channel {
         Channel::X | Channel::Y | Channel::Psi => {
             values.into_iter().map(|value| value * (1.0 + wrong)).collect()
         }
         _ => values,
     };
-    let channels =
-        columns.map(|&(channel, place)| (channel, shown(channel, track.column(place)))).collect();
+    let channels = columns
+        .map(|&(channel, place)| (channel, shown(channel, track.state_column(place))))
+        .collect();
     Trial {
         name: format!("{name} {wrong}"),
         manoeuvre: Some(name.to_owned()),
@@ -37,15 +38,15 @@ fn trials(zoo: &Zoo, model: &Model) -> Vec<Trial> {
         step_s: Some(0.5),
         ..ManoeuvreSettings::default()
     };
-    let turned = turn(&ship, 35.0, &settings).unwrap().track;
-    let swung = zigzag(&ship, 20.0, 20.0, &settings).unwrap().track;
+    let turned = simulate_turn(&ship, 35.0, &settings).unwrap().track;
+    let swung = simulate_zigzag(&ship, 20.0, 20.0, &settings).unwrap().track;
     let wrong = [0.005, -0.006, 0.002];
     let turns = wrong.map(|wrong| record("turn", &turned, wrong));
     turns.into_iter().chain(wrong.map(|wrong| record("zigzag 20/20", &swung, wrong))).collect()
 }
 
 fn mariner(zoo: &Zoo, rudder: f64) -> Model {
-    let mut model = zoo.model("mariner").unwrap();
+    let mut model = zoo.find_model("mariner").unwrap();
     for name in ["Y_delta", "N_delta"] {
         model.coefficients.get_mut(name).unwrap().value *= rudder;
     }
@@ -74,7 +75,7 @@ fn recorded(of: &Validation) -> Vec<(&str, Verdict, f64)> {
 
 #[test]
 fn a_model_is_validated_by_its_own_trials_and_not_by_those_of_a_ship_with_a_weaker_rudder() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let own = mariner(&zoo, 1.0);
     let trials_of = |rudder| trials(&zoo, &mariner(&zoo, rudder));
     let draws = [0.999, 1.001].map(|rudder| mariner(&zoo, rudder));
@@ -101,7 +102,7 @@ fn a_model_is_validated_by_its_own_trials_and_not_by_those_of_a_ship_with_a_weak
 
 #[test]
 fn trials_that_a_model_was_fitted_on_and_single_records_judge_nothing() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let own = mariner(&zoo, 1.0);
     let all = trials(&zoo, &own);
     let fitted = validated(&zoo, &own, &all, &[], true);

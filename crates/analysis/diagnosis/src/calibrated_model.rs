@@ -7,8 +7,8 @@ use sistership_formula::Expr;
 use sistership_model::Model;
 use sistership_model::law::Law;
 
-use super::nuisance::{Terms, regressor};
-use sistership_filtering::{Nuisance, NuisanceKind, lacked_name};
+use super::nuisance::{TermForms, term_regressor};
+use sistership_filtering::{NuisanceColumn, NuisanceKind, missing_term_name};
 use sistership_identification::refine::RefineError;
 
 /// A model with learned coefficients, and its law with the effects that the model carries.
@@ -33,8 +33,8 @@ impl CalibratedModel {
     pub fn new(
         model: &Model,
         law: &Law,
-        terms: &Terms,
-        nuisance: &[Nuisance],
+        terms: &TermForms,
+        nuisance: &[NuisanceColumn],
         shift: &[f64],
     ) -> Result<Self, RefineError> {
         let (mut model, mut law) = (model.clone(), law.clone());
@@ -54,11 +54,11 @@ impl CalibratedModel {
                 }
                 NuisanceKind::Lacked(axis) => {
                     let Some((_, expr)) =
-                        terms.get(&nuisance.name).and_then(|form| regressor(&model, form))
+                        terms.get(&nuisance.name).and_then(|form| term_regressor(&model, form))
                     else {
                         continue;
                     };
-                    let name = lacked_name(&nuisance.name);
+                    let name = missing_term_name(&nuisance.name);
                     // A term without a shift is only named, so that its regressor has a column.
                     if let Some(axis) = law.axes.get_mut(&axis).filter(|_| *shift != 0.0) {
                         let term = Expr::Name(name.clone()).times(Expr::Number(*shift));

@@ -4,16 +4,16 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use super::Request;
-use super::discount::is_from_outside;
+use super::DiagnosisInputs;
+use super::discount::is_external;
 use super::evidence::DiscrepancyFactor;
 use super::filtered_base::FilteredBase;
 use super::hypothesis::JudgedHypothesis;
-use super::limits::limits;
-use super::misfit::{is_as_published, shadow_share};
+use super::limits::detection_limits;
+use super::misfit::{is_as_published, misfit_share};
 use super::outcome::DetectionLimit;
 use super::placebo::is_placebo;
-use super::screening::{ScreenedEffect, screen};
+use super::screening::{ScreenedEffect, screen_effects};
 use super::search::HypothesisSearch;
 use super::settings::Settings;
 use super::thresholds::THRESHOLDS;
@@ -48,114 +48,119 @@ pub(super) struct ConvergedChoice<'a> {
 ///
 /// # Errors
 /// Returns an error that names what a trial lacks.
-pub(super) fn choose(
+pub(super) fn choose_effects(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
     settings: &Settings,
 ) -> Result<EffectChoice, RefineError> {
     // The model alone at its most probable level is the reference of all evidence.
-    let (level, alone) = search.alone(base)?;
+    let (level, alone) = search.judge_base(base)?;
     let limits = match search.states_odds {
-        true => limits(search, base, level, settings.least_evidence)?,
+        true => detection_limits(search, base, level, settings.least_evidence)?,
         false => Vec::new(),
     };
     // Also at levels below that of the calibration.
-    let alone_at_any = search.alone_at(base, &|_| true)?.1.log_evidence;
+    let alone_at_any = search.judge_base_at(base, &|_| true)?.1.log_evidence;
     let (tried, levels) = (Vec::new(), search.levels.clone());
     let mut choice = EffectChoice { alone, alone_at_any, limits, tried, taken: None, levels };
-    choice.add(search, settings, base, THRESHOLDS.search.judged)?;
+    choice.add_effect(search, settings, base, THRESHOLDS.search.judged)?;
     // One effect is added at a time, until none is accepted; after each, the earlier ones may be
     // exchanged.
-    while choice.taken.is_some() && choice.kept().len() < settings.most_effects {
-        let kept = choice.kept();
-        let base = search.base(&kept, &choice.levels)?;
-        choice.seen_from(search, &base)?;
-        if !choice.add(search, settings, &base, THRESHOLDS.search.companions)? {
+    while choice.taken.is_some() && choice.accepted_candidates().len() < settings.most_effects {
+        let kept = choice.accepted_candidates();
+        let base = search.filter_with_candidates(&kept, &choice.levels)?;
+        choice.rebase(search, &base)?;
+        if !choice.add_effect(search, settings, &base, THRESHOLDS.search.companions)? {
             break;
         }
-        choice.exchange(search, settings)?;
+        choice.exchange_effects(search, settings)?;
     }
     Ok(choice)
 }
 
 /// Evidence for the last effect of a hypothesis.
-fn last_evidence(
+fn unlimited_last_evidence(
     search: &HypothesisSearch<'_>,
     judged: &JudgedHypothesis,
 ) -> Result<f64, RefineError> {
-    search.evidence(judged, judged.candidates.len() - 1)
+    search.effect_evidence(judged, judged.candidates.len() - 1)
 }
 
 /// Most probable sets of the effects of a base and one more, linearised and judged at their
 /// estimates.
-fn companions(
+fn judge_companions(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
     count: usize,
 ) -> Result<Vec<JudgedHypothesis>, RefineError> {
-    let likely = likely(screen(search, base)?, count);
+    let likely = likely_candidates(screen_effects(search, base)?, count);
     let judged = |ScreenedEffect { candidate, level, .. }: &ScreenedEffect| {
-        base.once((candidate.key(), *level), || search.judge(base, candidate, *level))
+        base.judge_once((candidate.candidate_key(), *level), || {
+            search.judge_candidate(base, candidate, *level)
+        })
     };
     likely.par_iter().map(judged).collect()
 }
 
 /// Candidates to be judged: half of them the most probable, then those with the most evidence after
 /// their false-alarm levels, and in addition all that depend on a recorded external signal.
-fn likely(screened: Vec<ScreenedEffect>, count: usize) -> Vec<ScreenedEffect> {
+fn likely_candidates(screened: Vec<ScreenedEffect>, count: usize) -> Vec<ScreenedEffect> {
     let mut by_discounted = screened.clone();
     by_discounted.sort_by(|a, b| b.discounted.total_cmp(&a.discounted));
     let recorded: Vec<ScreenedEffect> =
-        screened.iter().filter(|likely| is_from_outside(&likely.candidate)).cloned().collect();
+        screened.iter().filter(|likely| is_external(&likely.candidate)).cloned().collect();
     let mut likely: Vec<ScreenedEffect> = screened.into_iter().take(count.div_ceil(2)).collect();
     for candidate in by_discounted {
-        let is_new = likely.iter().all(|known| known.candidate.key() != candidate.candidate.key());
+        let is_new = likely
+            .iter()
+            .all(|known| known.candidate.candidate_key() != candidate.candidate.candidate_key());
         if is_new && likely.len() < count {
             likely.push(candidate);
         }
     }
-    let keys: Vec<String> = likely.iter().map(|likely| likely.candidate.key()).collect();
-    likely
-        .extend(recorded.into_iter().filter(|recorded| !keys.contains(&recorded.candidate.key())));
+    let keys: Vec<String> = likely.iter().map(|likely| likely.candidate.candidate_key()).collect();
+    likely.extend(
+        recorded.into_iter().filter(|recorded| !keys.contains(&recorded.candidate.candidate_key())),
+    );
     likely
 }
 
 impl EffectChoice {
-    fn kept(&self) -> Vec<EffectCandidate> {
+    fn accepted_candidates(&self) -> Vec<EffectCandidate> {
         self.taken.map(|taken| self.tried[taken].candidates.clone()).unwrap_or_default()
     }
 
-    fn take(&mut self, found: Vec<JudgedHypothesis>, best: Option<usize>) {
+    fn accept_hypothesis(&mut self, found: Vec<JudgedHypothesis>, best: Option<usize>) {
         self.taken = best.map(|best| self.tried.len() + best).or(self.taken);
         self.tried.extend(found);
     }
 
     /// Judges the accepted hypothesis again by the filter of a base linearised at its estimates,
     /// which is also that of further candidates.
-    fn seen_from(
+    fn rebase(
         &mut self,
         search: &HypothesisSearch<'_>,
         base: &FilteredBase<'_>,
     ) -> Result<(), RefineError> {
         if let Some(taken) = self.taken {
-            self.tried[taken] = search.alone(base)?.1;
+            self.tried[taken] = search.judge_base(base)?.1;
         }
         Ok(())
     }
 
     /// Adds one effect, if any is accepted; returns true if so.
-    fn add(
+    fn add_effect(
         &mut self,
         search: &HypothesisSearch<'_>,
         settings: &Settings,
         base: &FilteredBase<'_>,
         count: usize,
     ) -> Result<bool, RefineError> {
-        let found = companions(search, base, count)?;
+        let found = judge_companions(search, base, count)?;
         let mut believed = Vec::new();
         for (place, hypothesis) in found.iter().enumerate() {
             let evidence = self.last_evidence(search, hypothesis)?;
-            if self.accepts(search, hypothesis, settings, evidence)? {
+            if self.is_accepted(search, hypothesis, settings, evidence)? {
                 believed.push((evidence, place));
             }
         }
@@ -163,7 +168,7 @@ impl EffectChoice {
         // what is new.
         believed.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut accepted: Vec<usize> = believed.into_iter().map(|(_, place)| place).collect();
-        fitting_first(search, &found, &mut accepted);
+        move_better_fits_forward(search, &found, &mut accepted);
         let mut better = None;
         // Placebos are costly, so they are judged only for those that could be accepted, best
         // first.
@@ -173,36 +178,37 @@ impl EffectChoice {
                 break;
             }
         }
-        self.take(found, better);
+        self.accept_hypothesis(found, better);
         Ok(better.is_some())
     }
 
     /// Reverses a wrong step: each effect of a set except the last is exchanged for one that is
     /// more probable in its place. Combinations of the others with a new last one were evaluated
     /// just before.
-    fn exchange(
+    fn exchange_effects(
         &mut self,
         search: &HypothesisSearch<'_>,
         settings: &Settings,
     ) -> Result<(), RefineError> {
-        let kept = self.kept();
+        let kept = self.accepted_candidates();
         for place in 0..kept.len() - 1 {
             let mut others = kept.clone();
             others.remove(place);
-            let base = search.base(&others, &self.levels)?;
-            let found = companions(search, &base, THRESHOLDS.search.companions)?;
+            let base = search.filter_with_candidates(&others, &self.levels)?;
+            let found = judge_companions(search, &base, THRESHOLDS.search.companions)?;
             // The evidence of the effect to be replaced has to be exceeded by a margin.
-            let best = search.evidence(self.best(), place)? + THRESHOLDS.search.exchange;
+            let best =
+                search.effect_evidence(self.best_hypothesis(), place)? + THRESHOLDS.search.exchange;
             let mut better: Option<(f64, usize)> = None;
             for (at, judged) in found.iter().enumerate() {
-                let evidence = last_evidence(search, judged)?;
+                let evidence = unlimited_last_evidence(search, judged)?;
                 let least = better.map_or(best, |(known, _)| known.max(best));
-                if evidence > least && self.stands(search, judged, settings, evidence)? {
+                if evidence > least && self.is_evident(search, judged, settings, evidence)? {
                     better = Some((evidence, at));
                 }
             }
             let better = better.map(|(_, at)| at);
-            self.take(found, better);
+            self.accept_hypothesis(found, better);
             // One exchange at a time: the other effects are then part of a different set.
             if better.is_some() {
                 break;
@@ -216,31 +222,31 @@ impl EffectChoice {
     ///
     /// # Errors
     /// Returns an error that names what a trial lacks.
-    pub(super) fn settled<'a>(
+    pub(super) fn converge<'a>(
         &self,
         search: &HypothesisSearch<'a>,
-        request: &Request<'_>,
+        request: &DiagnosisInputs<'_>,
     ) -> Result<ConvergedChoice<'a>, RefineError> {
-        self.settled_from(self.best().clone(), search, request)
+        self.converge_from(self.best_hypothesis().clone(), search, request)
     }
 
     /// Fits the coefficients of the model alone until they converge.
     ///
     /// # Errors
     /// Returns an error that names what a trial lacks.
-    pub(super) fn alone_settled<'a>(
+    pub(super) fn converge_alone<'a>(
         &self,
         search: &HypothesisSearch<'a>,
-        request: &Request<'_>,
+        request: &DiagnosisInputs<'_>,
     ) -> Result<ConvergedChoice<'a>, RefineError> {
-        self.settled_from(self.alone.clone(), search, request)
+        self.converge_from(self.alone.clone(), search, request)
     }
 
-    fn settled_from<'a>(
+    fn converge_from<'a>(
         &self,
         mut best: JudgedHypothesis,
         search: &HypothesisSearch<'a>,
-        request: &Request<'_>,
+        request: &DiagnosisInputs<'_>,
     ) -> Result<ConvergedChoice<'a>, RefineError> {
         let mut search = search.clone();
         let mut rounds = THRESHOLDS.search.joint_rounds;
@@ -248,25 +254,25 @@ impl EffectChoice {
             // Coefficients and effects are fitted in turn, each with the others at their last
             // values.
             search = search.calibrated_by(request, &best)?;
-            let base = search.bare(&best.candidates, &self.levels)?;
-            best = search.alone(&base)?.1;
+            let base = search.filter_without_candidates(&best.candidates, &self.levels)?;
+            best = search.judge_base(&base)?.1;
             rounds -= 1;
             if rounds > 0 {
                 continue;
             }
-            let Some(place) = self.needless(&search, &best, request.settings)? else {
+            let Some(place) = self.redundant_effect(&search, &best, request.settings)? else {
                 return Ok(ConvergedChoice { search, base, best });
             };
-            best = self.without(&search, &best, place)?;
+            best = self.judge_without(&search, &best, place)?;
             // After a removal one round suffices: the others are near their estimates.
             rounds = 1;
         }
     }
 
     /// Appends the hypotheses of an earlier search that this one has not judged again.
-    pub(super) fn after(mut self, earlier: Self) -> Self {
+    pub(super) fn merge_earlier(mut self, earlier: Self) -> Self {
         let keys = |judged: &JudgedHypothesis| {
-            judged.candidates.iter().map(EffectCandidate::key).collect::<Vec<_>>()
+            judged.candidates.iter().map(EffectCandidate::candidate_key).collect::<Vec<_>>()
         };
         let again: BTreeSet<Vec<String>> = self.tried.iter().map(keys).collect();
         self.tried
@@ -278,7 +284,7 @@ impl EffectChoice {
     ///
     /// # Errors
     /// Returns an error that names what a trial lacks.
-    fn without(
+    fn judge_without(
         &self,
         search: &HypothesisSearch<'_>,
         judged: &JudgedHypothesis,
@@ -286,10 +292,10 @@ impl EffectChoice {
     ) -> Result<JudgedHypothesis, RefineError> {
         let mut kept = judged.candidates.clone();
         kept.remove(place);
-        Ok(search.alone(&search.bare(&kept, &self.levels)?)?.1)
+        Ok(search.judge_base(&search.filter_without_candidates(&kept, &self.levels)?)?.1)
     }
 
-    pub(super) fn best(&self) -> &JudgedHypothesis {
+    pub(super) fn best_hypothesis(&self) -> &JudgedHypothesis {
         self.taken.map_or(&self.alone, |taken| &self.tried[taken])
     }
 
@@ -301,30 +307,30 @@ impl EffectChoice {
         search: &HypothesisSearch<'_>,
         found: &JudgedHypothesis,
     ) -> Result<f64, RefineError> {
-        let best = self.best().log_evidence;
-        let is_outside = found.candidates.last().is_some_and(is_from_outside);
+        let best = self.best_hypothesis().log_evidence;
+        let is_outside = found.candidates.last().is_some_and(is_external);
         // An effect of a recorded external signal is part of the discrepancy of the calibration, so
         // it also competes with lower levels.
         let than = if is_outside { best.max(self.alone_at_any) } else { best };
-        Ok(last_evidence(search, found)?.min(found.log_evidence - than))
+        Ok(unlimited_last_evidence(search, found)?.min(found.log_evidence - than))
     }
 
     /// Returns true if a hypothesis is more probable by enough, also on held-out trials.
-    fn accepts(
+    fn is_accepted(
         &self,
         search: &HypothesisSearch<'_>,
         found: &JudgedHypothesis,
         settings: &Settings,
         of_last: f64,
     ) -> Result<bool, RefineError> {
-        let held_out = |judged: &JudgedHypothesis| judged.held_out(&search.fixed);
-        Ok(self.stands(search, found, settings, of_last)?
-            && held_out(found)? > held_out(self.best())?)
+        let held_out = |judged: &JudgedHypothesis| judged.held_out_log_probability(&search.fixed);
+        Ok(self.is_evident(search, found, settings, of_last)?
+            && held_out(found)? > held_out(self.best_hypothesis())?)
     }
 
     /// Returns true if all forms agree with published coefficients, and the evidence for the last
     /// one is sufficient and above the misfit allowance of the others.
-    fn stands(
+    fn is_evident(
         &self,
         search: &HypothesisSearch<'_>,
         found: &JudgedHypothesis,
@@ -334,12 +340,12 @@ impl EffectChoice {
         let last = found.candidates.len() - 1;
         let evidence = all_evidence(search, found)?;
         Ok(found.candidates.iter().all(is_as_published)
-            && of_last > settings.least_evidence.max(self.shadow(found, &evidence, last)))
+            && of_last > settings.least_evidence.max(self.misfit_allowance(found, &evidence, last)))
     }
 
     /// Index of an effect, of those judged together, that no longer agrees with its published form,
     /// or of the weakest one, if the evidence for it is not sufficient.
-    fn needless(
+    fn redundant_effect(
         &self,
         search: &HypothesisSearch<'_>,
         best: &JudgedHypothesis,
@@ -350,7 +356,8 @@ impl EffectChoice {
         // An effect whose form does not agree with published ones is removed first.
         let other = best.candidates.iter().position(|candidate| !is_as_published(candidate));
         Ok(other.or(weakest.filter(|&place| {
-            evidence[place] <= settings.least_evidence.max(self.shadow(best, &evidence, place))
+            evidence[place]
+                <= settings.least_evidence.max(self.misfit_allowance(best, &evidence, place))
         })))
     }
 
@@ -363,15 +370,15 @@ impl EffectChoice {
     /// by its share. Evidence at the estimates of all is no measure of that: one may have a hundred
     /// times what it explains, since the level of the random accelerations is that of the whole
     /// set, or nearly none where another explains the same.
-    fn shadow(&self, judged: &JudgedHypothesis, evidence: &[f64], place: usize) -> f64 {
-        if is_from_outside(&judged.candidates[place]) {
+    fn misfit_allowance(&self, judged: &JudgedHypothesis, evidence: &[f64], place: usize) -> f64 {
+        if is_external(&judged.candidates[place]) {
             return 0.0;
         }
         let of_set = judged.log_evidence - self.alone.log_evidence;
         let explained = (of_set - evidence[place].max(0.0)).max(0.0);
         let others = || (0..evidence.len()).filter(|other| *other != place);
         let sum: f64 = others().map(|other| evidence[other].max(0.0)).sum();
-        let of = |other: usize| shadow_share(&judged.candidates[other]) * evidence[other].max(0.0);
+        let of = |other: usize| misfit_share(&judged.candidates[other]) * evidence[other].max(0.0);
         if sum > 0.0 { others().map(of).sum::<f64>() * explained / sum } else { 0.0 }
     }
 }
@@ -379,7 +386,7 @@ impl EffectChoice {
 /// Moves forward the candidates that fit better than the most evident one by so much that their
 /// improvement on clean trials cannot be the reason: the lead is divided by the false-alarm level,
 /// as the information on the effect is.
-fn fitting_first(
+fn move_better_fits_forward(
     search: &HypothesisSearch<'_>,
     found: &[JudgedHypothesis],
     accepted: &mut [usize],
@@ -387,7 +394,7 @@ fn fitting_first(
     let lead = |before: usize, than: usize| {
         let lead = found[before].log_evidence - found[than].log_evidence;
         // The lead of a candidate is divided by its own false-alarm level.
-        let discount = |last: &EffectCandidate| search.discount(last);
+        let discount = |last: &EffectCandidate| search.candidate_discount(last);
         lead / found[before].candidates.last().map_or(1.0, discount)
     };
     for place in 1..accepted.len() {
@@ -401,5 +408,5 @@ fn all_evidence(
     search: &HypothesisSearch<'_>,
     judged: &JudgedHypothesis,
 ) -> Result<Vec<f64>, RefineError> {
-    (0..judged.candidates.len()).map(|place| search.evidence(judged, place)).collect()
+    (0..judged.candidates.len()).map(|place| search.effect_evidence(judged, place)).collect()
 }

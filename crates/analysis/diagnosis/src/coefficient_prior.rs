@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use sistership_filtering::{Nuisance, NuisanceKind};
+use sistership_filtering::{NuisanceColumn, NuisanceKind};
 
 /// Prior of the coefficients before these trials: `information`, and `information * mean`, by
 /// column.
@@ -16,13 +16,13 @@ pub struct CoefficientPrior {
 
 impl CoefficientPrior {
     /// Expected change of the coefficients; `None` where the information is not positive.
-    pub fn mean(&self) -> Option<DVector<f64>> {
+    pub fn expected_change(&self) -> Option<DVector<f64>> {
         Some(Cholesky::new(self.information.clone())?.solve(&self.weighted_mean))
     }
 
     /// Expected change of the columns that a law can include: all but masses, which are assumed to
     /// be right.
-    pub fn expected_shift(&self, nuisance: &[Nuisance]) -> Option<Vec<f64>> {
+    pub fn expected_shift(&self, nuisance: &[NuisanceColumn]) -> Option<Vec<f64>> {
         let free: Vec<usize> = (0..nuisance.len())
             .filter(|&place| !matches!(nuisance[place].kind, NuisanceKind::Mass(..)))
             .collect();
@@ -30,14 +30,14 @@ impl CoefficientPrior {
         let information =
             DMatrix::from_fn(free.len(), free.len(), |i, j| self.information[(free[i], free[j])]);
         let weighted_mean = DVector::from_fn(free.len(), |i, _| self.weighted_mean[free[i]]);
-        let mean = Self { information, weighted_mean }.mean()?;
+        let mean = Self { information, weighted_mean }.expected_change()?;
         let mut shift = vec![0.0; nuisance.len()];
         free.iter().zip(mean.iter()).for_each(|(&place, value)| shift[place] = *value);
         Some(shift)
     }
 
     /// Prior of the changes relative to a model that has been moved by `shift` already.
-    pub fn from(mut self, shift: &[f64]) -> Self {
+    pub fn relative_to(mut self, shift: &[f64]) -> Self {
         self.weighted_mean -= &self.information * DVector::from_column_slice(shift);
         self
     }

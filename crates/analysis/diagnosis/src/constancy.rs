@@ -4,15 +4,15 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::coefficient_prior::CoefficientPrior;
-use super::discount::is_from_outside;
+use super::discount::is_external;
 use super::evidence::{MarginalInformation, NormalPrior};
 use super::filtered_base::FilteredBase;
-use super::hypothesis::{JudgedHypothesis, priors};
-use super::misfit::shadow_share;
+use super::hypothesis::{JudgedHypothesis, candidate_priors};
+use super::misfit::misfit_share;
 use super::placebo::follow_records;
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
-use sistership_filtering::Gram;
+use sistership_filtering::GramMatrix;
 use sistership_identification::refine::RefineError;
 
 /// Indices of the effects that are not constant. An effect of a recorded external signal may vary
@@ -21,30 +21,36 @@ use sistership_identification::refine::RefineError;
 ///
 /// # Errors
 /// Returns an error that names what a trial lacks.
-pub(super) fn inconstant(
+pub(super) fn inconstant_effects(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
     judged: &JudgedHypothesis,
     margin: f64,
 ) -> Result<Vec<usize>, RefineError> {
     let pieces = base
-        .linearised(&search.calibrated_model, &judged.linearised_at)?
-        .pieces(judged.level, THRESHOLDS.constancy.pieces)?;
-    let known = known_after(&search.fixed, judged);
+        .linearise_hypothesis(&search.calibrated_model, &judged.linearised_at)?
+        .products_per_piece(judged.level, THRESHOLDS.constancy.pieces)?;
+    let known = prior_after_trials(&search.fixed, judged);
     // Each piece alone, with the coefficients as all trials determine them.
     let reduced: Vec<MarginalInformation> = pieces
         .iter()
         .map(|piece| MarginalInformation::new(piece, &known))
         .collect::<Result<_, _>>()?;
-    let one =
-        |place: usize| varies(judged, place, &reduced, search.discount(&judged.candidates[place]));
+    let one = |place: usize| {
+        size_variation(
+            judged,
+            place,
+            &reduced,
+            search.candidate_discount(&judged.candidates[place]),
+        )
+    };
     let varies: Vec<f64> = (0..judged.linearised_at.len()).map(one).collect();
     // A form that differs from the true one also needs another size in other motions.
     let limit =
-        |place: usize| THRESHOLDS.constancy.limit.max(shadow_share(&judged.candidates[place]));
+        |place: usize| THRESHOLDS.constancy.limit.max(misfit_share(&judged.candidates[place]));
     let mut places: Vec<usize> =
         (0..varies.len()).filter(|&place| varies[place] > limit(place)).collect();
-    let is_outside = |place: &usize| is_from_outside(&judged.candidates[*place]);
+    let is_outside = |place: &usize| is_external(&judged.candidates[*place]);
     if places.iter().any(is_outside) && follow_records(search, judged, margin)? {
         places.retain(|place| !is_outside(place));
     }
@@ -52,17 +58,19 @@ pub(super) fn inconstant(
 }
 
 /// Prior of the coefficients after all trials, whose change has been fitted.
-fn known_after(fixed: &CoefficientPrior, judged: &JudgedHypothesis) -> CoefficientPrior {
+fn prior_after_trials(fixed: &CoefficientPrior, judged: &JudgedHypothesis) -> CoefficientPrior {
     let size = fixed.weighted_mean.len();
-    let total =
-        Gram::sum(&judged.grams, judged.grams.first().map_or(0, |gram| gram.products.nrows()));
+    let total = GramMatrix::sum_parts(
+        &judged.grams,
+        judged.grams.first().map_or(0, |gram| gram.products.nrows()),
+    );
     let information = total.products.view((1, 1), (size, size)) + &fixed.information;
     CoefficientPrior { weighted_mean: &information * &judged.shift, information }
 }
 
 /// Improvement by separate sizes in the pieces, beyond the common size and beyond chance, relative
 /// to the response to the common size.
-fn varies(
+fn size_variation(
     judged: &JudgedHypothesis,
     place: usize,
     pieces: &[MarginalInformation],
@@ -71,9 +79,9 @@ fn varies(
     let first: usize =
         judged.linearised_at[..place].iter().map(|candidate| candidate.at.len()).sum();
     let own = first..first + judged.linearised_at[place].at.len();
-    let moved = DVector::from_vec(judged.moved());
-    let fixing: Vec<NormalPrior> = priors(&judged.linearised_at[place]);
-    let change = DVector::from_vec(judged.candidates[place].change());
+    let moved = DVector::from_vec(judged.parameter_changes());
+    let fixing: Vec<NormalPrior> = candidate_priors(&judged.linearised_at[place]);
+    let change = DVector::from_vec(judged.candidates[place].parameter_changes());
     let (mut asked, mut chance, mut response) = (0.0, 0.0, 0.0);
     for piece in pieces {
         // The gradient that the common estimate leaves in this piece, and the information on its

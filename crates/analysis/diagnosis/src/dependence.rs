@@ -3,34 +3,34 @@
 //!
 //! A term of the law that would explain the same is evaluated before, as the effect `missing-term`.
 
-use sistership_learned::{LearnedDependence, Sample, dependence};
+use sistership_learned::{LearnedDependence, TrainingSample, learn_dependence};
 use sistership_model::Trial;
 use sistership_model::branch::Learner;
 use sistership_model::trial::Channel;
 
 use super::outcome::{
-    OriginKind, RemainderDependence, RemainderOrigin, ResidualSeries, Unexplained,
+    OriginKind, RemainderDependence, RemainderOrigin, ResidualSeries, UnexplainedSegment,
     VariableDependence,
 };
-use super::series::recorded;
+use super::series::recorded_values;
 use super::thresholds::THRESHOLDS;
 
 /// Name of time among the variables; a beginning or an end depends on it.
-const TIME: &str = "t";
+const TIME_VARIABLE: &str = "t";
 
 /// Dependence of the remainder of each acceleration that has an unexplained segment or is the
 /// origin of one.
-pub(super) fn of_remainder(
+pub(super) fn remainder_dependence(
     trials: &[&Trial],
     residuals: &[ResidualSeries],
-    (unexplained, origins): (&[Unexplained], &[RemainderOrigin]),
+    (unexplained, origins): (&[UnexplainedSegment], &[RemainderOrigin]),
 ) -> Vec<RemainderDependence> {
     let is_origin = |channel: &str| {
         let first = origins.first().filter(|origin| origin.of == OriginKind::Acceleration);
         first.is_some_and(|origin| origin.channel == channel)
     };
     // A heading that is not followed belongs to the yaw acceleration.
-    let is_of = |stretch: &Unexplained, channel: &str| {
+    let is_of = |stretch: &UnexplainedSegment, channel: &str| {
         stretch.channel == channel || (stretch.channel == "psi" && channel == "r")
     };
     let is_left = |channel: &str| unexplained.iter().any(|stretch| is_of(stretch, channel));
@@ -44,12 +44,12 @@ pub(super) fn of_remainder(
         .filter(|channel| is_left(channel) || is_origin(channel))
         .filter_map(|channel| {
             let of = |series: &&ResidualSeries| series.channel == channel;
-            of_channel(trials, channel, &residuals.iter().filter(of).collect::<Vec<_>>())
+            channel_dependence(trials, channel, &residuals.iter().filter(of).collect::<Vec<_>>())
         })
         .collect()
 }
 
-fn of_channel(
+fn channel_dependence(
     trials: &[&Trial],
     channel: &str,
     series: &[&ResidualSeries],
@@ -59,15 +59,15 @@ fn of_channel(
     if samples < THRESHOLDS.dependence.samples {
         return None;
     }
-    let variables = variables(trials, series);
-    let halves = [0, 1].map(|half| sample(&variables, series, half));
-    let learner = learner(variables.len());
+    let variables = usable_variables(trials, series);
+    let halves = [0, 1].map(|half| sample_half(&variables, series, half));
+    let learner = forest_learner(variables.len());
     // Trained on each half and evaluated on the other one.
     let told: Vec<LearnedDependence> = [(0, 1), (1, 0)]
         .into_iter()
         .filter_map(|(seen, unseen)| {
             let points = THRESHOLDS.dependence.points;
-            dependence(&learner, &halves[seen], &halves[unseen], points, 1)
+            learn_dependence(&learner, &halves[seen], &halves[unseen], points, 1)
         })
         .collect();
     let first = told.first()?;
@@ -93,7 +93,7 @@ fn of_channel(
     Some(RemainderDependence { channel: channel.to_owned(), explained, variables })
 }
 
-fn learner(variables: usize) -> Learner {
+fn forest_learner(variables: usize) -> Learner {
     let threshold = &THRESHOLDS.dependence;
     Learner::RandomForest {
         trees: threshold.trees,
@@ -104,30 +104,34 @@ fn learner(variables: usize) -> Learner {
 }
 
 /// A variable by name, with its values along each series.
-type Variable = (&'static str, Vec<Vec<f64>>);
+type VariableSeries = (&'static str, Vec<Vec<f64>>);
 
 /// Variables that every series has and that vary, and time.
-fn variables(trials: &[&Trial], series: &[&ResidualSeries]) -> Vec<Variable> {
-    let along = |channel: &Channel| -> Option<Variable> {
+fn usable_variables(trials: &[&Trial], series: &[&ResidualSeries]) -> Vec<VariableSeries> {
+    let along = |channel: &Channel| -> Option<VariableSeries> {
         let values: Option<Vec<Vec<f64>>> =
-            series.iter().map(|one| recorded(trials, one, *channel)).collect();
+            series.iter().map(|one| recorded_values(trials, one, *channel)).collect();
         Some((channel.name(), values?))
     };
-    let varies = |(_, values): &Variable| {
+    let varies = |(_, values): &VariableSeries| {
         let all = values.iter().flatten();
         let (low, high) = all
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
         high - low > 1e-9
     };
     let since = |one: &&ResidualSeries| one.t_s.iter().map(|t| t - one.t_s[0]).collect();
-    let time = (TIME, series.iter().map(since).collect());
+    let time = (TIME_VARIABLE, series.iter().map(since).collect());
     let channels = THRESHOLDS.series.variables.iter().filter_map(along);
     channels.filter(varies).chain([time]).collect()
 }
 
 /// Samples of every second block of each series, or all of every second series where they are
 /// short: neighbours in time are alike, so that single samples would not be independent.
-fn sample(variables: &[Variable], series: &[&ResidualSeries], half: usize) -> Sample {
+fn sample_half(
+    variables: &[VariableSeries],
+    series: &[&ResidualSeries],
+    half: usize,
+) -> TrainingSample {
     let taken = |(place, values): (usize, &Vec<f64>)| -> Vec<f64> {
         let blocks = THRESHOLDS.dependence.blocks;
         // Short series are not divided: each belongs to one half.
@@ -136,8 +140,8 @@ fn sample(variables: &[Variable], series: &[&ResidualSeries], half: usize) -> Sa
         let kept = values.iter().enumerate().filter(|(k, _)| block(*k) % 2 == half);
         kept.map(|(_, value)| *value).collect()
     };
-    let column = |(_, values): &Variable| values.iter().enumerate().flat_map(taken).collect();
-    Sample {
+    let column = |(_, values): &VariableSeries| values.iter().enumerate().flat_map(taken).collect();
+    TrainingSample {
         columns: variables.iter().map(column).collect(),
         targets: series.iter().map(|one| &one.after).enumerate().flat_map(taken).collect(),
     }
@@ -173,8 +177,8 @@ mod tests {
         (Trial { name: "a".into(), t_s, channels, ..Trial::default() }, series)
     }
 
-    fn stretch() -> Unexplained {
-        Unexplained {
+    fn stretch() -> UnexplainedSegment {
+        UnexplainedSegment {
             channel: "r".into(),
             rms_over_noise: 5.0,
             trial: "a".into(),
@@ -185,7 +189,7 @@ mod tests {
 
     fn told(left: fn(f64, f64, f64) -> f64) -> RemainderDependence {
         let (trial, series) = case(left);
-        of_remainder(&[&trial], &[series], (&[stretch()], &[])).remove(0)
+        remainder_dependence(&[&trial], &[series], (&[stretch()], &[])).remove(0)
     }
 
     #[test]
@@ -211,8 +215,8 @@ mod tests {
         let mut other = ResidualSeries { trial: "b".into(), ..one.clone() };
         second.t_s.iter_mut().for_each(late);
         other.t_s.iter_mut().for_each(late);
-        let psi = Unexplained { channel: "psi".into(), ..stretch() };
-        let told = of_remainder(&[&first, &second], &[one, other], (&[psi], &[])).remove(0);
+        let psi = UnexplainedSegment { channel: "psi".into(), ..stretch() };
+        let told = remainder_dependence(&[&first, &second], &[one, other], (&[psi], &[])).remove(0);
         let time = &told.variables[0];
         assert!(time.variable == "t" && time.at.iter().all(|t| *t < 480.0), "{time:?}");
     }
@@ -228,7 +232,7 @@ mod tests {
             first_in: 1,
             trials: 1,
         };
-        let told = of_remainder(&[&trial], &[yaw, sway], (&[stretch()], &[origin]));
+        let told = remainder_dependence(&[&trial], &[yaw, sway], (&[stretch()], &[origin]));
         let channels: Vec<&str> = told.iter().map(|one| &*one.channel).collect();
         assert_eq!(channels, ["v", "r"]);
     }
@@ -238,12 +242,12 @@ mod tests {
         let (trial, mut series) = case(|delta, _, _| delta);
         series.t_s.truncate(20);
         series.after.truncate(20);
-        assert!(of_remainder(&[&trial], &[series], (&[stretch()], &[])).is_empty());
+        assert!(remainder_dependence(&[&trial], &[series], (&[stretch()], &[])).is_empty());
     }
 
     #[test]
     fn nothing_is_asked_where_nothing_is_left() {
         let (trial, series) = case(|delta, _, _| delta);
-        assert!(of_remainder(&[&trial], &[series], (&[], &[])).is_empty());
+        assert!(remainder_dependence(&[&trial], &[series], (&[], &[])).is_empty());
     }
 }

@@ -7,7 +7,7 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::EffectCandidate;
 
 /// Divisor of the information on an effect. `listed` are all candidates.
-pub(super) fn discount(
+pub(super) fn information_discount(
     uncertainty: Option<&Uncertainty>,
     candidate: &EffectCandidate,
     listed: &[EffectCandidate],
@@ -24,13 +24,13 @@ pub(super) fn discount(
     // records of other times instead, and by the levels of other forces and flows there, as a law
     // that cannot follow the ship has them; errors of instruments are excluded.
     let of_instruments = |key: &String| {
-        let errs = |candidate: &&EffectCandidate| candidate.key() == *key;
+        let errs = |candidate: &&EffectCandidate| candidate.candidate_key() == *key;
         listed.iter().find(errs).is_some_and(|known| !known.form.measures.is_empty())
     };
     let own = known
         .false_alarm_levels
-        .get(&candidate.key())
-        .filter(|_| !is_from_outside(candidate))
+        .get(&candidate.candidate_key())
+        .filter(|_| !is_external(candidate))
         .map(of);
     own.unwrap_or_else(|| {
         let levels = known.false_alarm_levels.iter().filter(|(key, _)| !of_instruments(key));
@@ -42,10 +42,10 @@ pub(super) fn discount(
 }
 
 /// Channels of external influences, which do not depend on the ship's motion alone.
-pub(super) const OUTSIDE: [Channel; 4] =
+pub(super) const EXTERNAL_CHANNELS: [Channel; 4] =
     [Channel::WindSpeed, Channel::WindFrom, Channel::ApparentWindSpeed, Channel::ApparentWindFrom];
 
 /// Returns true if an effect depends on a recorded external signal.
-pub(super) fn is_from_outside(candidate: &EffectCandidate) -> bool {
-    candidate.form.file.needs.iter().any(|channel| OUTSIDE.contains(channel))
+pub(super) fn is_external(candidate: &EffectCandidate) -> bool {
+    candidate.form.file.needs.iter().any(|channel| EXTERNAL_CHANNELS.contains(channel))
 }

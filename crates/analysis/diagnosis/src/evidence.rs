@@ -9,8 +9,8 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::coefficient_prior::CoefficientPrior;
-use super::discount::is_from_outside;
-use sistership_filtering::{EffectCandidate, Gram};
+use super::discount::is_external;
+use sistership_filtering::{EffectCandidate, GramMatrix};
 use sistership_identification::refine::RefineError;
 
 /// Information on the columns of effects with the coefficients integrated out.
@@ -62,7 +62,7 @@ impl DiscrepancyFactor {
     /// Returns true if the level is considered for an effect, or for the model alone: a level below
     /// that of the calibration applies only to influences that were also present on its trials.
     pub fn is_weighed(self, of: Option<&EffectCandidate>) -> bool {
-        self.factor >= 1.0 || of.is_some_and(is_from_outside)
+        self.factor >= 1.0 || of.is_some_and(is_external)
     }
 }
 
@@ -71,7 +71,7 @@ impl MarginalInformation {
     ///
     /// # Errors
     /// Returns an error if the information on the coefficients is not positive.
-    pub fn new(gram: &Gram, fixed: &CoefficientPrior) -> Result<Self, RefineError> {
+    pub fn new(gram: &GramMatrix, fixed: &CoefficientPrior) -> Result<Self, RefineError> {
         let c = fixed.weighted_mean.len();
         let e = gram.products.nrows() - 1 - c;
         let products = &gram.products;
@@ -79,7 +79,7 @@ impl MarginalInformation {
         let own = products.view((1, 1), (c, c)) + &fixed.information;
         let cross = products.view((1, 1 + c), (c, e)).into_owned();
         let right = products.view((1, 0), (c, 1)).column(0) + &fixed.weighted_mean;
-        let coefficients = Cholesky::new(own).ok_or_else(not_positive)?;
+        let coefficients = Cholesky::new(own).ok_or_else(not_positive_error)?;
         let answers = coefficients.solve(&cross);
         let shift = coefficients.solve(&right);
         let information = products.view((1 + c, 1 + c), (e, e)) - cross.transpose() * &answers;
@@ -92,13 +92,13 @@ impl MarginalInformation {
     }
 
     /// Selects some of the effects' columns, with others integrated out under their priors.
-    pub fn given(
+    pub fn marginalise_others(
         &self,
         others: &[usize],
         priors: &[NormalPrior],
         columns: &[usize],
     ) -> Option<Self> {
-        let (own, right) = self.posterior(others, priors);
+        let (own, right) = self.posterior_terms(others, priors);
         let cross = DMatrix::from_fn(others.len(), columns.len(), |i, j| {
             self.information[(others[i], columns[j])]
         });
@@ -116,7 +116,7 @@ impl MarginalInformation {
     }
 
     /// Adds the information of other trials on the same columns.
-    pub fn plus(mut self, other: Self) -> Self {
+    pub fn add_information(mut self, other: Self) -> Self {
         self.information += other.information;
         self.right += other.right;
         self.deviance += other.deviance;
@@ -125,12 +125,12 @@ impl MarginalInformation {
 
     /// Logarithm of the likelihood at a distance from the point at which the columns are tangents,
     /// relative to that at no distance.
-    pub fn at(&self, distance: &DVector<f64>) -> f64 {
+    pub fn log_likelihood_at(&self, distance: &DVector<f64>) -> f64 {
         self.right.dot(distance) - 0.5 * distance.dot(&(&self.information * distance))
     }
 
     /// Divides the information by a factor.
-    pub fn discounted(mut self, by: f64) -> Self {
+    pub fn divide_by(mut self, by: f64) -> Self {
         self.information /= by;
         self.right /= by;
         self
@@ -138,7 +138,7 @@ impl MarginalInformation {
 
     /// Transforms the information to columns that are sums of these by a matrix (old columns by new
     /// ones).
-    pub fn through(&self, sums: &DMatrix<f64>) -> Self {
+    pub fn transform_columns(&self, sums: &DMatrix<f64>) -> Self {
         Self {
             information: sums.tr_mul(&(&self.information * sums)),
             right: sums.tr_mul(&self.right),
@@ -147,7 +147,7 @@ impl MarginalInformation {
     }
 
     /// Selects some of the columns, the others at zero.
-    pub fn of_columns(&self, columns: &[usize]) -> Self {
+    pub fn select_columns(&self, columns: &[usize]) -> Self {
         let size = columns.len();
         let one = |i: usize, j: usize| self.information[(columns[i], columns[j])];
         Self {
@@ -159,10 +159,14 @@ impl MarginalInformation {
 
     /// Improvement by some columns (in squared deviations), and its expected value by chance: for a
     /// right model without an effect, the first is a chi-square whose mean is the second.
-    pub fn explained(&self, columns: &[usize], priors: &[NormalPrior]) -> Option<(f64, f64)> {
+    pub fn explained_and_chance(
+        &self,
+        columns: &[usize],
+        priors: &[NormalPrior],
+    ) -> Option<(f64, f64)> {
         let free: Vec<NormalPrior> =
             priors.iter().map(|prior| NormalPrior { mean: 0.0, ..*prior }).collect();
-        let (posterior, right) = self.posterior(columns, &free);
+        let (posterior, right) = self.posterior_terms(columns, &free);
         let factor = Cholesky::new(posterior)?;
         // The prior holds part of each parameter: n - tr(S P) degrees of freedom are left.
         let left: f64 = (0..columns.len())
@@ -172,7 +176,11 @@ impl MarginalInformation {
     }
 
     /// Information and right side of some columns with their priors.
-    fn posterior(&self, columns: &[usize], priors: &[NormalPrior]) -> (DMatrix<f64>, DVector<f64>) {
+    fn posterior_terms(
+        &self,
+        columns: &[usize],
+        priors: &[NormalPrior],
+    ) -> (DMatrix<f64>, DVector<f64>) {
         let size = columns.len();
         let precision = |i: usize| priors[i].deviation.powi(-2);
         let mut information =
@@ -186,12 +194,12 @@ impl MarginalInformation {
     }
 
     /// Estimate of a hypothesis that has some of the effects' columns, with their priors.
-    pub fn estimate(
+    pub fn estimate_parameters(
         &self,
         columns: &[usize],
         priors: &[NormalPrior],
     ) -> Option<HypothesisEstimate> {
-        let (information, right) = self.posterior(columns, priors);
+        let (information, right) = self.posterior_terms(columns, priors);
         let of = |fixing: &NormalPrior| {
             (fixing.mean / fixing.deviation).powi(2) + 2.0 * fixing.deviation.ln()
         };
@@ -210,7 +218,7 @@ impl MarginalInformation {
 }
 
 /// Error for information that is not positive definite.
-pub(super) fn not_positive() -> RefineError {
+pub(super) fn not_positive_error() -> RefineError {
     RefineError::Data("the trials' information is not positive".into())
 }
 
@@ -223,7 +231,7 @@ mod tests {
     /// information that is not positive is an error, not an absence of evidence.
     #[test]
     fn coefficients_are_integrated_out_or_the_reason_is_told() {
-        let mut gram = Gram::empty(3);
+        let mut gram = GramMatrix::zeros(3);
         gram.products =
             DMatrix::from_row_slice(3, 3, &[9.0, 2.0, 1.0, 2.0, 4.0, 3.0, 1.0, 3.0, 5.0]);
         let fixed = CoefficientPrior {

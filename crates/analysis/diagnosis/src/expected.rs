@@ -17,18 +17,18 @@ use sistership_model::{Effect, Model, Trial};
 
 use super::calibrated_model::CalibratedModel;
 use super::coefficient_prior::CoefficientPrior;
-use super::evidence::not_positive;
+use super::evidence::not_positive_error;
 use super::linearised_trials::LinearisedTrials;
-use super::nuisance::{Terms, columns, learned, learned_prior, prior};
-use super::setup::listed;
+use super::nuisance::{TermForms, learned_prior, learned_terms, model_columns, uncalibrated_prior};
+use super::setup::listed_candidates;
 use sistership_filtering::{
-    Columns, Discrepancies, EffectCandidate, Gram, Instrument, Noise, Nuisance, NuisanceKind,
-    filter,
+    AxisDiscrepancies, EffectCandidate, FilterColumns, GramMatrix, InstrumentNoise, NoiseLevel,
+    NuisanceColumn, NuisanceKind, filter_part,
 };
 
 /// Unknowns that trials shall determine.
 #[derive(Debug, Clone, Copy)]
-pub struct Unknowns<'a> {
+pub struct TrialUnknowns<'a> {
     /// The model, without the effects that are unknown.
     pub model: &'a Model,
     /// Its law, without effects.
@@ -49,9 +49,9 @@ pub struct Unknowns<'a> {
 
 /// Information of trials on unknowns.
 pub struct ExpectedInformation<'a> {
-    unknowns: Unknowns<'a>,
+    unknowns: TrialUnknowns<'a>,
     calibrated: CalibratedModel,
-    columns: Columns,
+    columns: FilterColumns,
     /// Indices of the unknowns: coefficients, then parameters of effects.
     asked: Vec<usize>,
     /// Indices of all other free columns, and the prior information on them.
@@ -65,21 +65,21 @@ impl<'a> ExpectedInformation<'a> {
     /// # Errors
     /// Returns an error that names a coefficient that the law does not have, or what the model does
     /// not provide.
-    pub fn new(unknowns: Unknowns<'a>, like: &Trial) -> Result<Self, RefineError> {
-        let Unknowns { model, law, library, .. } = unknowns;
-        let terms = learned(model, law, library, &[like]);
-        let mut nuisance = columns(model, law);
-        let known = known(&unknowns, &nuisance, &terms)?;
+    pub fn new(unknowns: TrialUnknowns<'a>, like: &Trial) -> Result<Self, RefineError> {
+        let TrialUnknowns { model, law, library, .. } = unknowns;
+        let terms = learned_terms(model, law, library, &[like]);
+        let mut nuisance = model_columns(model, law);
+        let known = unknowns_prior(&unknowns, &nuisance, &terms)?;
         // The first columns have a prior; coefficients that the model does not name are appended
         // without one.
         let still = nuisance.len();
-        nuisance.extend(missing(&unknowns, &nuisance)?);
+        nuisance.extend(missing_coefficients(&unknowns, &nuisance)?);
         let shift = vec![0.0; nuisance.len()];
         let calibrated = CalibratedModel::new(model, law, &terms, &nuisance, &shift)?;
         let is_asked = |place: usize| unknowns.coefficients.contains(&nuisance[place].name);
         let others: Vec<usize> = (0..still).filter(|place| !is_asked(*place)).collect();
-        let known = of_others(&known, &others).ok_or_else(not_positive)?;
-        let columns = Columns { nuisance, candidates: unknowns.effects.to_vec() };
+        let known = marginal_information(&known, &others).ok_or_else(not_positive_error)?;
+        let columns = FilterColumns { nuisance, candidates: unknowns.effects.to_vec() };
         let place = |name: &String| columns.nuisance.iter().position(|n| n.name == *name);
         let asked = unknowns.coefficients.iter().filter_map(place);
         let asked = asked.chain(columns.nuisance.len()..columns.len()).collect();
@@ -91,45 +91,53 @@ impl<'a> ExpectedInformation<'a> {
     ///
     /// # Errors
     /// Returns an error that names what the model or a trial lacks.
-    pub fn planned(
+    pub fn planned_information(
         &self,
         trials: &[&Trial],
-        instruments: &Noise,
+        instruments: &InstrumentNoise,
     ) -> Result<Vec<DMatrix<f64>>, RefineError> {
-        let instruments = self.drifting(instruments);
+        let instruments = self.with_known_drift(instruments);
         let columns = self.columns.clone();
-        let ready = LinearisedTrials::planned(&self.calibrated, columns, trials, &instruments)?;
-        self.each(&ready)
+        let ready =
+            LinearisedTrials::planned_trials(&self.calibrated, columns, trials, &instruments)?;
+        self.information_per_trial(&ready)
     }
 
     /// Returns the information of recorded trials, and the noise of their instruments.
     ///
     /// # Errors
     /// Returns an error that names what the model or a trial lacks.
-    pub fn sailed(&self, trials: &[&Trial]) -> Result<(Vec<DMatrix<f64>>, Noise), RefineError> {
+    pub fn recorded_information(
+        &self,
+        trials: &[&Trial],
+    ) -> Result<(Vec<DMatrix<f64>>, InstrumentNoise), RefineError> {
         let columns = self.columns.clone();
-        let ready = LinearisedTrials::one_at_a_time(&self.calibrated, columns, trials, None)?;
-        Ok((self.each(&ready)?, ready.noise.clone()))
+        let ready =
+            LinearisedTrials::linearised_on_demand(&self.calibrated, columns, trials, None)?;
+        Ok((self.information_per_trial(&ready)?, ready.noise.clone()))
     }
 
-    fn each(&self, ready: &LinearisedTrials<'_>) -> Result<Vec<DMatrix<f64>>, RefineError> {
-        let discrepancies = self.discrepancies(ready);
+    fn information_per_trial(
+        &self,
+        ready: &LinearisedTrials<'_>,
+    ) -> Result<Vec<DMatrix<f64>>, RefineError> {
+        let discrepancies = self.unknown_discrepancies(ready);
         let of_trial = |trial: usize| {
-            let parts = ready.parts(trial)?;
-            let grams: Vec<Gram> = parts
+            let parts = ready.parts_of_trial(trial)?;
+            let grams: Vec<GramMatrix> = parts
                 .iter()
-                .map(|part| filter(part, &ready.noise, &discrepancies))
+                .map(|part| filter_part(part, &ready.noise, &discrepancies))
                 .collect::<Result<_, _>>()?;
-            let gram = Gram::sum(&grams, 1 + self.columns.len());
-            self.of_asked(&gram).ok_or_else(not_positive)
+            let gram = GramMatrix::sum_parts(&grams, 1 + self.columns.len());
+            self.information_on_unknowns(&gram).ok_or_else(not_positive_error)
         };
         (0..ready.trials.len()).into_par_iter().map(of_trial).collect()
     }
 
     /// Accelerations that no coefficient explains: those of the model's calibration, or those of
     /// the given level for a model without one.
-    fn discrepancies(&self, ready: &LinearisedTrials<'_>) -> Discrepancies {
-        let mut all = ready.scales().discrepancies(self.unknowns.discrepancy_level);
+    fn unknown_discrepancies(&self, ready: &LinearisedTrials<'_>) -> AxisDiscrepancies {
+        let mut all = ready.motion_scales().level_discrepancies(self.unknowns.discrepancy_level);
         if let Some(uncertainty) = &self.unknowns.model.uncertainty {
             for (axis, own) in ready.axes().iter().zip(&mut all) {
                 *own = uncertainty.discrepancy.get(axis).copied().unwrap_or(*own);
@@ -139,23 +147,23 @@ impl<'a> ExpectedInformation<'a> {
     }
 
     /// Instruments with at least the drift of the model's calibration.
-    fn drifting(&self, instruments: &Noise) -> Noise {
+    fn with_known_drift(&self, instruments: &InstrumentNoise) -> InstrumentNoise {
         let known = self.unknowns.model.uncertainty.as_ref();
-        let one = |(channel, own): (&_, &Instrument)| {
+        let one = |(channel, own): (&_, &NoiseLevel)| {
             let fitted = known.and_then(|known| {
                 let channel: &sistership_model::trial::Channel = channel;
                 known.instruments.get(channel.name())
             });
             // The larger drift: planned instruments are assumed no better than the ship's own.
             let drift = fitted.map_or(own.drift, |fitted| own.drift.max(fitted.drift));
-            (*channel, Instrument { drift, ..*own })
+            (*channel, NoiseLevel { drift, ..*own })
         };
         instruments.iter().map(one).collect()
     }
 
     /// Information on the unknowns with all other columns integrated out: `G_aa - G_ao (G_oo +
     /// P)^-1 G_oa`.
-    fn of_asked(&self, gram: &Gram) -> Option<DMatrix<f64>> {
+    fn information_on_unknowns(&self, gram: &GramMatrix) -> Option<DMatrix<f64>> {
         let block = |rows: &[usize], columns: &[usize]| {
             DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
                 gram.products[(1 + rows[i], 1 + columns[j])]
@@ -168,32 +176,35 @@ impl<'a> ExpectedInformation<'a> {
 }
 
 /// Prior of all free columns.
-fn known(
-    unknowns: &Unknowns<'_>,
-    nuisance: &[Nuisance],
-    terms: &Terms,
+fn unknowns_prior(
+    unknowns: &TrialUnknowns<'_>,
+    nuisance: &[NuisanceColumn],
+    terms: &TermForms,
 ) -> Result<CoefficientPrior, RefineError> {
     match &unknowns.model.uncertainty {
         Some(uncertainty) => learned_prior(uncertainty),
-        None => Ok(prior(unknowns.model, nuisance, terms, unknowns.slack)),
+        None => Ok(uncalibrated_prior(unknowns.model, nuisance, terms, unknowns.slack)),
     }
 }
 
 /// Unknown coefficients that the model's uncertainty does not name.
-fn missing(unknowns: &Unknowns<'_>, nuisance: &[Nuisance]) -> Result<Vec<Nuisance>, RefineError> {
+fn missing_coefficients(
+    unknowns: &TrialUnknowns<'_>,
+    nuisance: &[NuisanceColumn],
+) -> Result<Vec<NuisanceColumn>, RefineError> {
     let there = |name: &&String| nuisance.iter().any(|own| own.name == **name);
     let one = |name: &String| {
-        let axis = unknowns.law.term(name).map(|(axis, _)| axis);
+        let axis = unknowns.law.unscaled_regressor(name).map(|(axis, _)| axis);
         let axis = axis.map_err(|_| {
             RefineError::Law(format!("law `{}` has no coefficient `{name}`", unknowns.law.name))
         })?;
-        Ok(Nuisance { name: name.clone(), kind: NuisanceKind::Own(axis) })
+        Ok(NuisanceColumn { name: name.clone(), kind: NuisanceKind::Own(axis) })
     };
     unknowns.coefficients.iter().filter(|name| !there(name)).map(one).collect()
 }
 
 /// Information on some columns alone, marginal over the others.
-fn of_others(known: &CoefficientPrior, others: &[usize]) -> Option<DMatrix<f64>> {
+fn marginal_information(known: &CoefficientPrior, others: &[usize]) -> Option<DMatrix<f64>> {
     // Marginal information: the covariance of the selected columns, inverted again.
     let covariance = Cholesky::new(known.information.clone())?.inverse();
     let own =
@@ -204,7 +215,7 @@ fn of_others(known: &CoefficientPrior, others: &[usize]) -> Option<DMatrix<f64>>
 /// Returns the forms of an effect that trials with certain channels can show: where a model carries
 /// it, its own form at its values, otherwise all at its absence. Empty where the library does not
 /// have it, or such trials do not show it.
-pub fn forms_of(
+pub fn observable_forms(
     effect: &str,
     model: &Model,
     law: &Law,
@@ -214,7 +225,7 @@ pub fn forms_of(
     let carried = model.effects.iter().find(|own| own.name == effect);
     // Effects that a model carries are no candidates, so the list is made without them.
     let bare = Model { effects: Vec::new(), ..model.clone() };
-    let forms = listed(&bare, law, library, &[like]).into_iter();
+    let forms = listed_candidates(&bare, law, library, &[like]).into_iter();
     let forms = forms.filter(|candidate| candidate.effect == effect);
     let Some(carried) = carried else { return forms.collect() };
     let at = |candidate: EffectCandidate| {

@@ -15,8 +15,8 @@ use super::evidence::DiscrepancyFactor;
 use super::hypothesis::JudgedHypothesis;
 use super::linearised_trials::LinearisedTrials;
 use sistership_filtering::{
-    Columns, Detail, Discrepancies, EffectCandidate, Gram, Linearised, ResidualSystem, linearise,
-    whitened,
+    AxisDiscrepancies, EffectCandidate, FilterColumns, GramMatrix, LinearisationDetail,
+    LinearisedPart, ResidualSystem, linearise, whiten_part,
 };
 use sistership_identification::refine::RefineError;
 
@@ -33,9 +33,9 @@ pub(super) struct FilteredBase<'a> {
 /// Filter at one level.
 pub(super) struct FilteredLevel {
     pub level: DiscrepancyFactor,
-    discrepancies: Discrepancies,
+    discrepancies: AxisDiscrepancies,
     /// Products of all columns, by trial.
-    grams: Vec<Gram>,
+    grams: Vec<GramMatrix>,
     /// Computed when a hypothesis is first judged at this level: they are many times as large as
     /// the trials.
     coefficients: Mutex<Option<WhitenedCoefficients>>,
@@ -45,7 +45,7 @@ pub(super) struct FilteredLevel {
 type WhitenedCoefficients = Arc<Vec<Vec<DMatrix<f64>>>>;
 
 impl FilteredLevel {
-    pub fn discrepancies(&self) -> &Discrepancies {
+    pub fn level_discrepancies(&self) -> &AxisDiscrepancies {
         &self.discrepancies
     }
 }
@@ -58,12 +58,14 @@ impl<'a> FilteredBase<'a> {
     pub fn new(
         taken: &[EffectCandidate],
         workspace: LinearisedTrials<'a>,
-        levels: Vec<(DiscrepancyFactor, Discrepancies)>,
+        levels: Vec<(DiscrepancyFactor, AxisDiscrepancies)>,
     ) -> Result<Self, RefineError> {
         let coefficients = workspace.columns().nuisance.len();
-        let at = |(level, discrepancies): (DiscrepancyFactor, Discrepancies)| {
-            let one = |parts: &Vec<Linearised>| gram(&workspace, parts, &discrepancies);
-            let grams = workspace.linear().par_iter().map(one).collect::<Result<_, _>>()?;
+        let at = |(level, discrepancies): (DiscrepancyFactor, AxisDiscrepancies)| {
+            let one =
+                |parts: &Vec<LinearisedPart>| trial_products(&workspace, parts, &discrepancies);
+            let grams =
+                workspace.linearised_parts().par_iter().map(one).collect::<Result<_, _>>()?;
             Ok(FilteredLevel { level, discrepancies, grams, coefficients: Mutex::default() })
         };
         Ok(Self {
@@ -79,7 +81,7 @@ impl<'a> FilteredBase<'a> {
     ///
     /// # Errors
     /// Returns the error of the judgement.
-    pub fn once(
+    pub fn judge_once(
         &self,
         key: (String, usize),
         judge: impl FnOnce() -> Result<JudgedHypothesis, RefineError>,
@@ -96,19 +98,19 @@ impl<'a> FilteredBase<'a> {
     }
 
     /// Products of all columns over all trials, at one of the levels.
-    pub fn total(&self, level: usize) -> Gram {
-        Gram::sum(self.levels[level].grams.iter(), 1 + self.workspace.columns().len())
+    pub fn total_products(&self, level: usize) -> GramMatrix {
+        GramMatrix::sum_parts(self.levels[level].grams.iter(), 1 + self.workspace.columns().len())
     }
 
     /// Products of coefficients alone, trial by trial.
-    pub fn alone(&self, level: usize) -> Vec<Gram> {
+    pub fn coefficient_products(&self, level: usize) -> Vec<GramMatrix> {
         let columns: Vec<usize> = (0..self.coefficients).collect();
-        self.levels[level].grams.iter().map(|gram| gram.select(&columns)).collect()
+        self.levels[level].grams.iter().map(|gram| gram.select_columns(&columns)).collect()
     }
 
     /// Whitened columns of the coefficients at a level. Those of levels that are not neighbours are
     /// released: hypotheses are judged at a level and the one below.
-    fn coefficients(&self, level: usize) -> Result<WhitenedCoefficients, RefineError> {
+    fn whitened_coefficients(&self, level: usize) -> Result<WhitenedCoefficients, RefineError> {
         for (_, far) in
             self.levels.iter().enumerate().filter(|(other, _)| other.abs_diff(level) > 1)
         {
@@ -120,14 +122,15 @@ impl<'a> FilteredBase<'a> {
         if let Some(coefficients) = &*kept {
             return Ok(Arc::clone(coefficients));
         }
-        let of_part = |part: &Linearised| {
-            let rows = rows(&self.workspace, part, &at.discrepancies)?.0;
+        let of_part = |part: &LinearisedPart| {
+            let rows = whitened_rows(&self.workspace, part, &at.discrepancies)?.0;
             Ok(rows.rows(1, self.coefficients).into_owned())
         };
-        let one = |parts: &Vec<Linearised>| {
+        let one = |parts: &Vec<LinearisedPart>| {
             parts.iter().map(of_part).collect::<Result<Vec<_>, RefineError>>()
         };
-        let each = self.workspace.linear().par_iter().map(one).collect::<Result<_, _>>()?;
+        let each =
+            self.workspace.linearised_parts().par_iter().map(one).collect::<Result<_, _>>()?;
         let fresh: WhitenedCoefficients = Arc::new(each);
         *kept = Some(Arc::clone(&fresh));
         Ok(fresh)
@@ -137,52 +140,52 @@ impl<'a> FilteredBase<'a> {
     ///
     /// # Errors
     /// Returns an error that names what the model or a trial lacks.
-    pub fn linearised(
+    pub fn linearise_hypothesis(
         &self,
         learned: &CalibratedModel,
         candidates: &[EffectCandidate],
     ) -> Result<LinearisedHypothesis<'_, 'a>, RefineError> {
         let frame: VelocityFrame = self.workspace.frame();
-        let columns = Columns { nuisance: Vec::new(), candidates: candidates.to_vec() };
+        let columns = FilterColumns { nuisance: Vec::new(), candidates: candidates.to_vec() };
         let system = ResidualSystem::new(&learned.model, &learned.law, columns, frame)?;
         let system = system.with_expected_rates(learned.expected_rates);
         let records = self.workspace.records();
-        let linear: Vec<Vec<Linearised>> = records
+        let linear: Vec<Vec<LinearisedPart>> = records
             .par_iter()
-            .map(|record| linearise(&system, record, Detail::Columns))
+            .map(|record| linearise(&system, record, LinearisationDetail::Columns))
             .collect::<Result<_, _>>()?;
         // The filter of the base is kept: its transitions and readings of deviations.
-        let of = |(own, base): (Vec<Linearised>, &Vec<Linearised>)| {
-            own.into_iter().zip(base).map(|(own, base)| own.by_filter_of(base)).collect()
+        let of = |(own, base): (Vec<LinearisedPart>, &Vec<LinearisedPart>)| {
+            own.into_iter().zip(base).map(|(own, base)| own.with_filter_from(base)).collect()
         };
         Ok(LinearisedHypothesis {
             base: self,
-            linear: linear.into_iter().zip(self.workspace.linear()).map(of).collect(),
+            linear: linear.into_iter().zip(self.workspace.linearised_parts()).map(of).collect(),
         })
     }
 }
 
 /// Products of all columns over a trial.
-fn gram(
+fn trial_products(
     workspace: &LinearisedTrials<'_>,
-    parts: &[Linearised],
-    discrepancies: &Discrepancies,
-) -> Result<Gram, RefineError> {
-    let mut gram = Gram::empty(1 + workspace.columns().len());
+    parts: &[LinearisedPart],
+    discrepancies: &AxisDiscrepancies,
+) -> Result<GramMatrix, RefineError> {
+    let mut gram = GramMatrix::zeros(1 + workspace.columns().len());
     for part in parts {
-        let (rows, log_variance) = rows(workspace, part, discrepancies)?;
-        gram.add(&Gram::of_columns(&rows, log_variance));
+        let (rows, log_variance) = whitened_rows(workspace, part, discrepancies)?;
+        gram.add(&GramMatrix::from_columns(&rows, log_variance));
     }
     Ok(gram)
 }
 
 /// Residual and columns of a part by readings, after the filter.
-fn rows(
+fn whitened_rows(
     workspace: &LinearisedTrials<'_>,
-    part: &Linearised,
-    discrepancies: &Discrepancies,
+    part: &LinearisedPart,
+    discrepancies: &AxisDiscrepancies,
 ) -> Result<(DMatrix<f64>, f64), RefineError> {
-    let (rows, log_variance) = whitened(part, &workspace.noise, discrepancies)?;
+    let (rows, log_variance) = whiten_part(part, &workspace.noise, discrepancies)?;
     let width = 1 + part.sizes.columns;
     Ok((DMatrix::from_vec(width, rows.len() / width, rows), log_variance))
 }
@@ -190,7 +193,7 @@ fn rows(
 /// A hypothesis linearised at its values.
 pub(super) struct LinearisedHypothesis<'b, 'a> {
     base: &'b FilteredBase<'a>,
-    linear: Vec<Vec<Linearised>>,
+    linear: Vec<Vec<LinearisedPart>>,
 }
 
 impl LinearisedHypothesis<'_, '_> {
@@ -198,12 +201,13 @@ impl LinearisedHypothesis<'_, '_> {
     ///
     /// # Errors
     /// Returns an error if the noise of a channel is unknown.
-    pub fn grams(&self, level: usize) -> Result<Vec<Gram>, RefineError> {
-        let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level)?);
+    pub fn products_per_trial(&self, level: usize) -> Result<Vec<GramMatrix>, RefineError> {
+        let (at, coefficients) =
+            (&self.base.levels[level], self.base.whitened_coefficients(level)?);
         let trials: Vec<_> = self.linear.iter().zip(coefficients.iter().zip(&at.grams)).collect();
         trials
             .into_par_iter()
-            .map(|(parts, known)| self.gram(parts, known, &at.discrepancies))
+            .map(|(parts, known)| self.hypothesis_products(parts, known, &at.discrepancies))
             .collect()
     }
 
@@ -211,55 +215,61 @@ impl LinearisedHypothesis<'_, '_> {
     ///
     /// # Errors
     /// Returns an error if the noise of a channel is unknown.
-    pub fn pieces(&self, level: usize, count: usize) -> Result<Vec<Gram>, RefineError> {
-        let (at, coefficients) = (&self.base.levels[level], self.base.coefficients(level)?);
+    pub fn products_per_piece(
+        &self,
+        level: usize,
+        count: usize,
+    ) -> Result<Vec<GramMatrix>, RefineError> {
+        let (at, coefficients) =
+            (&self.base.levels[level], self.base.whitened_coefficients(level)?);
         let trials: Vec<_> = self.linear.iter().zip(coefficients.iter()).collect();
-        let of = |(parts, known): (&Vec<Linearised>, &Vec<DMatrix<f64>>)| {
-            self.in_pieces(parts, known, &at.discrepancies, count)
+        let of = |(parts, known): (&Vec<LinearisedPart>, &Vec<DMatrix<f64>>)| {
+            self.piecewise_products(parts, known, &at.discrepancies, count)
         };
-        let each: Vec<Vec<Gram>> = trials.into_par_iter().map(of).collect::<Result<_, _>>()?;
+        let each: Vec<Vec<GramMatrix>> =
+            trials.into_par_iter().map(of).collect::<Result<_, _>>()?;
         Ok(each.into_iter().flatten().collect())
     }
 
-    fn in_pieces(
+    fn piecewise_products(
         &self,
-        parts: &[Linearised],
+        parts: &[LinearisedPart],
         known: &[DMatrix<f64>],
-        discrepancies: &Discrepancies,
+        discrepancies: &AxisDiscrepancies,
         count: usize,
-    ) -> Result<Vec<Gram>, RefineError> {
-        let width = self.base.coefficients + self.width();
-        let mut pieces = vec![Gram::empty(width); count];
+    ) -> Result<Vec<GramMatrix>, RefineError> {
+        let width = self.base.coefficients + self.own_width();
+        let mut pieces = vec![GramMatrix::zeros(width); count];
         // Only the columns' products are needed, so the likelihood terms stay zero.
         for (part, coefficients) in parts.iter().zip(known) {
-            let own = self.rows(part, discrepancies)?.0;
+            let own = self.own_rows(part, discrepancies)?.0;
             let readings = own.nrows();
             for (piece, gram) in pieces.iter_mut().enumerate() {
                 // Readings are divided by their number, so that pieces have nearly equal durations.
                 let (from, to) = (piece * readings / count, (piece + 1) * readings / count);
                 let (known, own) =
                     (coefficients.columns(from, to - from), own.rows(from, to - from));
-                let square = Gram::of_columns(&known.into_owned(), 0.0).products;
+                let square = GramMatrix::from_columns(&known.into_owned(), 0.0).products;
                 gram.products.view_mut((1, 1), square.shape()).add_assign(&square);
-                add(gram, &(known * own), &own.tr_mul(&own));
+                add_products(gram, &(known * own), &own.tr_mul(&own));
             }
         }
         Ok(pieces)
     }
 
-    fn gram(
+    fn hypothesis_products(
         &self,
-        parts: &[Linearised],
-        (known, all): (&Vec<DMatrix<f64>>, &Gram),
-        discrepancies: &Discrepancies,
-    ) -> Result<Gram, RefineError> {
+        parts: &[LinearisedPart],
+        (known, all): (&Vec<DMatrix<f64>>, &GramMatrix),
+        discrepancies: &AxisDiscrepancies,
+    ) -> Result<GramMatrix, RefineError> {
         let c = self.base.coefficients;
-        let mut gram = Gram::empty(c + self.width());
+        let mut gram = GramMatrix::zeros(c + self.own_width());
         // The coefficients' own products are those of the base, whose filter is the same.
         gram.products.view_mut((1, 1), (c, c)).copy_from(&all.products.view((1, 1), (c, c)));
         for (part, coefficients) in parts.iter().zip(known) {
-            let (rows, log_variance) = self.rows(part, discrepancies)?;
-            add(&mut gram, &(coefficients * &rows), &rows.tr_mul(&rows));
+            let (rows, log_variance) = self.own_rows(part, discrepancies)?;
+            add_products(&mut gram, &(coefficients * &rows), &rows.tr_mul(&rows));
             gram.log_variance += log_variance;
             gram.count += rows.nrows();
         }
@@ -267,24 +277,24 @@ impl LinearisedHypothesis<'_, '_> {
     }
 
     /// Number of columns: the residual and the parameters of the hypothesis.
-    fn width(&self) -> usize {
+    fn own_width(&self) -> usize {
         1 + self.linear.iter().flatten().next().map_or(0, |part| part.sizes.columns)
     }
 
     /// Whitened columns, readings by columns.
-    fn rows(
+    fn own_rows(
         &self,
-        part: &Linearised,
-        discrepancies: &Discrepancies,
+        part: &LinearisedPart,
+        discrepancies: &AxisDiscrepancies,
     ) -> Result<(DMatrix<f64>, f64), RefineError> {
-        let (rows, log_variance) = whitened(part, &self.base.workspace.noise, discrepancies)?;
-        let width = self.width();
+        let (rows, log_variance) = whiten_part(part, &self.base.workspace.noise, discrepancies)?;
+        let width = self.own_width();
         Ok((DMatrix::from_vec(width, rows.len() / width, rows).transpose(), log_variance))
     }
 }
 
 /// Adds products of coefficients with a hypothesis' own columns, and of these among themselves.
-fn add(gram: &mut Gram, cross: &DMatrix<f64>, square: &DMatrix<f64>) {
+fn add_products(gram: &mut GramMatrix, cross: &DMatrix<f64>, square: &DMatrix<f64>) {
     let (c, own) = cross.shape();
     // The residual is at index 0; own columns follow those of the coefficients.
     let place = |i: usize| if i == 0 { 0 } else { c + i };

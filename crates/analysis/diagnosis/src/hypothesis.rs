@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 use sistership_model::effect::EffectParameter;
 
 use super::coefficient_prior::CoefficientPrior;
-use super::evidence::{HypothesisEstimate, MarginalInformation, NormalPrior, not_positive};
-use sistership_filtering::{EffectCandidate, Gram};
+use super::evidence::{HypothesisEstimate, MarginalInformation, NormalPrior, not_positive_error};
+use sistership_filtering::{EffectCandidate, GramMatrix};
 use sistership_identification::refine::RefineError;
 
 /// A hypothesis at its most probable values.
@@ -20,14 +20,14 @@ pub(super) struct JudgedHypothesis {
     /// Change of the coefficients.
     pub shift: DVector<f64>,
     /// Products of each trial under the most probable discrepancies, at `linearised_at`.
-    pub grams: Vec<Gram>,
+    pub grams: Vec<GramMatrix>,
     /// Values of the candidates at which the columns are tangents.
     pub linearised_at: Vec<EffectCandidate>,
 }
 
 impl JudgedHypothesis {
     /// Distance of each parameter from the values of the linearisation.
-    pub fn moved(&self) -> Vec<f64> {
+    pub fn parameter_changes(&self) -> Vec<f64> {
         let pairs = self.candidates.iter().zip(&self.linearised_at);
         pairs.flat_map(|(here, there)| here.at.iter().zip(&there.at).map(|(a, b)| a - b)).collect()
     }
@@ -37,19 +37,24 @@ impl JudgedHypothesis {
     ///
     /// # Errors
     /// Returns an error if the information is not positive.
-    pub fn of_trials(
+    pub fn evaluate_trials(
         &self,
         fixed: &CoefficientPrior,
         keep: &dyn Fn(usize) -> bool,
     ) -> Result<(f64, Vec<EffectCandidate>), RefineError> {
-        let width = self.grams.first().ok_or_else(not_positive)?.products.nrows();
+        let width = self.grams.first().ok_or_else(not_positive_error)?.products.nrows();
         let kept =
             self.grams.iter().enumerate().filter(|(trial, _)| keep(*trial)).map(|(_, gram)| gram);
-        let reduced = MarginalInformation::new(&Gram::sum(kept, width), fixed)?;
+        let reduced = MarginalInformation::new(&GramMatrix::sum_parts(kept, width), fixed)?;
         let columns: Vec<usize> = (0..width - 1 - fixed.weighted_mean.len()).collect();
-        let priors: Vec<NormalPrior> = self.linearised_at.iter().flat_map(priors).collect();
-        let estimate = reduced.estimate(&columns, &priors).ok_or_else(not_positive)?;
-        Ok((estimate.gain - 0.5 * reduced.deviance, placed(self.linearised_at.clone(), &estimate)))
+        let priors: Vec<NormalPrior> =
+            self.linearised_at.iter().flat_map(candidate_priors).collect();
+        let estimate =
+            reduced.estimate_parameters(&columns, &priors).ok_or_else(not_positive_error)?;
+        Ok((
+            estimate.gain - 0.5 * reduced.deviance,
+            move_candidates(self.linearised_at.clone(), &estimate),
+        ))
     }
 
     /// Returns the sum over trials of the logarithm of each trial's probability, given a fit on the
@@ -57,16 +62,17 @@ impl JudgedHypothesis {
     ///
     /// # Errors
     /// Returns an error if the information is not positive.
-    pub fn held_out(&self, fixed: &CoefficientPrior) -> Result<f64, RefineError> {
-        let (all, ..) = self.of_trials(fixed, &|_| true)?;
+    pub fn held_out_log_probability(&self, fixed: &CoefficientPrior) -> Result<f64, RefineError> {
+        let (all, ..) = self.evaluate_trials(fixed, &|_| true)?;
         // ln p(trial | others) = ln p(all) - ln p(others).
-        let without = |trial: usize| Ok(all - self.of_trials(fixed, &|other| other != trial)?.0);
+        let without =
+            |trial: usize| Ok(all - self.evaluate_trials(fixed, &|other| other != trial)?.0);
         (0..self.grams.len()).map(without).sum()
     }
 }
 
 /// Values halfway between two sets of values of the same candidates.
-pub(super) fn halfway(from: &[EffectCandidate], to: &[EffectCandidate]) -> Vec<EffectCandidate> {
+pub(super) fn midpoint(from: &[EffectCandidate], to: &[EffectCandidate]) -> Vec<EffectCandidate> {
     let between = |(from, to): (&EffectCandidate, &EffectCandidate)| {
         let at = from.at.iter().zip(&to.at).map(|(from, to)| 0.5 * (from + to)).collect();
         EffectCandidate { at, ..to.clone() }
@@ -75,7 +81,7 @@ pub(super) fn halfway(from: &[EffectCandidate], to: &[EffectCandidate]) -> Vec<E
 }
 
 /// Priors of a candidate's parameters, as distances from its values.
-pub(super) fn priors(candidate: &EffectCandidate) -> Vec<NormalPrior> {
+pub(super) fn candidate_priors(candidate: &EffectCandidate) -> Vec<NormalPrior> {
     let one = |(at, parameter): (&f64, &EffectParameter)| NormalPrior {
         mean: parameter.prior_mean - at,
         deviation: parameter.prior_deviation,
@@ -84,7 +90,7 @@ pub(super) fn priors(candidate: &EffectCandidate) -> Vec<NormalPrior> {
 }
 
 /// Candidates at an estimate, within the bounds of their parameters.
-pub(super) fn placed(
+pub(super) fn move_candidates(
     mut candidates: Vec<EffectCandidate>,
     estimate: &HypothesisEstimate,
 ) -> Vec<EffectCandidate> {

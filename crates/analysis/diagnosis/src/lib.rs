@@ -41,13 +41,14 @@ mod values;
 
 use std::sync::Arc;
 
-pub use as_recorded::as_recorded;
-pub use calibrate::{CalibrationSettings, calibrate};
-pub use expected::{ExpectedInformation, Unknowns, forms_of};
+pub use as_recorded::trial_from_track;
+pub use calibrate::{CalibrationSettings, calibrate_model};
+pub use expected::{ExpectedInformation, TrialUnknowns, observable_forms};
 pub use outcome::{
-    Change, ChangeCourse, Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found,
-    Hypothesis, LimitedBy, NextTrial, OriginKind, RemainderDependence, RemainderOrigin,
-    ResidualSeries, SailedManoeuvre, TrialErrors, Unexplained, Value, VariableDependence, Verdict,
+    ChangeCourse, ConfoundedEffect, DetectionLimit, Diagnosis, DiscrepancyLevel, EffectChange,
+    HypothesisReport, LimitedBy, ManoeuvreOutcome, MissingEffect, NextTrial, OriginKind,
+    RemainderDependence, RemainderOrigin, ResidualSeries, TrialErrors, UnexplainedSegment,
+    ValueWithError, VariableDependence, Verdict,
 };
 pub use run::diagnose;
 pub use settings::Settings;
@@ -56,7 +57,7 @@ use sistership_model::{Effect, Model, Trial};
 
 /// Model and trials of a diagnosis.
 #[derive(Debug, Clone, Copy)]
-pub struct Request<'a> {
+pub struct DiagnosisInputs<'a> {
     /// The model, with the effects that it carries already.
     pub model: &'a Model,
     /// Its law, without effects.

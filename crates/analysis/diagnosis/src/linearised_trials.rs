@@ -13,23 +13,23 @@ use sistership_model::{Trial, particulars};
 use super::calibrated_model::CalibratedModel;
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::{
-    Columns, Detail, Discrepancies, Gram, Instrument, Linearised, Noise, ResidualSystem,
-    TrialReadings, filter_first, floor, linearise, reading_interval, scatter, sparseness,
-    unknown_noise,
+    AxisDiscrepancies, FilterColumns, GramMatrix, InstrumentNoise, LinearisationDetail,
+    LinearisedPart, NoiseLevel, ResidualSystem, TrialReadings, filter_columns, linearise,
+    noise_deviation, noise_floor, reading_interval, reading_stride, unknown_noise_error,
 };
 use sistership_identification::refine::RefineError;
-use sistership_priors::transfer::approach_of;
+use sistership_priors::transfer::trial_approach;
 
 /// All data that do not change with the discrepancy.
 pub struct LinearisedTrials<'a> {
     pub trials: &'a [&'a Trial],
-    pub noise: Noise,
+    pub noise: InstrumentNoise,
     pub lpp_m: f64,
     pub speed_m_s: f64,
     system: ResidualSystem,
     records: Vec<TrialReadings<'a>>,
     /// Linearised parts by trial; empty where each is linearised again when it is needed.
-    linear: Vec<Vec<Linearised>>,
+    linear: Vec<Vec<LinearisedPart>>,
 }
 
 /// Typical accelerations and time of a ship.
@@ -43,7 +43,7 @@ pub struct MotionScales {
 
 impl MotionScales {
     /// Discrepancies of a level: a share of the typical acceleration of each axis.
-    pub fn discrepancies(&self, level: f64) -> Discrepancies {
+    pub fn level_discrepancies(&self, level: f64) -> AxisDiscrepancies {
         let time_s = self.time_s;
         let of = |typical: &f64| {
             let deviation = level * typical;
@@ -64,32 +64,32 @@ impl<'a> LinearisedTrials<'a> {
     /// Returns an error that names what the model or a trial lacks.
     pub fn new(
         learned: &CalibratedModel,
-        columns: Columns,
+        columns: FilterColumns,
         trials: &'a [&'a Trial],
         least_step_s: Option<f64>,
     ) -> Result<Self, RefineError> {
-        Self::one_at_a_time(learned, columns, trials, least_step_s)?.kept()
+        Self::linearised_on_demand(learned, columns, trials, least_step_s)?.linearise_all()
     }
 
     /// Linearises each trial once, with given instruments.
     ///
     /// # Errors
     /// Returns an error that names what the model or a trial lacks.
-    pub fn new_under(
+    pub fn with_given_instruments(
         learned: &CalibratedModel,
-        columns: Columns,
+        columns: FilterColumns,
         trials: &'a [&'a Trial],
         least_step_s: Option<f64>,
-        instruments: &Noise,
+        instruments: &InstrumentNoise,
     ) -> Result<Self, RefineError> {
         let mut all = Self::every_sample(learned, columns, trials, least_step_s)?;
-        read_apart(&mut all.records, learned.reading_interval_s);
-        all.read_by(instruments.clone())?.kept()
+        set_reading_intervals(&mut all.records, learned.reading_interval_s);
+        all.with_instruments(instruments.clone())?.linearise_all()
     }
 
     /// Linearises each trial and keeps it.
-    fn kept(mut self) -> Result<Self, RefineError> {
-        let whole = |record| linearise(&self.system, record, Detail::Whole);
+    fn linearise_all(mut self) -> Result<Self, RefineError> {
+        let whole = |record| linearise(&self.system, record, LinearisationDetail::Whole);
         self.linear = self.records.par_iter().map(whole).collect::<Result<_, _>>()?;
         Ok(self)
     }
@@ -98,14 +98,14 @@ impl<'a> LinearisedTrials<'a> {
     ///
     /// # Errors
     /// Returns an error that names the trial and the channel without one.
-    fn read_by(mut self, noise: Noise) -> Result<Self, RefineError> {
+    fn with_instruments(mut self, noise: InstrumentNoise) -> Result<Self, RefineError> {
         for record in self.records.iter().filter(|record| !record.is_empty()) {
             // Only channels that are recorded and known to the filter need an instrument.
             let lacks = |(channel, _): &&(Channel, usize)| {
                 record.trial.channel(*channel).is_some() && !noise.contains_key(channel)
             };
             if let Some((channel, _)) = self.system.channels.iter().find(lacks) {
-                let message = unknown_noise(*channel).to_string();
+                let message = unknown_noise_error(*channel).to_string();
                 return Err(RefineError::Data(format!("trial `{}`: {message}", record.trial.name)));
             }
         }
@@ -119,17 +119,17 @@ impl<'a> LinearisedTrials<'a> {
     /// # Errors
     /// Returns an error that names what the model lacks; what a trial lacks is reported when it is
     /// needed.
-    pub fn one_at_a_time(
+    pub fn linearised_on_demand(
         learned: &CalibratedModel,
-        columns: Columns,
+        columns: FilterColumns,
         trials: &'a [&'a Trial],
         least_step_s: Option<f64>,
     ) -> Result<Self, RefineError> {
         let mut all = Self::every_sample(learned, columns, trials, least_step_s)?;
-        read_apart(&mut all.records, learned.reading_interval_s);
+        set_reading_intervals(&mut all.records, learned.reading_interval_s);
         let known = learned.model.uncertainty.as_ref();
-        let noise = noise(&all.records, all.lpp_m, all.speed_m_s, known);
-        all.read_by(noise)
+        let noise = instrument_noise(&all.records, all.lpp_m, all.speed_m_s, known);
+        all.with_instruments(noise)
     }
 
     /// Returns the interval between readings with independent noise, s; 0 where every sample is a
@@ -137,11 +137,11 @@ impl<'a> LinearisedTrials<'a> {
     ///
     /// # Errors
     /// Returns an error that names what the model lacks.
-    pub fn own_reading_interval_s(
+    pub fn independent_interval_s(
         learned: &CalibratedModel,
         trials: &'a [&'a Trial],
     ) -> Result<f64, RefineError> {
-        let all = Self::every_sample(learned, Columns::default(), trials, None)?;
+        let all = Self::every_sample(learned, FilterColumns::default(), trials, None)?;
         Ok(reading_interval(&all.records).unwrap_or_default())
     }
 
@@ -150,28 +150,28 @@ impl<'a> LinearisedTrials<'a> {
     ///
     /// # Errors
     /// Returns an error that names what the model lacks.
-    pub fn planned(
+    pub fn planned_trials(
         learned: &CalibratedModel,
-        columns: Columns,
+        columns: FilterColumns,
         trials: &'a [&'a Trial],
-        instruments: &Noise,
+        instruments: &InstrumentNoise,
     ) -> Result<Self, RefineError> {
-        Self::every_sample(learned, columns, trials, None)?.read_by(instruments.clone())
+        Self::every_sample(learned, columns, trials, None)?.with_instruments(instruments.clone())
     }
 
     fn every_sample(
         learned: &CalibratedModel,
-        columns: Columns,
+        columns: FilterColumns,
         trials: &'a [&'a Trial],
         least_step_s: Option<f64>,
     ) -> Result<Self, RefineError> {
         let CalibratedModel { model, law, expected_rates, .. } = learned;
-        let lpp_m = particulars::value(&model.particulars, "lpp_m");
+        let lpp_m = particulars::particular_value(&model.particulars, "lpp_m");
         let lpp_m = lpp_m.ok_or_else(|| {
             RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name))
         })?;
         // The approach of the trials takes precedence over the model's speed.
-        let approach = approach_of(trials).map(|approach| approach.speed_m_s);
+        let approach = trial_approach(trials).map(|approach| approach.speed_m_s);
         let speed_m_s = approach
             .or(model.speed_m_s)
             .ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
@@ -183,17 +183,17 @@ impl<'a> LinearisedTrials<'a> {
         let frame = trials.first().map(|trial| trial.velocity).unwrap_or_default();
         let system = ResidualSystem::new(model, law, columns, frame)?;
         let system = system.with_expected_rates(*expected_rates);
-        let noise = Noise::default();
+        let noise = InstrumentNoise::default();
         Ok(Self { trials, noise, lpp_m, speed_m_s, system, records, linear: Vec::new() })
     }
 
     /// Replaces the instruments; a channel that `noise` does not have keeps its own.
-    pub fn under(mut self, noise: &Noise) -> Self {
+    pub fn with_noise(mut self, noise: &InstrumentNoise) -> Self {
         self.noise.extend(noise);
         self
     }
 
-    pub fn columns(&self) -> &Columns {
+    pub fn columns(&self) -> &FilterColumns {
         &self.system.columns
     }
 
@@ -210,7 +210,7 @@ impl<'a> LinearisedTrials<'a> {
     }
 
     /// Linearised parts by trial, where they are kept ([`Self::new`]).
-    pub fn linear(&self) -> &[Vec<Linearised>] {
+    pub fn linearised_parts(&self) -> &[Vec<LinearisedPart>] {
         &self.linear
     }
 
@@ -218,14 +218,15 @@ impl<'a> LinearisedTrials<'a> {
     ///
     /// # Errors
     /// Returns an error that names what the trial lacks.
-    pub fn parts(&self, trial: usize) -> Result<Cow<'_, [Linearised]>, RefineError> {
+    pub fn parts_of_trial(&self, trial: usize) -> Result<Cow<'_, [LinearisedPart]>, RefineError> {
         match self.linear.get(trial) {
             Some(kept) => Ok(Cow::Borrowed(kept)),
-            None => linearise(&self.system, &self.records[trial], Detail::Whole).map(Cow::Owned),
+            None => linearise(&self.system, &self.records[trial], LinearisationDetail::Whole)
+                .map(Cow::Owned),
         }
     }
 
-    pub fn scales(&self) -> MotionScales {
+    pub fn motion_scales(&self) -> MotionScales {
         let rate = self.speed_m_s / self.lpp_m;
         let of = |axis: &Axis| {
             if matches!(axis, Axis::X | Axis::Y) { self.speed_m_s * rate } else { rate * rate }
@@ -237,8 +238,11 @@ impl<'a> LinearisedTrials<'a> {
     ///
     /// # Errors
     /// Returns an error that names what a trial lacks.
-    pub fn each(&self, discrepancies: &Discrepancies) -> Result<Vec<Gram>, RefineError> {
-        self.each_of(self.columns().len(), &self.noise, discrepancies)
+    pub fn products_per_trial(
+        &self,
+        discrepancies: &AxisDiscrepancies,
+    ) -> Result<Vec<GramMatrix>, RefineError> {
+        self.column_products_per_trial(self.columns().len(), &self.noise, discrepancies)
     }
 
     /// Returns the products of each trial with the coefficients' columns alone, by other
@@ -246,25 +250,25 @@ impl<'a> LinearisedTrials<'a> {
     ///
     /// # Errors
     /// Returns an error that names what a trial lacks.
-    pub fn coefficients_under(
+    pub fn coefficient_products_under(
         &self,
-        noise: &Noise,
-        discrepancies: &Discrepancies,
-    ) -> Result<Vec<Gram>, RefineError> {
-        self.each_of(self.columns().nuisance.len(), noise, discrepancies)
+        noise: &InstrumentNoise,
+        discrepancies: &AxisDiscrepancies,
+    ) -> Result<Vec<GramMatrix>, RefineError> {
+        self.column_products_per_trial(self.columns().nuisance.len(), noise, discrepancies)
     }
 
-    fn each_of(
+    fn column_products_per_trial(
         &self,
         columns: usize,
-        noise: &Noise,
-        discrepancies: &Discrepancies,
-    ) -> Result<Vec<Gram>, RefineError> {
+        noise: &InstrumentNoise,
+        discrepancies: &AxisDiscrepancies,
+    ) -> Result<Vec<GramMatrix>, RefineError> {
         let of_trial = |trial: usize| {
-            let parts = self.parts(trial)?;
-            let of = |part: &Linearised| filter_first(part, columns, noise, discrepancies);
-            let grams: Vec<Gram> = parts.iter().map(of).collect::<Result<_, _>>()?;
-            Ok(Gram::sum(&grams, 1 + columns))
+            let parts = self.parts_of_trial(trial)?;
+            let of = |part: &LinearisedPart| filter_columns(part, columns, noise, discrepancies);
+            let grams: Vec<GramMatrix> = parts.iter().map(of).collect::<Result<_, _>>()?;
+            Ok(GramMatrix::sum_parts(&grams, 1 + columns))
         };
         (0..self.trials.len()).into_par_iter().map(of_trial).collect()
     }
@@ -272,9 +276,9 @@ impl<'a> LinearisedTrials<'a> {
 
 /// Sets the interval between readings by their noise, and at least to that of the model's own
 /// trials.
-fn read_apart(records: &mut [TrialReadings<'_>], as_before_s: Option<f64>) {
+fn set_reading_intervals(records: &mut [TrialReadings<'_>], as_before_s: Option<f64>) {
     let Some(as_before_s) = as_before_s else {
-        let every = sparseness(records);
+        let every = reading_stride(records);
         return records.iter_mut().for_each(|record| record.every = every);
     };
     // The interval of the model's own trials is a lower limit.
@@ -283,12 +287,12 @@ fn read_apart(records: &mut [TrialReadings<'_>], as_before_s: Option<f64>) {
 }
 
 /// Noise of each instrument over all trials, by its readings and the model's calibration.
-fn noise(
+fn instrument_noise(
     records: &[TrialReadings<'_>],
     lpp_m: f64,
     speed_m_s: f64,
     known: Option<&Uncertainty>,
-) -> Noise {
+) -> InstrumentNoise {
     let read = [
         Channel::U,
         Channel::V,
@@ -302,14 +306,14 @@ fn noise(
         Channel::VWater,
     ];
     let one = |channel: Channel| {
-        let scatter = Instrument::of_scatter(
-            scatter(records, channel, &|record| record.every)?
-                .max(floor(channel, lpp_m, speed_m_s)),
+        let scatter = NoiseLevel::from_deviation(
+            noise_deviation(records, channel, &|record| record.every)?
+                .max(noise_floor(channel, lpp_m, speed_m_s)),
         );
         let known = known.and_then(|known| known.instruments.get(channel.name()));
         // The calibration gives the noise relative to that of the readings, and the drift
         // absolutely.
-        let of = |known: &InstrumentFit| Instrument {
+        let of = |known: &InstrumentFit| NoiseLevel {
             deviation: scatter.deviation * known.deviation_by_scatter,
             drift: scatter.drift.max(known.drift),
         };

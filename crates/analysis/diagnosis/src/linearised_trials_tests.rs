@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use sistership_model::Zoo;
 
-use super::super::nuisance::Terms;
+use super::super::nuisance::TermForms;
 use super::*;
 
 /// A straight run of the Mariner of so many samples, with noise in every channel but the rudder.
@@ -24,9 +24,9 @@ fn trial(samples: usize) -> Trial {
 }
 
 fn mariner() -> CalibratedModel {
-    let zoo = Zoo::embedded().unwrap();
-    let (model, law) = (zoo.model("mariner").unwrap(), zoo.law("abkowitz").unwrap());
-    CalibratedModel::new(&model, law, &Terms::new(), &[], &[]).unwrap()
+    let zoo = Zoo::load_embedded().unwrap();
+    let (model, law) = (zoo.find_model("mariner").unwrap(), zoo.law("abkowitz").unwrap());
+    CalibratedModel::new(&model, law, &TermForms::new(), &[], &[]).unwrap()
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn a_channel_of_which_no_noise_can_be_told_is_refused_with_its_trial() {
     let made = |samples: usize| {
         let trial = trial(samples);
         let trials = [&trial];
-        LinearisedTrials::new(&model, Columns::default(), &trials, Some(0.5))
+        LinearisedTrials::new(&model, FilterColumns::default(), &trials, Some(0.5))
             .map(|all| all.noise.keys().copied().collect::<Vec<Channel>>())
     };
     assert_eq!(made(40).unwrap(), [Channel::Psi, Channel::U, Channel::V, Channel::R]);
@@ -51,15 +51,16 @@ fn instruments_that_are_stated_have_every_channel_that_is_read() {
     let model = mariner();
     let trial = trial(40);
     let trials = [&trial];
-    let all = LinearisedTrials::new(&model, Columns::default(), &trials, Some(0.5)).unwrap();
+    let all = LinearisedTrials::new(&model, FilterColumns::default(), &trials, Some(0.5)).unwrap();
     let mut less = all.noise.clone();
     less.remove(&Channel::R);
-    let planned = LinearisedTrials::planned(&model, Columns::default(), &trials, &less);
+    let planned =
+        LinearisedTrials::planned_trials(&model, FilterColumns::default(), &trials, &less);
     let refusal = planned.map(|_| ()).unwrap_err().to_string();
     assert!(refusal.contains("no noise is known of the channel `r`"), "{refusal}");
     let own = all.noise[&Channel::R];
-    less.insert(Channel::U, Instrument::of_scatter(7.0));
-    let under = all.under(&less);
+    less.insert(Channel::U, NoiseLevel::from_deviation(7.0));
+    let under = all.with_noise(&less);
     assert_eq!(under.noise[&Channel::R], own);
     assert_eq!(under.noise[&Channel::U].deviation, 7.0);
 }

@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 
 use sistership_model::Effect;
 
-use super::Request;
-use super::discount::is_from_outside;
+use super::DiagnosisInputs;
+use super::discount::is_external;
 use sistership_filtering::EffectCandidate;
 
 /// Logarithm of the odds of each form against the model alone, by its key: those of the settings,
 /// or of the library, divided among the forms of the effect that are candidates. Without any, all
 /// effects are equally probable, and the model alone is as probable as all of them.
 pub(super) fn log_priors(
-    request: &Request<'_>,
+    request: &DiagnosisInputs<'_>,
     listed: &[EffectCandidate],
     freed: &[EffectCandidate],
     changing: &[EffectCandidate],
@@ -24,25 +24,25 @@ pub(super) fn log_priors(
     let equal = (forms.len() as f64).recip();
     changing.iter().for_each(|candidate| *forms.entry(&candidate.effect).or_default() += 1.0);
     let log = |candidate: &EffectCandidate| {
-        let odds = odds(request, candidate).unwrap_or(equal);
-        (candidate.key(), (odds / forms[candidate.effect.as_str()]).ln())
+        let odds = stated_odds(request, candidate).unwrap_or(equal);
+        (candidate.candidate_key(), (odds / forms[candidate.effect.as_str()]).ln())
     };
     all().chain(changing).map(log).collect()
 }
 
 /// Returns true if the settings or the library state the odds of any effect.
-pub(super) fn states_odds(request: &Request<'_>) -> bool {
+pub(super) fn states_odds(request: &DiagnosisInputs<'_>) -> bool {
     let stated = |effect: &std::sync::Arc<Effect>| effect.beforehand.is_some();
     !request.settings.prior_odds.is_empty() || request.effects.iter().any(stated)
 }
 
 /// Odds of an effect in all its forms; absent where they are not stated.
-fn odds(request: &Request<'_>, candidate: &EffectCandidate) -> Option<f64> {
+fn stated_odds(request: &DiagnosisInputs<'_>, candidate: &EffectCandidate) -> Option<f64> {
     let set = request.settings.prior_odds.get(&candidate.effect).copied();
     let is_own = |effect: &&std::sync::Arc<Effect>| effect.name == candidate.effect;
     let of_library = || {
         let known = request.effects.iter().find(is_own)?.beforehand.as_ref()?;
-        let recorded = known.odds_where_recorded.filter(|_| is_from_outside(candidate));
+        let recorded = known.odds_where_recorded.filter(|_| is_external(candidate));
         Some(recorded.unwrap_or(known.odds))
     };
     set.or_else(of_library)

@@ -3,23 +3,23 @@
 use sistership_model::effect::ActsOn;
 
 use super::thresholds::THRESHOLDS;
-use super::values::acts_on;
+use super::values::form_target;
 use sistership_filtering::EffectCandidate;
 
 /// Difference between a form and the true effect, as a share of its response: the value of the
 /// library, or the least that is assumed for any law.
-pub(super) fn misfit(candidate: &EffectCandidate) -> f64 {
+pub(super) fn form_misfit(candidate: &EffectCandidate) -> f64 {
     candidate.form.file.misfit.unwrap_or(THRESHOLDS.effect.size)
 }
 
 /// Relative error of the size of an effect for that reason; it is zero for an instrument, whose
 /// reading of a motion is exact by definition.
-pub(super) fn of_size(candidate: &EffectCandidate) -> f64 {
-    if acts_on(candidate) == ActsOn::Measurement { 0.0 } else { misfit(candidate) }
+pub(super) fn size_error(candidate: &EffectCandidate) -> f64 {
+    if form_target(candidate) == ActsOn::Measurement { 0.0 } else { form_misfit(candidate) }
 }
 
 /// Share of the response that may remain at the best size.
-pub(super) fn of_shape(candidate: &EffectCandidate) -> f64 {
+pub(super) fn shape_error(candidate: &EffectCandidate) -> f64 {
     candidate.form.file.misfit.unwrap_or(THRESHOLDS.effect.shape)
 }
 
@@ -42,6 +42,6 @@ pub(super) fn is_as_published(candidate: &EffectCandidate) -> bool {
 
 /// Share of the evidence for an effect that its misfit may amount to: the evidence is half the
 /// square of a response, so that of the misfit is the square of the misfit times as large.
-pub(super) fn shadow_share(candidate: &EffectCandidate) -> f64 {
-    (THRESHOLDS.effect.misfits * misfit(candidate)).powi(2)
+pub(super) fn misfit_share(candidate: &EffectCandidate) -> f64 {
+    (THRESHOLDS.effect.misfits * form_misfit(candidate)).powi(2)
 }

@@ -10,28 +10,28 @@
 use rayon::prelude::*;
 use sistership_model::trial::Channel;
 
-use super::changes::open;
+use super::changes::trials_with_remainder;
 use super::choose::ConvergedChoice;
-use super::outcome::{OriginKind, RemainderOrigin, Unexplained};
-use super::select::{expected, parameters};
+use super::outcome::{OriginKind, RemainderOrigin, UnexplainedSegment};
+use super::select::{column_changes, remainder_discrepancies};
 use super::thresholds::THRESHOLDS;
-use sistership_filtering::{Discrepancies, Linearised, Noise, deviances};
+use sistership_filtering::{AxisDiscrepancies, InstrumentNoise, LinearisedPart, part_deviances};
 use sistership_identification::refine::RefineError;
 
 /// Deviance of each trial with a remainder.
-type Deviances = Vec<f64>;
+type TrialDeviances = Vec<f64>;
 
 /// Trials with a remainder, with the effects found, ready for the filter.
 struct OpenTrials {
     /// Parts of all trials, one trial after the other.
-    parts: Vec<Linearised>,
+    parts: Vec<LinearisedPart>,
     /// Index of the trial of each part.
     trials: Vec<usize>,
     count: usize,
 }
 
 /// A possible origin: an acceleration or an instrument with a larger standard deviation.
-struct Alternative {
+struct OriginCandidate {
     of: OriginKind,
     channel: String,
     /// Gain in the logarithm of the probability of each trial.
@@ -43,9 +43,9 @@ struct Alternative {
 ///
 /// # Errors
 /// Returns an error if the noise of a channel is unknown.
-pub(super) fn origins(
+pub(super) fn remainder_origins(
     settled: &ConvergedChoice<'_>,
-    remaining: &[Unexplained],
+    remaining: &[UnexplainedSegment],
     least: f64,
 ) -> Result<Vec<RemainderOrigin>, RefineError> {
     let trials = OpenTrials::new(settled, remaining);
@@ -53,63 +53,72 @@ pub(super) fn origins(
         return Ok(Vec::new());
     }
     let workspace = &settled.base.workspace;
-    let (noise, discrepancies) = (&workspace.noise, expected(&settled.search, workspace));
+    let (noise, discrepancies) =
+        (&workspace.noise, remainder_discrepancies(&settled.search, workspace));
     // The deviance with the known randomness is the reference of all gains.
-    let known = trials.deviances(noise, &discrepancies)?;
-    let gained = |of: OriginKind, channel: &str, each: Result<Vec<Deviances>, RefineError>| {
-        Ok(Alternative { of, channel: channel.to_owned(), gains: gains(&known, &each?) })
+    let known = trials.trial_deviances(noise, &discrepancies)?;
+    let gained = |of: OriginKind, channel: &str, each: Result<Vec<TrialDeviances>, RefineError>| {
+        Ok(OriginCandidate { of, channel: channel.to_owned(), gains: best_gains(&known, &each?) })
     };
     let acceleration = |axis: usize| {
         let factors = THRESHOLDS.origin.factors.par_iter();
-        let of = |factor: &f64| trials.deviances(noise, &amplified(&discrepancies, axis, *factor));
-        let velocity = workspace.axes()[axis].velocity();
+        let of = |factor: &f64| {
+            trials.trial_deviances(noise, &amplify_discrepancy(&discrepancies, axis, *factor))
+        };
+        let velocity = workspace.axes()[axis].velocity_name();
         gained(OriginKind::Acceleration, velocity, factors.map(of).collect())
     };
     let readings = |channel: &Channel| {
         let factors = THRESHOLDS.origin.factors.par_iter();
-        let of =
-            |factor: &f64| trials.deviances(&noisier(noise, *channel, *factor), &discrepancies);
+        let of = |factor: &f64| {
+            trials.trial_deviances(&amplify_noise(noise, *channel, *factor), &discrepancies)
+        };
         gained(OriginKind::Readings, channel.name(), factors.map(of).collect())
     };
-    let alternatives: Vec<Alternative> = (0..discrepancies.len())
+    let alternatives: Vec<OriginCandidate> = (0..discrepancies.len())
         .map(acceleration)
         .chain(noise.keys().map(readings))
         .collect::<Result<_, RefineError>>()?;
-    Ok(ranked(&alternatives, least))
+    Ok(rank_origins(&alternatives, least))
 }
 
 impl OpenTrials {
-    fn new(settled: &ConvergedChoice<'_>, remaining: &[Unexplained]) -> Self {
+    fn new(settled: &ConvergedChoice<'_>, remaining: &[UnexplainedSegment]) -> Self {
         let workspace = &settled.base.workspace;
-        let parameters = parameters(&settled.best);
+        let parameters = column_changes(&settled.best);
         let place = |name: &String| workspace.trials.iter().position(|trial| trial.name == *name);
-        let places = open(remaining).iter().filter_map(place).collect::<Vec<usize>>();
+        let places =
+            trials_with_remainder(remaining).iter().filter_map(place).collect::<Vec<usize>>();
         let asked = &places[..places.len().min(THRESHOLDS.origin.asked)];
         let (mut parts, mut trials) = (Vec::new(), Vec::new());
         for (trial, &place) in asked.iter().enumerate() {
-            for part in &workspace.linear()[place] {
-                parts.push(part.along(&parameters));
+            for part in &workspace.linearised_parts()[place] {
+                parts.push(part.combine_columns(&parameters));
                 trials.push(trial);
             }
         }
         Self { parts, trials, count: asked.len() }
     }
 
-    fn deviances(
+    fn trial_deviances(
         &self,
-        noise: &Noise,
-        discrepancies: &Discrepancies,
-    ) -> Result<Deviances, RefineError> {
-        let parts: Vec<&Linearised> = self.parts.iter().collect();
+        noise: &InstrumentNoise,
+        discrepancies: &AxisDiscrepancies,
+    ) -> Result<TrialDeviances, RefineError> {
+        let parts: Vec<&LinearisedPart> = self.parts.iter().collect();
         let mut all = vec![0.0; self.count];
-        let each = deviances(&parts, noise, discrepancies)?;
+        let each = part_deviances(&parts, noise, discrepancies)?;
         self.trials.iter().zip(each).for_each(|(&trial, deviance)| all[trial] += deviance);
         Ok(all)
     }
 }
 
 /// Discrepancies of which one is larger.
-fn amplified(discrepancies: &Discrepancies, axis: usize, factor: f64) -> Discrepancies {
+fn amplify_discrepancy(
+    discrepancies: &AxisDiscrepancies,
+    axis: usize,
+    factor: f64,
+) -> AxisDiscrepancies {
     let mut amplified = discrepancies.clone();
     amplified[axis].deviation *= factor;
     amplified[axis].white *= factor;
@@ -117,7 +126,7 @@ fn amplified(discrepancies: &Discrepancies, axis: usize, factor: f64) -> Discrep
 }
 
 /// Instruments of which one has more noise.
-fn noisier(noise: &Noise, channel: Channel, factor: f64) -> Noise {
+fn amplify_noise(noise: &InstrumentNoise, channel: Channel, factor: f64) -> InstrumentNoise {
     let mut noisier = noise.clone();
     noisier.entry(channel).and_modify(|instrument| {
         instrument.deviation *= factor;
@@ -132,8 +141,8 @@ fn noisier(noise: &Noise, channel: Channel, factor: f64) -> Noise {
 const VELOCITIES: [Channel; 4] = [Channel::U, Channel::V, Channel::R, Channel::P];
 
 /// Gain of each trial by the factor by which all together gain most.
-fn gains(known: &Deviances, each: &[Deviances]) -> Vec<f64> {
-    let gains = |by: &Deviances| -> Vec<f64> {
+fn best_gains(known: &TrialDeviances, each: &[TrialDeviances]) -> Vec<f64> {
+    let gains = |by: &TrialDeviances| -> Vec<f64> {
         // Half the difference of deviances is the gain in log likelihood.
         known.iter().zip(by).map(|(known, by)| 0.5 * (known - by)).collect()
     };
@@ -141,12 +150,12 @@ fn gains(known: &Deviances, each: &[Deviances]) -> Vec<f64> {
     all.max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum())).unwrap_or_default()
 }
 
-fn ranked(alternatives: &[Alternative], least: f64) -> Vec<RemainderOrigin> {
-    let is_first = |one: &Alternative, trial: usize| {
+fn rank_origins(alternatives: &[OriginCandidate], least: f64) -> Vec<RemainderOrigin> {
+    let is_first = |one: &OriginCandidate, trial: usize| {
         one.gains[trial] > 0.0
             && alternatives.iter().all(|other| other.gains[trial] <= one.gains[trial])
     };
-    let of = |one: &Alternative| RemainderOrigin {
+    let of = |one: &OriginCandidate| RemainderOrigin {
         of: one.of,
         channel: one.channel.clone(),
         evidence: one.gains.iter().sum(),
@@ -164,15 +173,15 @@ fn ranked(alternatives: &[Alternative], least: f64) -> Vec<RemainderOrigin> {
 mod tests {
     use super::*;
 
-    fn alternative(channel: &str, gains: &[f64]) -> Alternative {
+    fn alternative(channel: &str, gains: &[f64]) -> OriginCandidate {
         let (of, channel) = (OriginKind::Acceleration, channel.to_owned());
-        Alternative { of, channel, gains: gains.to_vec() }
+        OriginCandidate { of, channel, gains: gains.to_vec() }
     }
 
     #[test]
     fn the_most_evident_over_all_trials_comes_first() {
         let all = [alternative("r", &[5.0, 9.0]), alternative("v", &[50.0, 8.0])];
-        let ranked = ranked(&all, 5.0);
+        let ranked = rank_origins(&all, 5.0);
         let told = |one: &RemainderOrigin| (one.channel.clone(), one.evidence, one.first_in);
         let told: Vec<(String, f64, usize)> = ranked.iter().map(told).collect();
         assert_eq!(told, [("v".to_owned(), 58.0, 1), ("r".to_owned(), 14.0, 1)]);
@@ -180,7 +189,7 @@ mod tests {
 
     #[test]
     fn what_makes_nothing_more_probable_is_not_told() {
-        assert!(ranked(&[alternative("u", &[4.0, -1.0])], 5.0).is_empty());
-        assert_eq!(gains(&vec![10.0, 20.0], &[vec![4.0, 30.0], vec![8.0, 18.0]]), [1.0, 1.0]);
+        assert!(rank_origins(&[alternative("u", &[4.0, -1.0])], 5.0).is_empty());
+        assert_eq!(best_gains(&vec![10.0, 20.0], &[vec![4.0, 30.0], vec![8.0, 18.0]]), [1.0, 1.0]);
     }
 }

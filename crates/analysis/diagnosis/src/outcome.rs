@@ -28,13 +28,13 @@ pub struct Diagnosis {
     /// Verdict.
     pub verdict: Verdict,
     /// Effects that are missing.
-    pub effects: Vec<Found>,
+    pub effects: Vec<MissingEffect>,
     /// Segments that no effect explains.
-    pub unexplained: Vec<Unexplained>,
+    pub unexplained: Vec<UnexplainedSegment>,
     /// Changes in time that explain the remainder of a trial, the most evident first: they belong
     /// to one day, and no model carries them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub changes: Vec<Change>,
+    pub changes: Vec<EffectChange>,
     /// Origins of the unexplained remainder, the most evident first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub origins: Vec<RemainderOrigin>,
@@ -64,11 +64,11 @@ pub struct Diagnosis {
     /// Name of the diagnosed model.
     pub diagnosed: String,
     /// All hypotheses that were judged, the most probable first.
-    pub hypotheses: Vec<Hypothesis>,
+    pub hypotheses: Vec<HypothesisReport>,
     /// Errors by trial.
     pub trials: Vec<TrialErrors>,
     /// Turning circles and zigzags among the trials.
-    pub manoeuvres: Vec<SailedManoeuvre>,
+    pub manoeuvres: Vec<ManoeuvreOutcome>,
     /// The residual over time, by trial and channel, for plots.
     pub residuals: Vec<ResidualSeries>,
     /// Level of the unexplained accelerations, before and after.
@@ -112,7 +112,7 @@ pub enum LimitedBy {
 
 /// Value with its standard error, in the unit of its name.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Value {
+pub struct ValueWithError {
     /// Value.
     pub value: f64,
     /// Standard error.
@@ -121,7 +121,7 @@ pub struct Value {
 
 /// An effect that is missing from the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct MissingEffect {
     /// Name in the library.
     pub name: String,
     /// Form of the effect.
@@ -131,21 +131,21 @@ pub struct Found {
     /// Target of its action.
     pub acts_on: ActsOn,
     /// Parameters, and quantities that follow from them.
-    pub parameters: BTreeMap<String, Value>,
+    pub parameters: BTreeMap<String, ValueWithError>,
     /// Parameters in the resulting model, where they were fitted together with the coefficients.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub in_model: BTreeMap<String, Value>,
+    pub in_model: BTreeMap<String, ValueWithError>,
     /// Natural logarithm of the ratio of the trials' probability with it to that without, given the
     /// other effects found: it includes the cost of the number of hypotheses, and is discounted by
     /// the effect's improvement on clean trials.
     pub evidence: f64,
     /// Effects that these trials can hardly distinguish from it, or not at all.
-    pub confounded_with: Vec<Confounded>,
+    pub confounded_with: Vec<ConfoundedEffect>,
 }
 
 /// Effect with nearly the same response on these trials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Confounded {
+pub struct ConfoundedEffect {
     /// Name in the library.
     pub name: String,
     /// Angle between the effect found and the nearest response of this effect, deg: 0 the same, 90
@@ -157,7 +157,7 @@ pub struct Confounded {
 
 /// Segment of a trial that no effect explains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Unexplained {
+pub struct UnexplainedSegment {
     /// Channel whose readings the model does not follow; [`RemainderOrigin`] has the cause.
     pub channel: String,
     /// Root mean square of the remainder by that of the predicted noise.
@@ -199,7 +199,7 @@ pub enum OriginKind {
 /// Effect that changes within a trial, or that one trial alone has, and with which nothing of that
 /// trial remains unexplained.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Change {
+pub struct EffectChange {
     /// Name in the library.
     pub effect: String,
     /// Form of the effect.
@@ -218,7 +218,7 @@ pub struct Change {
     pub between_s: Option<[f64; 2]>,
     /// Parameters, and quantities that follow from them, in addition to those present otherwise;
     /// for a drift, at the end of the trial.
-    pub parameters: BTreeMap<String, Value>,
+    pub parameters: BTreeMap<String, ValueWithError>,
     /// Natural logarithm of the ratio of the trial's probability with it to that without; it
     /// includes the cost of the number of times that were evaluated.
     pub evidence: f64,
@@ -287,7 +287,7 @@ pub struct NextTrial {
 
 /// A judged hypothesis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Hypothesis {
+pub struct HypothesisReport {
     /// Effects, as `name/form`.
     pub effects: Vec<String>,
     /// Evidence of all its effects together against the model alone, not discounted by their
@@ -298,7 +298,7 @@ pub struct Hypothesis {
     /// so.
     pub held_out: Option<f64>,
     /// Parameters.
-    pub parameters: BTreeMap<String, Value>,
+    pub parameters: BTreeMap<String, ValueWithError>,
     /// True if it was accepted.
     pub taken: bool,
 }
@@ -316,7 +316,7 @@ pub struct TrialErrors {
 
 /// A recorded manoeuvre, measured and simulated with the recorded rudder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SailedManoeuvre {
+pub struct ManoeuvreOutcome {
     /// Name of the trial.
     pub trial: String,
     /// Measured values.

@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_PI_2;
 use sistership_model::Trial;
 use sistership_model::trial::Channel;
 
-use super::discount::{OUTSIDE, is_from_outside};
+use super::discount::{EXTERNAL_CHANNELS, is_external};
 use super::filtered_base::FilteredBase;
 use super::hypothesis::JudgedHypothesis;
 use super::search::HypothesisSearch;
@@ -27,15 +27,16 @@ pub(super) fn is_placebo(
     judged: &JudgedHypothesis,
     base: &FilteredBase<'_>,
 ) -> Result<bool, RefineError> {
-    let Some(last) = judged.candidates.last().filter(|candidate| is_from_outside(candidate)) else {
+    let Some(last) = judged.candidates.last().filter(|candidate| is_external(candidate)) else {
         return Ok(false);
     };
     let again = |search: &HypothesisSearch<'_>| {
         // A hypothesis is judged at the level of its screening or the one below.
-        let there = search.bare(&base.taken, &search.levels[..=judged.level])?;
-        Ok(search.judge(&there, last, judged.level)?.log_evidence)
+        let there =
+            search.filter_without_candidates(&base.taken, &search.levels[..=judged.level])?;
+        Ok(search.judge_candidate(&there, last, judged.level)?.log_evidence)
     };
-    exceeds(search, judged.log_evidence, &again)
+    any_placebo_exceeds(search, judged.log_evidence, &again)
 }
 
 /// Returns true if effects explain the trials better, by a margin, than with any placebo of the
@@ -49,19 +50,19 @@ pub(super) fn follow_records(
     margin: f64,
 ) -> Result<bool, RefineError> {
     let again = |search: &HypothesisSearch<'_>| {
-        let there = search.bare(&judged.candidates, &search.levels)?;
-        Ok(search.alone(&there)?.1.log_evidence)
+        let there = search.filter_without_candidates(&judged.candidates, &search.levels)?;
+        Ok(search.judge_base(&there)?.1.log_evidence)
     };
-    Ok(!exceeds(search, judged.log_evidence - margin, &again)?)
+    Ok(!any_placebo_exceeds(search, judged.log_evidence - margin, &again)?)
 }
 
 /// Returns true if the evidence with any of the placebos is above a limit.
-fn exceeds(
+fn any_placebo_exceeds(
     search: &HypothesisSearch<'_>,
     limit: f64,
     evidence: &dyn Fn(&HypothesisSearch<'_>) -> Result<f64, RefineError>,
 ) -> Result<bool, RefineError> {
-    for placebo in placebos(search.trials) {
+    for placebo in placebo_trials(search.trials) {
         // Calibration and levels stay those of the true records; only the trials differ.
         let trials: Vec<&Trial> = placebo.iter().collect();
         if evidence(&HypothesisSearch { trials: &trials, ..search.clone() })? > limit {
@@ -72,21 +73,26 @@ fn exceeds(
 }
 
 /// Trials with records of another time where these vary, or else of another direction.
-fn placebos(trials: &[&Trial]) -> Vec<Vec<Trial>> {
+fn placebo_trials(trials: &[&Trial]) -> Vec<Vec<Trial>> {
     let all = |change: &dyn Fn(&Trial) -> Trial| trials.iter().map(|trial| change(trial)).collect();
-    if varies(trials) {
-        THRESHOLDS.effect.placebo_shifts.map(|share| all(&|trial| shifted(trial, share))).to_vec()
+    if external_records_vary(trials) {
+        THRESHOLDS
+            .effect
+            .placebo_shifts
+            .map(|share| all(&|trial| shift_records(trial, share)))
+            .to_vec()
     } else {
-        [FRAC_PI_2, -FRAC_PI_2].map(|angle| all(&|trial| turned(trial, angle))).to_vec()
+        [FRAC_PI_2, -FRAC_PI_2].map(|angle| all(&|trial| turn_directions(trial, angle))).to_vec()
     }
 }
 
 /// Returns true if the external records differ from themselves at other times by enough.
-fn varies(trials: &[&Trial]) -> bool {
+fn external_records_vary(trials: &[&Trial]) -> bool {
     let (mut differs, mut is) = (0.0, 0.0);
     for share in THRESHOLDS.effect.placebo_shifts {
         for trial in trials {
-            let (own, other) = (components(trial), components(&shifted(trial, share)));
+            let (own, other) =
+                (wind_components(trial), wind_components(&shift_records(trial, share)));
             let square = |[a, b]: [f64; 2]| a * a + b * b;
             differs += own
                 .iter()
@@ -107,7 +113,7 @@ const WINDS: [(Channel, Channel); 2] = [
 ];
 
 /// Components of a wind over time.
-fn components(trial: &Trial) -> Vec<[f64; 2]> {
+fn wind_components(trial: &Trial) -> Vec<[f64; 2]> {
     let of = |(speed, from): &(Channel, Channel)| {
         let (speed, from) = (trial.channel(*speed)?, trial.channel(*from)?);
         let one = |(speed, from): (&f64, &f64)| [speed * from.cos(), speed * from.sin()];
@@ -117,7 +123,7 @@ fn components(trial: &Trial) -> Vec<[f64; 2]> {
 }
 
 /// Trial with its recorded directions turned by an angle, rad.
-fn turned(trial: &Trial, angle_rad: f64) -> Trial {
+fn turn_directions(trial: &Trial, angle_rad: f64) -> Trial {
     let mut trial = trial.clone();
     for (_, from) in WINDS {
         if let Some(values) = trial.channels.get_mut(&from) {
@@ -128,9 +134,9 @@ fn turned(trial: &Trial, angle_rad: f64) -> Trial {
 }
 
 /// Trial with its external records shifted by a share of its length; their ends are joined.
-fn shifted(trial: &Trial, share: f64) -> Trial {
+fn shift_records(trial: &Trial, share: f64) -> Trial {
     let mut trial = trial.clone();
-    for channel in OUTSIDE {
+    for channel in EXTERNAL_CHANNELS {
         if let Some(values) = trial.channels.get_mut(&channel) {
             let by = (share * values.len() as f64) as usize;
             values.rotate_left(by);
@@ -153,7 +159,7 @@ mod tests {
     #[test]
     fn a_steady_wind_is_turned_and_a_gusty_one_shifted() {
         let steady = trial(|k| 8.0 + 0.2 * (k as f64).sin());
-        let turned = placebos(&[&steady]);
+        let turned = placebo_trials(&[&steady]);
         assert_eq!(turned.len(), 2);
         assert_eq!(turned[0][0].channels[&Channel::WindFrom][0], 1.0 + FRAC_PI_2);
         assert_eq!(
@@ -161,7 +167,7 @@ mod tests {
             steady.channels[&Channel::WindSpeed]
         );
         let gusty = trial(|k| if k < 50 { 4.0 } else { 12.0 });
-        let shifted = placebos(&[&gusty]);
+        let shifted = placebo_trials(&[&gusty]);
         assert_eq!(shifted.len(), THRESHOLDS.effect.placebo_shifts.len());
         assert_eq!(shifted[1][0].channels[&Channel::WindSpeed][0], 12.0);
     }

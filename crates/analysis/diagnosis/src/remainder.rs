@@ -6,9 +6,11 @@ use std::collections::BTreeMap;
 use sistership_model::trial::{Channel, Trial};
 
 use super::linearised_trials::LinearisedTrials;
-use super::outcome::Unexplained;
+use super::outcome::UnexplainedSegment;
 use super::thresholds::THRESHOLDS;
-use sistership_filtering::{Discrepancies, Linearised, errors, responses};
+use sistership_filtering::{
+    AxisDiscrepancies, LinearisedPart, column_responses, prediction_errors,
+};
 use sistership_identification::refine::RefineError;
 
 /// Returns segments that the columns at `parameters` leave unexplained, under the expected
@@ -17,20 +19,26 @@ use sistership_identification::refine::RefineError;
 ///
 /// # Errors
 /// Returns an error if the noise of a channel is unknown.
-pub(super) fn unexplained(
+pub(super) fn find_unexplained(
     workspace: &LinearisedTrials<'_>,
-    discrepancies: &Discrepancies,
+    discrepancies: &AxisDiscrepancies,
     parameters: &[f64],
     effects: &[f64],
     clean: Option<&BTreeMap<String, f64>>,
-) -> Result<Vec<Unexplained>, RefineError> {
+) -> Result<Vec<UnexplainedSegment>, RefineError> {
     let of_trial = |(place, trial): (usize, &&Trial)| {
-        let parts = &workspace.linear()[place];
-        in_trial((workspace, &trial.name), parts, discrepancies, (parameters, effects), clean)
+        let parts = &workspace.linearised_parts()[place];
+        unexplained_in_trial(
+            (workspace, &trial.name),
+            parts,
+            discrepancies,
+            (parameters, effects),
+            clean,
+        )
     };
-    let each: Vec<Vec<Unexplained>> =
+    let each: Vec<Vec<UnexplainedSegment>> =
         workspace.trials.iter().enumerate().map(of_trial).collect::<Result<_, _>>()?;
-    let mut found: Vec<Unexplained> = each.into_iter().flatten().collect();
+    let mut found: Vec<UnexplainedSegment> = each.into_iter().flatten().collect();
     found.sort_by(|a, b| b.rms_over_noise.total_cmp(&a.rms_over_noise));
     Ok(found)
 }
@@ -39,20 +47,21 @@ pub(super) fn unexplained(
 ///
 /// # Errors
 /// Returns an error if the noise of a channel is unknown.
-pub(super) fn in_trial(
+pub(super) fn unexplained_in_trial(
     (workspace, trial): (&LinearisedTrials<'_>, &str),
-    parts: &[Linearised],
-    discrepancies: &Discrepancies,
+    parts: &[LinearisedPart],
+    discrepancies: &AxisDiscrepancies,
     (parameters, effects): (&[f64], &[f64]),
     clean: Option<&BTreeMap<String, f64>>,
-) -> Result<Vec<Unexplained>, RefineError> {
+) -> Result<Vec<UnexplainedSegment>, RefineError> {
     let limit = |channel: Channel| {
         let seen = clean.and_then(|clean| clean.get(channel.name())).copied().unwrap_or_default();
         THRESHOLDS.remainder.limit.max(THRESHOLDS.remainder.margin * seen)
     };
-    let sums = sums(workspace, parts, discrepancies, (parameters, Some(effects)))?;
-    let of =
-        |(channel, sums): (Channel, BlockSums<'_>)| sums.stretches(trial, channel, limit(channel));
+    let sums = channel_sums(workspace, parts, discrepancies, (parameters, Some(effects)))?;
+    let of = |(channel, sums): (Channel, BlockSums<'_>)| {
+        sums.unexplained_segments(trial, channel, limit(channel))
+    };
     Ok(sums.into_iter().flat_map(of).collect())
 }
 
@@ -60,21 +69,21 @@ pub(super) fn in_trial(
 ///
 /// # Errors
 /// Returns an error if the noise of a channel is unknown.
-pub(super) fn largest(
+pub(super) fn largest_per_channel(
     workspace: &LinearisedTrials<'_>,
-    parts: &[Linearised],
-    discrepancies: &Discrepancies,
+    parts: &[LinearisedPart],
+    discrepancies: &AxisDiscrepancies,
     parameters: &[f64],
 ) -> Result<Vec<(Channel, f64)>, RefineError> {
-    let of = |(channel, sums): (Channel, BlockSums<'_>)| (channel, sums.largest());
-    let sums = sums(workspace, parts, discrepancies, (parameters, None))?;
+    let of = |(channel, sums): (Channel, BlockSums<'_>)| (channel, sums.largest_rms());
+    let sums = channel_sums(workspace, parts, discrepancies, (parameters, None))?;
     Ok(sums.into_iter().map(of).collect())
 }
 
 /// Sums of the prediction errors of a channel over blocks of a part of a trial, in standard
 /// deviations.
 struct BlockSums<'a> {
-    part: &'a Linearised,
+    part: &'a LinearisedPart,
     /// Number of readings in a block.
     size: usize,
     sums: Vec<f64>,
@@ -82,10 +91,10 @@ struct BlockSums<'a> {
     moved: Vec<f64>,
 }
 
-fn sums<'a>(
+fn channel_sums<'a>(
     workspace: &LinearisedTrials<'_>,
-    parts: &'a [Linearised],
-    discrepancies: &Discrepancies,
+    parts: &'a [LinearisedPart],
+    discrepancies: &AxisDiscrepancies,
     (parameters, effects): (&[f64], Option<&[f64]>),
 ) -> Result<Vec<(Channel, BlockSums<'a>)>, RefineError> {
     let block_s = THRESHOLDS.remainder.block * workspace.lpp_m / workspace.speed_m_s;
@@ -94,9 +103,12 @@ fn sums<'a>(
         let interval = (part.t_s[part.t_s.len() - 1] - part.t_s[0]) / (part.t_s.len() - 1) as f64;
         // The filter reads one of `every` samples: the size of a block is in readings.
         let size = (block_s / (interval * part.every as f64)).round().max(1.0) as usize;
-        let (left, _) = errors(&part.along(parameters), &workspace.noise, discrepancies)?;
+        let (left, _) =
+            prediction_errors(&part.combine_columns(parameters), &workspace.noise, discrepancies)?;
         let moved = match effects {
-            Some(effects) => responses(&part.along(effects), &workspace.noise, discrepancies)?,
+            Some(effects) => {
+                column_responses(&part.combine_columns(effects), &workspace.noise, discrepancies)?
+            }
             None => Vec::new(),
         };
         for (place, &(channel, _)) in part
@@ -124,30 +136,36 @@ fn block_sums(values: impl Iterator<Item = f64>, size: usize) -> Vec<f64> {
         .collect()
 }
 
-fn rms(sums: &[f64]) -> f64 {
+fn root_mean_square(sums: &[f64]) -> f64 {
     (sums.iter().map(|s| s * s).sum::<f64>() / sums.len() as f64).sqrt()
 }
 
 impl BlockSums<'_> {
-    fn starts(&self) -> std::ops::Range<usize> {
+    fn window_starts(&self) -> std::ops::Range<usize> {
         0..self.sums.len().saturating_sub(THRESHOLDS.remainder.blocks - 1)
     }
 
-    fn largest(&self) -> f64 {
-        self.starts()
-            .map(|from| rms(&self.sums[from..from + THRESHOLDS.remainder.blocks]))
+    fn largest_rms(&self) -> f64 {
+        self.window_starts()
+            .map(|from| root_mean_square(&self.sums[from..from + THRESHOLDS.remainder.blocks]))
             .fold(0.0, f64::max)
     }
 
     /// Runs of blocks above the limit, each as one segment.
-    fn stretches(&self, trial: &str, channel: Channel, limit: f64) -> Vec<Unexplained> {
+    fn unexplained_segments(
+        &self,
+        trial: &str,
+        channel: Channel,
+        limit: f64,
+    ) -> Vec<UnexplainedSegment> {
         let mut found: Vec<(usize, usize)> = Vec::new();
         let is_large = |&from: &usize| {
             let blocks = from..from + THRESHOLDS.remainder.blocks;
             // The allowance for the laws' errors is added to the limit in squares.
-            rms(&self.sums[blocks.clone()]) > limit.hypot(rms(&self.moved[blocks]))
+            root_mean_square(&self.sums[blocks.clone()])
+                > limit.hypot(root_mean_square(&self.moved[blocks]))
         };
-        for from in self.starts().filter(is_large) {
+        for from in self.window_starts().filter(is_large) {
             // Overlapping windows above the limit form one run.
             match found.last_mut().filter(|(_, end)| from <= *end) {
                 Some((_, end)) => *end = from + THRESHOLDS.remainder.blocks,
@@ -157,18 +175,18 @@ impl BlockSums<'_> {
         let time = |block: usize| {
             self.part.t_s[(block * self.size * self.part.every).min(self.part.t_s.len() - 1)]
         };
-        let stretch = |(from, to): (usize, usize)| Unexplained {
+        let stretch = |(from, to): (usize, usize)| UnexplainedSegment {
             channel: channel.name().to_owned(),
-            rms_over_noise: rms(&self.sums[from..to]),
+            rms_over_noise: root_mean_square(&self.sums[from..to]),
             trial: trial.to_owned(),
             from_s: time(from),
             to_s: time(to),
         };
-        found.into_iter().map(|run| stretch(self.trimmed(run, limit))).collect()
+        found.into_iter().map(|run| stretch(self.trim_run(run, limit))).collect()
     }
 
     /// Trims blocks at the ends of a run that are included only because of large neighbours.
-    fn trimmed(&self, (mut from, mut to): (usize, usize), limit: f64) -> (usize, usize) {
+    fn trim_run(&self, (mut from, mut to): (usize, usize), limit: f64) -> (usize, usize) {
         let is_small = |block: usize| self.sums[block].abs() < limit;
         while to - from > THRESHOLDS.remainder.blocks && is_small(from) {
             from += 1;

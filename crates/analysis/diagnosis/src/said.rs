@@ -6,40 +6,43 @@ use std::collections::BTreeMap;
 use sistership_model::Model;
 use sistership_model::quantity::Quantity;
 
-use super::Request;
+use super::DiagnosisInputs;
 use super::choose::EffectChoice;
-use super::confounded::Responses;
-use super::covariance::covariance;
+use super::confounded::EffectResponses;
+use super::covariance::effect_covariance;
 use super::hypothesis::JudgedHypothesis;
-use super::next_trial::next_trial;
-use super::outcome::{Found, Hypothesis, NextTrial, Value};
+use super::next_trial::propose_next_trial;
+use super::outcome::{HypothesisReport, MissingEffect, NextTrial, ValueWithError};
 use super::search::HypothesisSearch;
-use super::values::{acts_on, own_covariance, values};
+use super::values::{form_target, own_covariance, values_with_errors};
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
 
 /// Effects found with those they are confounded with, the strongest first, and the trial that would
 /// separate them.
-pub(super) fn apart(
-    request: &Request<'_>,
+pub(super) fn found_with_confounded(
+    request: &DiagnosisInputs<'_>,
     search: &HypothesisSearch<'_>,
     best: &JudgedHypothesis,
     of_all: f64,
-) -> Result<(Vec<Found>, Option<NextTrial>), RefineError> {
-    let mut all: Vec<Found> = (0..best.candidates.len())
-        .map(|place| found(request, search, best, place, of_all))
+) -> Result<(Vec<MissingEffect>, Option<NextTrial>), RefineError> {
+    let mut all: Vec<MissingEffect> = (0..best.candidates.len())
+        .map(|place| report_effect(request, search, best, place, of_all))
         .collect::<Result<_, _>>()?;
     let mut next = None;
     if !all.is_empty() {
         // Filtered again at the final estimates, at the level of the hypothesis alone.
         let level = best.level.min(search.levels.len() - 1);
-        let base = search.base(&best.candidates, &search.levels[level..=level])?;
-        let (columns, others) = (base.workspace.columns(), search.others(&best.candidates));
-        let responses = Responses::new(search, columns, best, (others, &base.total(0)))?;
+        let base =
+            search.filter_with_candidates(&best.candidates, &search.levels[level..=level])?;
+        let (columns, others) =
+            (base.workspace.columns(), search.other_candidates(&best.candidates));
+        let responses =
+            EffectResponses::new(search, columns, best, (others, &base.total_products(0)))?;
         for (place, found) in all.iter_mut().enumerate() {
-            found.confounded_with = responses.beside(place);
+            found.confounded_with = responses.confounded_with(place);
         }
-        next = next_trial(search, &base, best, &all)?;
+        next = propose_next_trial(search, &base, best, &all)?;
     }
     all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     Ok((all, next))
@@ -47,30 +50,33 @@ pub(super) fn apart(
 
 /// Report of an effect. `of_all` is the evidence of all effects together where the model alone may
 /// have any discrepancy: no single one has more.
-fn found(
-    request: &Request<'_>,
+fn report_effect(
+    request: &DiagnosisInputs<'_>,
     search: &HypothesisSearch<'_>,
     best: &JudgedHypothesis,
     place: usize,
     of_all: f64,
-) -> Result<Found, RefineError> {
+) -> Result<MissingEffect, RefineError> {
     let candidate = &best.candidates[place];
-    let discount = search.discount(candidate);
-    let covariance = covariance(best, place, (&search.nuisance, &search.fixed), discount);
-    Ok(Found {
+    let discount = search.candidate_discount(candidate);
+    let covariance = effect_covariance(best, place, (&search.nuisance, &search.fixed), discount);
+    Ok(MissingEffect {
         name: candidate.effect.clone(),
         form: candidate.form.file.name.clone(),
         meaning: candidate.form.file.meaning.clone(),
-        acts_on: acts_on(candidate),
-        parameters: values(candidate, &covariance, request.model),
-        evidence: search.evidence(best, place)?.min(of_all),
+        acts_on: form_target(candidate),
+        parameters: values_with_errors(candidate, &covariance, request.model),
+        evidence: search.effect_evidence(best, place)?.min(of_all),
         in_model: BTreeMap::new(),
         confounded_with: Vec::new(),
     })
 }
 
 /// Parameters of an effect in a model, where they differ from those found.
-pub(super) fn in_model(found: &Found, model: &Model) -> BTreeMap<String, Value> {
+pub(super) fn refitted_parameters(
+    found: &MissingEffect,
+    model: &Model,
+) -> BTreeMap<String, ValueWithError> {
     let carried =
         model.effects.iter().find(|own| own.name == found.name && own.form.name == found.form);
     let all = carried.into_iter().flat_map(|own| &own.parameters);
@@ -78,7 +84,7 @@ pub(super) fn in_model(found: &Found, model: &Model) -> BTreeMap<String, Value> 
         found.parameters.get(name).is_some_and(|value| value.value != own.value)
     });
     let one = |(name, own): (&String, &Quantity)| {
-        (name.clone(), Value { value: own.value, se: own.standard_error.unwrap_or(0.0) })
+        (name.clone(), ValueWithError { value: own.value, se: own.standard_error.unwrap_or(0.0) })
     };
     if moved { all.map(one).collect() } else { BTreeMap::new() }
 }
@@ -87,38 +93,41 @@ pub(super) fn in_model(found: &Found, model: &Model) -> BTreeMap<String, Value> 
 ///
 /// # Errors
 /// Returns an error if the information is not positive.
-pub(super) fn hypotheses(
-    request: &Request<'_>,
+pub(super) fn report_hypotheses(
+    request: &DiagnosisInputs<'_>,
     search: &HypothesisSearch<'_>,
     choice: &EffectChoice,
-) -> Result<Vec<Hypothesis>, RefineError> {
-    let alone = choice.alone.held_out(&search.fixed)?;
+) -> Result<Vec<HypothesisReport>, RefineError> {
+    let alone = choice.alone.held_out_log_probability(&search.fixed)?;
     let one = |(place, judged): (usize, &JudgedHypothesis)| {
-        Ok(Hypothesis {
-            effects: judged.candidates.iter().map(EffectCandidate::key).collect(),
+        Ok(HypothesisReport {
+            effects: judged.candidates.iter().map(EffectCandidate::candidate_key).collect(),
             evidence: judged.log_evidence - choice.alone.log_evidence,
-            held_out: Some(judged.held_out(&search.fixed)? - alone),
-            parameters: parameters(request, judged),
+            held_out: Some(judged.held_out_log_probability(&search.fixed)? - alone),
+            parameters: hypothesis_parameters(request, judged),
             taken: choice.taken == Some(place),
         })
     };
-    let mut all: Vec<Hypothesis> =
+    let mut all: Vec<HypothesisReport> =
         choice.tried.iter().enumerate().map(one).collect::<Result<_, RefineError>>()?;
     all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     Ok(all)
 }
 
-fn parameters(request: &Request<'_>, judged: &JudgedHypothesis) -> BTreeMap<String, Value> {
+fn hypothesis_parameters(
+    request: &DiagnosisInputs<'_>,
+    judged: &JudgedHypothesis,
+) -> BTreeMap<String, ValueWithError> {
     let of = |place: usize| {
         let covariance = own_covariance(&judged.candidates, place, &judged.covariance);
-        values(&judged.candidates[place], &covariance, request.model)
+        values_with_errors(&judged.candidates[place], &covariance, request.model)
     };
     (0..judged.candidates.len()).flat_map(of).collect()
 }
 
 /// Description of the held-out trials; `refit` is the method by which the coefficients were fitted,
 /// if they were.
-pub(super) fn how(request: &Request<'_>, refit: Option<&str>) -> String {
+pub(super) fn describe_method(request: &DiagnosisInputs<'_>, refit: Option<&str>) -> String {
     let fitted = match request.trials.len() {
         1 => {
             "there is one trial only: these are errors on the trial that the effects were fitted on"
@@ -136,7 +145,11 @@ pub(super) fn how(request: &Request<'_>, refit: Option<&str>) -> String {
 }
 
 /// Remarks on effects that were refused, and on the resulting model.
-pub(super) fn remarks(refused: &[String], is_better: bool, found: &[Found]) -> Vec<String> {
+pub(super) fn collect_remarks(
+    refused: &[String],
+    is_better: bool,
+    found: &[MissingEffect],
+) -> Vec<String> {
     let one = |name: &String| {
         format!(
             "`{name}` would explain a part of what remains, but in one size here and in another \
@@ -145,7 +158,7 @@ pub(super) fn remarks(refused: &[String], is_better: bool, found: &[Found]) -> V
     };
     let worse = "with what was found the model does not simulate trials better that the fit has \
         not seen: no model is given";
-    let together = |found: &Found| {
+    let together = |found: &MissingEffect| {
         format!(
             "in the model that is given, `{}` was fitted once more, together with the \
              coefficients, so that simulated trials follow the measured: its parameters there are \

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::evidence::{MarginalInformation, NormalPrior};
 use super::filtered_base::FilteredBase;
-use super::hypothesis::priors;
+use super::hypothesis::candidate_priors;
 use super::search::HypothesisSearch;
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
@@ -26,24 +26,31 @@ pub(super) struct ScreenedEffect {
 ///
 /// # Errors
 /// Returns an error if the information on the coefficients is not positive.
-pub(super) fn screen(
+pub(super) fn screen_effects(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
 ) -> Result<Vec<ScreenedEffect>, RefineError> {
-    let others = search.others(&base.taken);
-    let showing = |candidate: &&EffectCandidate| base.workspace.columns().showing(candidate);
+    let others = search.other_candidates(&base.taken);
+    let showing =
+        |candidate: &&EffectCandidate| base.workspace.columns().matching_columns(candidate);
     let columns =
         base.taken.iter().flat_map(|kept| showing(&kept)).chain(others.iter().flat_map(showing));
     let places: Vec<usize> = (0..search.nuisance.len()).chain(columns).collect();
     let at_level = |level: usize| {
-        Ok((level, MarginalInformation::new(&base.total(level).select(&places), &search.fixed)?))
+        Ok((
+            level,
+            MarginalInformation::new(
+                &base.total_products(level).select_columns(&places),
+                &search.fixed,
+            )?,
+        ))
     };
     let reduced: Vec<(usize, MarginalInformation)> =
         (0..base.levels.len()).into_par_iter().map(at_level).collect::<Result<_, RefineError>>()?;
-    Ok(screened(search, base, &others, &reduced))
+    Ok(screen_candidates(search, base, &others, &reduced))
 }
 
-fn screened(
+fn screen_candidates(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
     others: &[&EffectCandidate],
@@ -58,17 +65,21 @@ fn screened(
             kept.iter().copied().chain(first..first + candidate.at.len()).collect();
         first += candidate.at.len();
         let fixing: Vec<NormalPrior> =
-            base.taken.iter().chain([*candidate]).flat_map(priors).collect();
-        let reduced = weighed(base, reduced, candidate);
+            base.taken.iter().chain([*candidate]).flat_map(candidate_priors).collect();
+        let reduced = considered_levels(base, reduced, candidate);
         let gain = |(level, reduced): &&(usize, MarginalInformation)| {
-            let gain = reduced.estimate(&places, &fixing)?.gain;
+            let gain = reduced.estimate_parameters(&places, &fixing)?.gain;
             Some((base.levels[*level].level.log_prior - 0.5 * reduced.deviance + gain, *level))
         };
         let (evidence, level) =
             reduced.iter().filter_map(gain).max_by(|a, b| a.0.total_cmp(&b.0))?;
         let own = (&places[kept.len()..], *candidate);
-        let discounted =
-            discounted(&reduced, (&kept, &base.taken), own, search.discount(candidate))?;
+        let discounted = discounted_evidence(
+            &reduced,
+            (&kept, &base.taken),
+            own,
+            search.candidate_discount(candidate),
+        )?;
         let prior = search.log_prior(candidate);
         Some(ScreenedEffect {
             evidence: evidence + prior,
@@ -83,7 +94,7 @@ fn screened(
 }
 
 /// Levels that are considered for a candidate, with the information of the trials at each.
-fn weighed<'r>(
+fn considered_levels<'r>(
     base: &FilteredBase<'_>,
     reduced: &'r [(usize, MarginalInformation)],
     candidate: &EffectCandidate,
@@ -96,18 +107,18 @@ fn weighed<'r>(
 
 /// Discounted evidence of an effect together with those of a base, at the level with the least
 /// evidence.
-fn discounted(
+fn discounted_evidence(
     reduced: &[&(usize, MarginalInformation)],
     (kept, taken): (&[usize], &[EffectCandidate]),
     (own, candidate): (&[usize], &EffectCandidate),
     discount: f64,
 ) -> Option<f64> {
-    let others: Vec<NormalPrior> = taken.iter().flat_map(priors).collect();
-    let fixing = priors(candidate);
+    let others: Vec<NormalPrior> = taken.iter().flat_map(candidate_priors).collect();
+    let fixing = candidate_priors(candidate);
     let columns: Vec<usize> = (0..own.len()).collect();
     let gain = |(_, reduced): &&(usize, MarginalInformation)| {
-        let given = reduced.given(kept, &others, own)?.discounted(discount);
-        Some(given.estimate(&columns, &fixing)?.gain)
+        let given = reduced.marginalise_others(kept, &others, own)?.divide_by(discount);
+        Some(given.estimate_parameters(&columns, &fixing)?.gain)
     };
     // The least over levels: evidence at one level only is not reliable.
     reduced.iter().filter_map(gain).min_by(f64::total_cmp)

@@ -7,17 +7,19 @@ use nalgebra::DVector;
 use sistership_model::law::Law;
 use sistership_model::{Model, Trial};
 
-use super::Request;
+use super::DiagnosisInputs;
 use super::calibrated_model::CalibratedModel;
 use super::coefficient_prior::CoefficientPrior;
-use super::discount::{discount, is_from_outside};
-use super::evidence::{DiscrepancyFactor, MarginalInformation, NormalPrior, not_positive};
+use super::discount::{information_discount, is_external};
+use super::evidence::{DiscrepancyFactor, MarginalInformation, NormalPrior, not_positive_error};
 use super::filtered_base::FilteredBase;
-use super::hypothesis::{JudgedHypothesis, halfway, placed, priors};
+use super::hypothesis::{JudgedHypothesis, candidate_priors, midpoint, move_candidates};
 use super::linearised_trials::LinearisedTrials;
-use super::nuisance::Terms;
+use super::nuisance::TermForms;
 use super::thresholds::THRESHOLDS;
-use sistership_filtering::{Columns, Discrepancies, EffectCandidate, Gram, Nuisance};
+use sistership_filtering::{
+    AxisDiscrepancies, EffectCandidate, FilterColumns, GramMatrix, NuisanceColumn,
+};
 use sistership_identification::refine::RefineError;
 
 /// Data that stay the same while hypotheses change.
@@ -31,11 +33,11 @@ pub(super) struct HypothesisSearch<'a> {
     /// Shift of the coefficients, by column; and that before any hypothesis shifted them further.
     pub calibrated: Vec<f64>,
     pub calibrated_at_first: Vec<f64>,
-    pub terms: Terms,
+    pub terms: TermForms,
     pub trials: &'a [&'a Trial],
-    pub nuisance: Vec<Nuisance>,
+    pub nuisance: Vec<NuisanceColumn>,
     pub fixed: CoefficientPrior,
-    pub expected: Discrepancies,
+    pub expected: AxisDiscrepancies,
     /// Levels of the discrepancy that are considered.
     pub levels: Vec<DiscrepancyFactor>,
     pub least_step_s: Option<f64>,
@@ -54,7 +56,7 @@ pub(super) struct HypothesisSearch<'a> {
 
 impl<'a> HypothesisSearch<'a> {
     /// Discrepancies at a level.
-    pub fn discrepancies(&self, level: DiscrepancyFactor) -> Discrepancies {
+    pub fn level_discrepancies(&self, level: DiscrepancyFactor) -> AxisDiscrepancies {
         let scaled = |d: &sistership_model::uncertainty::Discrepancy| {
             let (deviation, white) = (d.deviation * level.factor, d.white * level.factor);
             sistership_model::uncertainty::Discrepancy { deviation, white, ..*d }
@@ -66,11 +68,11 @@ impl<'a> HypothesisSearch<'a> {
     ///
     /// # Errors
     /// Returns an error that names what the model or a trial lacks.
-    pub fn workspace(
+    pub fn prepare_trials(
         &self,
         candidates: Vec<EffectCandidate>,
     ) -> Result<LinearisedTrials<'a>, RefineError> {
-        let columns = Columns { nuisance: self.nuisance.clone(), candidates };
+        let columns = FilterColumns { nuisance: self.nuisance.clone(), candidates };
         LinearisedTrials::new(&self.calibrated_model, columns, self.trials, self.least_step_s)
     }
 
@@ -78,7 +80,7 @@ impl<'a> HypothesisSearch<'a> {
     ///
     /// # Errors
     /// Returns an error that names what the model or a trial lacks.
-    pub fn base(
+    pub fn filter_with_candidates(
         &self,
         taken: &[EffectCandidate],
         levels: &[DiscrepancyFactor],
@@ -87,9 +89,9 @@ impl<'a> HypothesisSearch<'a> {
         let has_column = |candidate: &&EffectCandidate| {
             !self.nuisance.iter().any(|n| n.name == candidate.form.file.name)
         };
-        let others = self.others(taken).into_iter().filter(has_column).cloned();
-        let workspace = self.workspace(taken.iter().cloned().chain(others).collect())?;
-        let levels = levels.iter().map(|&level| (level, self.discrepancies(level))).collect();
+        let others = self.other_candidates(taken).into_iter().filter(has_column).cloned();
+        let workspace = self.prepare_trials(taken.iter().cloned().chain(others).collect())?;
+        let levels = levels.iter().map(|&level| (level, self.level_discrepancies(level))).collect();
         FilteredBase::new(taken, workspace, levels)
     }
 
@@ -97,17 +99,17 @@ impl<'a> HypothesisSearch<'a> {
     ///
     /// # Errors
     /// Returns an error that names what the model or a trial lacks.
-    pub fn bare(
+    pub fn filter_without_candidates(
         &self,
         taken: &[EffectCandidate],
         levels: &[DiscrepancyFactor],
     ) -> Result<FilteredBase<'a>, RefineError> {
-        let levels = levels.iter().map(|&level| (level, self.discrepancies(level))).collect();
-        FilteredBase::new(taken, self.workspace(taken.to_vec())?, levels)
+        let levels = levels.iter().map(|&level| (level, self.level_discrepancies(level))).collect();
+        FilteredBase::new(taken, self.prepare_trials(taken.to_vec())?, levels)
     }
 
     /// Shift of the coefficients by the trials that are diagnosed.
-    pub fn given_way(&self) -> Vec<f64> {
+    pub fn coefficient_shift(&self) -> Vec<f64> {
         self.calibrated
             .iter()
             .zip(&self.calibrated_at_first)
@@ -116,13 +118,13 @@ impl<'a> HypothesisSearch<'a> {
     }
 
     /// Removes all forms of an effect from the candidates.
-    pub fn forget(&mut self, effect: &str) {
+    pub fn remove_effect(&mut self, effect: &str) {
         self.listed.retain(|candidate| candidate.effect != effect);
         self.freed.retain(|candidate| candidate.effect != effect);
     }
 
     /// Candidates of effects that are not accepted.
-    pub fn others(&self, taken: &[EffectCandidate]) -> Vec<&EffectCandidate> {
+    pub fn other_candidates(&self, taken: &[EffectCandidate]) -> Vec<&EffectCandidate> {
         let is_other = |candidate: &&EffectCandidate| {
             !taken.iter().any(|kept| kept.effect == candidate.effect)
         };
@@ -134,7 +136,11 @@ impl<'a> HypothesisSearch<'a> {
     ///
     /// # Errors
     /// Returns an error if the information is not positive.
-    pub fn evidence(&self, judged: &JudgedHypothesis, place: usize) -> Result<f64, RefineError> {
+    pub fn effect_evidence(
+        &self,
+        judged: &JudgedHypothesis,
+        place: usize,
+    ) -> Result<f64, RefineError> {
         let candidate = &judged.candidates[place];
         let sizes: Vec<usize> =
             judged.linearised_at.iter().map(|linearised_at| linearised_at.at.len()).collect();
@@ -142,38 +148,44 @@ impl<'a> HypothesisSearch<'a> {
         let own: Vec<usize> = (first..first + sizes[place]).collect();
         let others: Vec<usize> =
             (0..sizes.iter().sum()).filter(|column| !own.contains(column)).collect();
-        let fixing: Vec<NormalPrior> = judged.linearised_at.iter().flat_map(priors).collect();
+        let fixing: Vec<NormalPrior> =
+            judged.linearised_at.iter().flat_map(candidate_priors).collect();
         let of =
             |columns: &[usize]| columns.iter().map(|&column| fixing[column]).collect::<Vec<_>>();
-        let width = judged.grams.first().ok_or_else(not_positive)?.products.nrows();
+        let width = judged.grams.first().ok_or_else(not_positive_error)?.products.nrows();
         // The other effects are integrated out before the discount, which belongs to this effect
         // alone.
-        let reduced = MarginalInformation::new(&Gram::sum(&judged.grams, width), &self.fixed)?
-            .given(&others, &of(&others), &own)
-            .ok_or_else(not_positive)?;
-        let reduced = reduced.discounted(self.discount(candidate));
+        let reduced =
+            MarginalInformation::new(&GramMatrix::sum_parts(&judged.grams, width), &self.fixed)?
+                .marginalise_others(&others, &of(&others), &own)
+                .ok_or_else(not_positive_error)?;
+        let reduced = reduced.divide_by(self.candidate_discount(candidate));
         let estimate = reduced
-            .estimate(&(0..own.len()).collect::<Vec<_>>(), &of(&own))
-            .ok_or_else(not_positive)?;
+            .estimate_parameters(&(0..own.len()).collect::<Vec<_>>(), &of(&own))
+            .ok_or_else(not_positive_error)?;
         let linearised_at =
             judged.linearised_at[place].at.iter().zip(candidate.form.parameters.values());
         // Relative to the likelihood at the absence of the effect, not at the point of
         // linearisation.
-        let absent = reduced.at(&linearised_at
-            .map(|(at, parameter)| parameter.absent - at)
-            .collect::<Vec<_>>()
-            .into());
+        let absent = reduced.log_likelihood_at(
+            &linearised_at.map(|(at, parameter)| parameter.absent - at).collect::<Vec<_>>().into(),
+        );
         Ok(estimate.gain - absent + self.log_prior(candidate))
     }
 
     /// Divisor of the information on an effect.
-    pub fn discount(&self, candidate: &EffectCandidate) -> f64 {
-        discount(self.model.uncertainty.as_ref(), candidate, &self.listed, self.trials.len())
+    pub fn candidate_discount(&self, candidate: &EffectCandidate) -> f64 {
+        information_discount(
+            self.model.uncertainty.as_ref(),
+            candidate,
+            &self.listed,
+            self.trials.len(),
+        )
     }
 
     /// Logarithm of the prior probability of an effect among all candidates.
     pub fn log_prior(&self, candidate: &EffectCandidate) -> f64 {
-        self.log_priors.get(&candidate.key()).copied().unwrap_or_default()
+        self.log_priors.get(&candidate.candidate_key()).copied().unwrap_or_default()
     }
 
     /// Prior odds of each effect against the model alone, all its forms together.
@@ -189,16 +201,19 @@ impl<'a> HypothesisSearch<'a> {
     ///
     /// # Errors
     /// Returns an error that names what a trial lacks, or one if the information is not positive.
-    pub fn alone(&self, base: &FilteredBase<'_>) -> Result<(usize, JudgedHypothesis), RefineError> {
-        let outside = base.taken.iter().find(|candidate| is_from_outside(candidate));
-        self.alone_at(base, &|level| level.is_weighed(outside))
+    pub fn judge_base(
+        &self,
+        base: &FilteredBase<'_>,
+    ) -> Result<(usize, JudgedHypothesis), RefineError> {
+        let outside = base.taken.iter().find(|candidate| is_external(candidate));
+        self.judge_base_at(base, &|level| level.is_weighed(outside))
     }
 
     /// Judges the effects of a base alone at some of the levels.
     ///
     /// # Errors
     /// Returns an error that names what a trial lacks, or one if the information is not positive.
-    pub fn alone_at(
+    pub fn judge_base_at(
         &self,
         base: &FilteredBase<'_>,
         is_weighed: &dyn Fn(DiscrepancyFactor) -> bool,
@@ -206,11 +221,14 @@ impl<'a> HypothesisSearch<'a> {
         // The linearisation is the same at each level.
         let stand = match base.taken.is_empty() {
             true => None,
-            false => Some(base.linearised(&self.calibrated_model, &base.taken)?),
+            false => Some(base.linearise_hypothesis(&self.calibrated_model, &base.taken)?),
         };
         let at = |level: usize| {
-            let grams = stand.as_ref().map_or_else(|| Ok(base.alone(level)), |s| s.grams(level))?;
-            Ok((level, self.judged((base, level), &base.taken, grams)?))
+            let grams = stand.as_ref().map_or_else(
+                || Ok(base.coefficient_products(level)),
+                |s| s.products_per_trial(level),
+            )?;
+            Ok((level, self.judge_products((base, level), &base.taken, grams)?))
         };
         let levels = 0..base.levels.len();
         most_probable(levels.filter(|level| is_weighed(base.levels[*level].level)).map(at))
@@ -223,7 +241,7 @@ impl<'a> HypothesisSearch<'a> {
     ///
     /// # Errors
     /// Returns an error that names what a trial lacks.
-    pub fn judge(
+    pub fn judge_candidate(
         &self,
         base: &FilteredBase<'_>,
         candidate: &EffectCandidate,
@@ -231,15 +249,16 @@ impl<'a> HypothesisSearch<'a> {
     ) -> Result<JudgedHypothesis, RefineError> {
         // The first linearisation is at the absence of the new effect.
         let absent = [base.taken.as_slice(), std::slice::from_ref(candidate)].concat();
-        let promised = self.at(base, &absent, level)?;
-        let mut best = self.at(base, &promised.1.candidates, promised.0)?;
+        let promised = self.judge_at(base, &absent, level)?;
+        let mut best = self.judge_at(base, &promised.1.candidates, promised.0)?;
         // The full step was worse than promised: half of it is evaluated too.
         if best.1.log_evidence < promised.1.log_evidence - THRESHOLDS.search.same {
-            let less = self.at(base, &halfway(&absent, &promised.1.candidates), promised.0)?;
+            let less =
+                self.judge_at(base, &midpoint(&absent, &promised.1.candidates), promised.0)?;
             best = if less.1.log_evidence > best.1.log_evidence { less } else { best };
         }
         for _ in 1..THRESHOLDS.search.rounds {
-            let next = self.at(base, &best.1.candidates, best.0)?;
+            let next = self.judge_at(base, &best.1.candidates, best.0)?;
             let gain = next.1.log_evidence - best.1.log_evidence;
             // Ends when a round gains nothing, or hardly anything.
             best = if gain > 0.0 { next } else { break };
@@ -256,21 +275,23 @@ impl<'a> HypothesisSearch<'a> {
     /// Returns an error if the information is not positive.
     pub fn calibrated_by(
         &self,
-        request: &Request<'_>,
+        request: &DiagnosisInputs<'_>,
         judged: &JudgedHypothesis,
     ) -> Result<Self, RefineError> {
         let size = self.nuisance.len();
-        let total =
-            Gram::sum(&judged.grams, judged.grams.first().map_or(0, |gram| gram.products.nrows()));
+        let total = GramMatrix::sum_parts(
+            &judged.grams,
+            judged.grams.first().map_or(0, |gram| gram.products.nrows()),
+        );
         let cross = total.products.view((1, 1 + size), (size, total.products.ncols() - 1 - size));
         // The right side at the estimate of the effects: b - G_ce (x - x0).
         let right = total.products.view((1, 0), (size, 1)).column(0)
-            - cross * DVector::from_vec(judged.moved());
+            - cross * DVector::from_vec(judged.parameter_changes());
         let known = CoefficientPrior {
             information: total.products.view((1, 1), (size, size)) + &self.fixed.information,
             weighted_mean: right + &self.fixed.weighted_mean,
         };
-        let shift = known.expected_shift(&self.nuisance).ok_or_else(not_positive)?;
+        let shift = known.expected_shift(&self.nuisance).ok_or_else(not_positive_error)?;
         let calibrated: Vec<f64> =
             self.calibrated.iter().zip(&shift).map(|(before, more)| before + more).collect();
         Ok(Self {
@@ -281,22 +302,25 @@ impl<'a> HypothesisSearch<'a> {
                 &self.nuisance,
                 &calibrated,
             )?,
-            fixed: self.fixed.clone().from(&shift),
+            fixed: self.fixed.clone().relative_to(&shift),
             calibrated,
             ..self.clone()
         })
     }
 
     /// Judges candidates at their values, at a level or the one below, whichever is more probable.
-    fn at(
+    fn judge_at(
         &self,
         base: &FilteredBase<'_>,
         candidates: &[EffectCandidate],
         level: usize,
     ) -> Result<(usize, JudgedHypothesis), RefineError> {
-        let stand = base.linearised(&self.calibrated_model, candidates)?;
+        let stand = base.linearise_hypothesis(&self.calibrated_model, candidates)?;
         let at = |level: usize| {
-            Ok((level, self.judged((base, level), candidates, stand.grams(level)?)?))
+            Ok((
+                level,
+                self.judge_products((base, level), candidates, stand.products_per_trial(level)?)?,
+            ))
         };
         // A lower level may become more probable as effects explain part of the discrepancy.
         let is_weighed = |level: &usize| base.levels[*level].level.is_weighed(candidates.last());
@@ -304,23 +328,24 @@ impl<'a> HypothesisSearch<'a> {
     }
 
     /// Judges candidates at a level of a base by the products of each trial.
-    fn judged(
+    fn judge_products(
         &self,
         (base, level): (&FilteredBase<'_>, usize),
         candidates: &[EffectCandidate],
-        grams: Vec<Gram>,
+        grams: Vec<GramMatrix>,
     ) -> Result<JudgedHypothesis, RefineError> {
-        let priors: Vec<NormalPrior> = candidates.iter().flat_map(priors).collect();
+        let priors: Vec<NormalPrior> = candidates.iter().flat_map(candidate_priors).collect();
         let places: Vec<usize> = (0..priors.len()).collect();
-        let width = grams.first().ok_or_else(not_positive)?.products.nrows();
-        let reduced = MarginalInformation::new(&Gram::sum(&grams, width), &self.fixed)?;
-        let estimate = reduced.estimate(&places, &priors).ok_or_else(not_positive)?;
+        let width = grams.first().ok_or_else(not_positive_error)?.products.nrows();
+        let reduced = MarginalInformation::new(&GramMatrix::sum_parts(&grams, width), &self.fixed)?;
+        let estimate =
+            reduced.estimate_parameters(&places, &priors).ok_or_else(not_positive_error)?;
         let prior: f64 = candidates.iter().map(|candidate| self.log_prior(candidate)).sum();
         Ok(JudgedHypothesis {
             log_evidence: base.levels[level].level.log_prior - 0.5 * reduced.deviance
                 + estimate.gain
                 + prior,
-            candidates: placed(candidates.to_vec(), &estimate),
+            candidates: move_candidates(candidates.to_vec(), &estimate),
             linearised_at: candidates.to_vec(),
             shift: &reduced.shift - &reduced.answers * &estimate.mean,
             covariance: estimate.covariance,
@@ -339,5 +364,5 @@ fn most_probable(
 ) -> Result<(usize, JudgedHypothesis), RefineError> {
     let all: Vec<(usize, JudgedHypothesis)> = all.collect::<Result<_, _>>()?;
     let best = all.into_iter().max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
-    best.ok_or_else(not_positive)
+    best.ok_or_else(not_positive_error)
 }

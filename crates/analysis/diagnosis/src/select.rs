@@ -1,27 +1,27 @@
 //! Selection of the final effects: those that are constant in time, or none where changes within
 //! trials explain everything.
 
-use super::Request;
-use super::changes::{changes, open};
-use super::choose::{ConvergedChoice, EffectChoice, choose};
-use super::constancy::inconstant;
+use super::DiagnosisInputs;
+use super::changes::{find_changes, trials_with_remainder};
+use super::choose::{ConvergedChoice, EffectChoice, choose_effects};
+use super::constancy::inconstant_effects;
 use super::filtered_base::FilteredBase;
 use super::hypothesis::JudgedHypothesis;
 use super::linearised_trials::LinearisedTrials;
-use super::misfit::of_shape;
-use super::outcome::{Change, Unexplained};
-use super::remainder::unexplained;
+use super::misfit::shape_error;
+use super::outcome::{EffectChange, UnexplainedSegment};
+use super::remainder::find_unexplained;
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
-use sistership_filtering::{Discrepancies, EffectCandidate};
+use sistership_filtering::{AxisDiscrepancies, EffectCandidate};
 use sistership_identification::refine::{Progress, RefineError};
 
 /// Final selection.
 pub(super) struct SelectedEffects<'a> {
     pub choice: EffectChoice,
     pub settled: ConvergedChoice<'a>,
-    pub remaining: Vec<Unexplained>,
-    pub changes: Vec<Change>,
+    pub remaining: Vec<UnexplainedSegment>,
+    pub changes: Vec<EffectChange>,
     /// Names of effects that are not constant in time.
     pub refused: Vec<String>,
 }
@@ -33,86 +33,90 @@ pub(super) struct SelectedEffects<'a> {
 ///
 /// # Errors
 /// Returns an error that names what a trial lacks.
-pub(super) fn selected<'a>(
-    request: &Request<'_>,
+pub(super) fn select_effects<'a>(
+    request: &DiagnosisInputs<'_>,
     (first, base): (&HypothesisSearch<'a>, &FilteredBase<'a>),
     mut choice: EffectChoice,
     progress: Progress<'_>,
 ) -> Result<SelectedEffects<'a>, RefineError> {
     let (mut search, mut refused) = (first.clone(), Vec::new());
     loop {
-        let state = LeftState::of(choice.settled(&search, request)?)?;
-        let varying = state.varying(request.settings.least_evidence)?;
+        let state = RemainderState::from_converged(choice.converge(&search, request)?)?;
+        let varying = state.inconstant_places(request.settings.least_evidence)?;
         let is_asked = refused.is_empty() || varying.is_empty();
-        if is_asked && !state.remaining.is_empty() && !state.named().is_empty() {
-            told(progress, "whether something changed within trials instead")?;
-            let steady = state.names(|place| !varying.contains(&place));
+        if is_asked && !state.remaining.is_empty() && !state.accepted_effects().is_empty() {
+            report_progress(progress, "whether something changed within trials instead")?;
+            let steady = state.effect_names(|place| !varying.contains(&place));
             // All accepted effects only resembled the changes.
             if let Some((state, changes)) = only_changes(request, first, &choice, &steady)? {
-                refused.extend(choice.best().candidates.iter().map(|one| one.effect.clone()));
+                refused.extend(
+                    choice.best_hypothesis().candidates.iter().map(|one| one.effect.clone()),
+                );
                 choice.taken = None;
-                return Ok(state.with(choice, changes, refused));
+                return Ok(state.into_selection(choice, changes, refused));
             }
         }
         if varying.is_empty() {
-            told(progress, "what changes within trials")?;
-            let changes = state.changes(request, first)?;
-            return Ok(state.with(choice, changes, refused));
+            report_progress(progress, "what changes within trials")?;
+            let changes = state.find_changes(request, first)?;
+            return Ok(state.into_selection(choice, changes, refused));
         }
         // Refused effects are removed from the search before it is repeated.
-        let names = state.names(|place| varying.contains(&place)).into_iter();
-        refused.extend(names.inspect(|name| search.forget(name)));
-        told(progress, "effects without those that only resemble what is missing")?;
-        choice = choose(&search, base, request.settings)?.after(choice);
+        let names = state.effect_names(|place| varying.contains(&place)).into_iter();
+        refused.extend(names.inspect(|name| search.remove_effect(name)));
+        report_progress(progress, "effects without those that only resemble what is missing")?;
+        choice = choose_effects(&search, base, request.settings)?.merge_earlier(choice);
     }
 }
 
 /// Converged effects and coefficients, with their remainder.
-struct LeftState<'a> {
+struct RemainderState<'a> {
     settled: ConvergedChoice<'a>,
-    remaining: Vec<Unexplained>,
+    remaining: Vec<UnexplainedSegment>,
 }
 
-impl<'a> LeftState<'a> {
-    fn of(settled: ConvergedChoice<'a>) -> Result<Self, RefineError> {
-        let remaining = remaining(&settled.search, &settled.best, &settled.base.workspace)?;
+impl<'a> RemainderState<'a> {
+    fn from_converged(settled: ConvergedChoice<'a>) -> Result<Self, RefineError> {
+        let remaining =
+            unexplained_segments(&settled.search, &settled.best, &settled.base.workspace)?;
         Ok(Self { settled, remaining })
     }
 
-    fn named(&self) -> &[EffectCandidate] {
+    fn accepted_effects(&self) -> &[EffectCandidate] {
         &self.settled.best.candidates
     }
 
-    fn names(&self, is_wanted: impl Fn(usize) -> bool) -> Vec<String> {
-        let wanted = self.named().iter().enumerate().filter(|(place, _)| is_wanted(*place));
+    fn effect_names(&self, is_wanted: impl Fn(usize) -> bool) -> Vec<String> {
+        let wanted =
+            self.accepted_effects().iter().enumerate().filter(|(place, _)| is_wanted(*place));
         wanted.map(|(_, candidate)| candidate.effect.clone()).collect()
     }
 
     /// Indices of the effects that are not constant in time, where something remains unexplained.
-    fn varying(&self, margin: f64) -> Result<Vec<usize>, RefineError> {
+    fn inconstant_places(&self, margin: f64) -> Result<Vec<usize>, RefineError> {
         let ConvergedChoice { search, base, best } = &self.settled;
         match self.remaining.is_empty() {
             true => Ok(Vec::new()),
-            false => inconstant(search, base, best, margin),
+            false => inconstant_effects(search, base, best, margin),
         }
     }
 
     /// Changes within trials in addition to the accepted effects.
-    fn changes(
+    fn find_changes(
         &self,
-        request: &Request<'_>,
+        request: &DiagnosisInputs<'_>,
         first: &HypothesisSearch<'_>,
-    ) -> Result<Vec<Change>, RefineError> {
+    ) -> Result<Vec<EffectChange>, RefineError> {
         let all = (&self.settled.search, &self.settled.best, first.listed.as_slice());
-        changes(all, &self.remaining, request.settings.least_evidence)
+        find_changes(all, &self.remaining, request.settings.least_evidence)
     }
 
     /// Completes the selection; an effect that changes is not listed as one that only resembles the
     /// missing one.
-    fn with(
+    fn into_selection(
         self,
         choice: EffectChoice,
-        changes: Vec<Change>,
+        changes: Vec<EffectChange>,
         mut refused: Vec<String>,
     ) -> SelectedEffects<'a> {
         refused.retain(|name| changes.iter().all(|change| change.effect != *name));
@@ -121,7 +125,7 @@ impl<'a> LeftState<'a> {
     }
 }
 
-fn told(progress: Progress<'_>, what: &str) -> Result<(), RefineError> {
+fn report_progress(progress: Progress<'_>, what: &str) -> Result<(), RefineError> {
     if progress(0.8, what) { Ok(()) } else { Err(RefineError::Cancelled) }
 }
 
@@ -129,67 +133,73 @@ fn told(progress: Progress<'_>, what: &str) -> Result<(), RefineError> {
 /// more evidence than the accepted effects: these only resembled the changes. An effect that is
 /// `steady` is no change.
 fn only_changes<'a>(
-    request: &Request<'_>,
+    request: &DiagnosisInputs<'_>,
     first: &HypothesisSearch<'a>,
     choice: &EffectChoice,
     steady: &[String],
-) -> Result<Option<(LeftState<'a>, Vec<Change>)>, RefineError> {
-    let state = LeftState::of(choice.alone_settled(first, request)?)?;
+) -> Result<Option<(RemainderState<'a>, Vec<EffectChange>)>, RefineError> {
+    let state = RemainderState::from_converged(choice.converge_alone(first, request)?)?;
     // No more trials than that are examined for changes: the others would stay unexplained.
-    if open(&state.remaining).len() > THRESHOLDS.changes.asked {
+    if trials_with_remainder(&state.remaining).len() > THRESHOLDS.changes.asked {
         return Ok(None);
     }
-    let changes = state.changes(request, first)?;
-    let is_told = |open: &Unexplained| changes.iter().any(|change| change.trial == open.trial);
+    let changes = state.find_changes(request, first)?;
+    let is_told =
+        |open: &UnexplainedSegment| changes.iter().any(|change| change.trial == open.trial);
     let is_steady = changes.iter().any(|change| steady.contains(&change.effect));
     let evidence: f64 = changes.iter().map(|change| change.evidence).sum();
-    let of_effects = choice.best().log_evidence - choice.alone.log_evidence;
+    let of_effects = choice.best_hypothesis().log_evidence - choice.alone.log_evidence;
     let is_all = !is_steady && state.remaining.iter().all(is_told) && evidence > of_effects;
     Ok(is_all.then_some((state, changes)))
 }
 
 /// Discrepancy by which the remainder is judged.
-pub(super) fn expected(
+pub(super) fn remainder_discrepancies(
     search: &HypothesisSearch<'_>,
     workspace: &LinearisedTrials<'_>,
-) -> Discrepancies {
+) -> AxisDiscrepancies {
     match search.model.uncertainty {
         Some(_) => search.expected.clone(),
-        None => workspace.scales().discrepancies(THRESHOLDS.discrepancy.remainder_level),
+        None => {
+            workspace.motion_scales().level_discrepancies(THRESHOLDS.discrepancy.remainder_level)
+        }
     }
 }
 
 /// Change of each column.
-pub(super) fn parameters(best: &JudgedHypothesis) -> Vec<f64> {
-    best.shift.iter().copied().chain(best.moved()).collect()
+pub(super) fn column_changes(best: &JudgedHypothesis) -> Vec<f64> {
+    best.shift.iter().copied().chain(best.parameter_changes()).collect()
 }
 
-fn remaining(
+fn unexplained_segments(
     search: &HypothesisSearch<'_>,
     best: &JudgedHypothesis,
     workspace: &LinearisedTrials<'_>,
-) -> Result<Vec<Unexplained>, RefineError> {
-    let (expected, parameters) = (&expected(search, workspace), parameters(best));
+) -> Result<Vec<UnexplainedSegment>, RefineError> {
+    let (expected, parameters) =
+        (&remainder_discrepancies(search, workspace), column_changes(best));
     let clean = search.model.uncertainty.as_ref().map(|uncertainty| &uncertainty.remainder);
     let open = |candidate: &EffectCandidate| {
-        let share = of_shape(candidate);
-        candidate.change().into_iter().map(move |change| share * change)
+        let share = shape_error(candidate);
+        candidate.parameter_changes().into_iter().map(move |change| share * change)
     };
     let changes: Vec<f64> = best.candidates.iter().flat_map(open).collect();
     let effects: Vec<f64> = vec![0.0; best.shift.len()].into_iter().chain(changes).collect();
-    let found = unexplained(workspace, expected, &parameters, &effects, clean)?;
+    let found = find_unexplained(workspace, expected, &parameters, &effects, clean)?;
     // Without a calibration there are no coefficients of clean trials to date the remainder by.
     if clean.is_none() || found.is_empty() {
         return Ok(found);
     }
     // Coefficients that were shifted by the missing effect have spread it over the trial: its time
     // is determined with those of clean trials.
-    let given_way = search.given_way().into_iter().map(|change| -change);
+    let given_way = search.coefficient_shift().into_iter().map(|change| -change);
     let as_calibrated: Vec<f64> =
         given_way.chain(parameters.iter().copied().skip(best.shift.len())).collect();
-    let dated = unexplained(workspace, expected, &as_calibrated, &effects, clean)?;
-    let same = |a: &Unexplained, b: &Unexplained| a.trial == b.trial && a.channel == b.channel;
-    let dated: Vec<Unexplained> =
+    let dated = find_unexplained(workspace, expected, &as_calibrated, &effects, clean)?;
+    let same = |a: &UnexplainedSegment, b: &UnexplainedSegment| {
+        a.trial == b.trial && a.channel == b.channel
+    };
+    let dated: Vec<UnexplainedSegment> =
         dated.into_iter().filter(|a| found.iter().any(|b| same(a, b))).collect();
     Ok(if dated.is_empty() { found } else { dated })
 }

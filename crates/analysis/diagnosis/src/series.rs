@@ -8,25 +8,25 @@ use super::linearised_trials::LinearisedTrials;
 use super::outcome::{DiscrepancyLevel, ResidualSeries};
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
-use sistership_filtering::{Columns, Smoothed, smoothed};
+use sistership_filtering::{FilterColumns, SmoothedDiscrepancies, smooth_discrepancies};
 use sistership_identification::refine::RefineError;
 
 /// Returns the residuals of every trial: of the given model, and with the effects found.
 ///
 /// # Errors
 /// Returns an error that names what a trial lacks.
-pub(super) fn residuals(
+pub(super) fn residual_series(
     search: &HypothesisSearch<'_>,
     settled: &HypothesisSearch<'_>,
     best: &JudgedHypothesis,
 ) -> Result<Vec<ResidualSeries>, RefineError> {
     let before = LinearisedTrials::new(
         &search.calibrated_model,
-        Columns::default(),
+        FilterColumns::default(),
         search.trials,
         search.least_step_s,
     )?;
-    let columns = Columns { nuisance: Vec::new(), candidates: best.candidates.clone() };
+    let columns = FilterColumns { nuisance: Vec::new(), candidates: best.candidates.clone() };
     let after = LinearisedTrials::new(
         &settled.calibrated_model,
         columns,
@@ -37,39 +37,43 @@ pub(super) fn residuals(
     let level = search.levels[search.levels.len() - 1];
     let of = |workspace: &LinearisedTrials<'_>,
               trial: usize|
-     -> Result<Vec<Smoothed>, RefineError> {
-        let parts = workspace.linear()[trial].iter();
-        parts.map(|part| smoothed(part, &workspace.noise, &search.discrepancies(level))).collect()
+     -> Result<Vec<SmoothedDiscrepancies>, RefineError> {
+        let parts = workspace.linearised_parts()[trial].iter();
+        parts
+            .map(|part| {
+                smooth_discrepancies(part, &workspace.noise, &search.level_discrepancies(level))
+            })
+            .collect()
     };
     let mut all = Vec::new();
     for (place, trial) in search.trials.iter().enumerate() {
         let samples: Vec<usize> =
-            before.linear()[place].iter().flat_map(|part| part.samples.clone()).collect();
+            before.linearised_parts()[place].iter().flat_map(|part| part.samples.clone()).collect();
         let (before_it, after_it) = (of(&before, place)?, of(&after, place)?);
         for axis in 0..before.axes().len() {
-            all.push(series(
+            all.push(trial_series(
                 trial,
-                before.axes()[axis].velocity(),
+                before.axes()[axis].velocity_name(),
                 &samples,
                 axis,
                 [&before_it, &after_it],
             ));
         }
     }
-    explain(search.trials, &mut all);
+    set_best_variables(search.trials, &mut all);
     Ok(all)
 }
 
-fn series(
+fn trial_series(
     trial: &Trial,
     channel: &str,
     samples: &[usize],
     axis: usize,
-    [before, after]: [&[Smoothed]; 2],
+    [before, after]: [&[SmoothedDiscrepancies]; 2],
 ) -> ResidualSeries {
     let stride = samples.len().div_ceil(THRESHOLDS.series.points).max(1);
     let thin = |values: Vec<f64>| values.into_iter().step_by(stride).collect::<Vec<f64>>();
-    let joined = |parts: &[Smoothed]| {
+    let joined = |parts: &[SmoothedDiscrepancies]| {
         thin(parts.iter().flat_map(|part| part.values[axis].clone()).collect())
     };
     let band = before
@@ -89,7 +93,7 @@ fn series(
 }
 
 /// Sets each channel's series against the variable that explains most of it over all trials.
-fn explain(trials: &[&Trial], all: &mut [ResidualSeries]) {
+fn set_best_variables(trials: &[&Trial], all: &mut [ResidualSeries]) {
     // Equal neighbours are removed first, so that fewer names are sorted.
     let mut channels: Vec<String> = all.iter().map(|series| series.channel.clone()).collect();
     channels.dedup();
@@ -100,8 +104,8 @@ fn explain(trials: &[&Trial], all: &mut [ResidualSeries]) {
             all.iter().filter(|series| series.channel == channel).collect();
         let share = |variable: &Channel| {
             let pairs: Option<Vec<Vec<(f64, f64)>>> =
-                of.iter().map(|series| pairs(trials, series, *variable)).collect();
-            explained(pairs?.into_iter().flatten().collect())
+                of.iter().map(|series| variable_pairs(trials, series, *variable)).collect();
+            explained_share(pairs?.into_iter().flatten().collect())
         };
         let shares = THRESHOLDS
             .series
@@ -110,7 +114,7 @@ fn explain(trials: &[&Trial], all: &mut [ResidualSeries]) {
             .filter_map(|variable| Some((share(variable)?, *variable)));
         let Some((_, best)) = shares.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
         for series in all.iter_mut().filter(|series| series.channel == channel) {
-            let pairs = pairs(trials, series, best).unwrap_or_default();
+            let pairs = variable_pairs(trials, series, best).unwrap_or_default();
             (series.against, series.variable) =
                 (best.name().to_owned(), pairs.into_iter().map(|(variable, _)| variable).collect());
         }
@@ -118,13 +122,17 @@ fn explain(trials: &[&Trial], all: &mut [ResidualSeries]) {
 }
 
 /// A variable and the residual at the times of a series.
-fn pairs(trials: &[&Trial], series: &ResidualSeries, variable: Channel) -> Option<Vec<(f64, f64)>> {
-    let values = recorded(trials, series, variable)?;
+fn variable_pairs(
+    trials: &[&Trial],
+    series: &ResidualSeries,
+    variable: Channel,
+) -> Option<Vec<(f64, f64)>> {
+    let values = recorded_values(trials, series, variable)?;
     Some(values.into_iter().zip(series.before.iter().copied()).collect())
 }
 
 /// A variable at the times of a series; a heading within one turn.
-pub(super) fn recorded(
+pub(super) fn recorded_values(
     trials: &[&Trial],
     series: &ResidualSeries,
     variable: Channel,
@@ -139,7 +147,7 @@ pub(super) fn recorded(
 }
 
 /// Share of the variance of the second value that lies between classes of the first.
-fn explained(mut pairs: Vec<(f64, f64)>) -> Option<f64> {
+fn explained_share(mut pairs: Vec<(f64, f64)>) -> Option<f64> {
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (first, last) = (pairs.first()?.0, pairs.last()?.0);
     if last - first < 1e-9 {
@@ -156,19 +164,19 @@ fn explained(mut pairs: Vec<(f64, f64)>) -> Option<f64> {
 }
 
 /// Level of the unexplained part of each acceleration, before and after.
-pub(super) fn levels(
+pub(super) fn discrepancy_levels(
     search: &HypothesisSearch<'_>,
     workspace: &LinearisedTrials<'_>,
     before: &JudgedHypothesis,
     after: &JudgedHypothesis,
 ) -> Vec<DiscrepancyLevel> {
     let at = |judged: &JudgedHypothesis| {
-        search.discrepancies(search.levels[judged.level.min(search.levels.len() - 1)])
+        search.level_discrepancies(search.levels[judged.level.min(search.levels.len() - 1)])
     };
     let (before, after) = (at(before), at(after));
     let is_known = search.model.uncertainty.is_some();
     let one = |(place, axis): (usize, &sistership_model::coefficient::Axis)| DiscrepancyLevel {
-        channel: axis.velocity().to_owned(),
+        channel: axis.velocity_name().to_owned(),
         expected: is_known.then(|| search.expected[place].deviation),
         before: before[place].deviation,
         after: after[place].deviation,

@@ -52,7 +52,7 @@ impl Settings {
     ///
     /// # Errors
     /// Returns the field and its allowed values if one is invalid.
-    pub fn check(&self) -> Result<(), (String, String)> {
+    pub fn check_values(&self) -> Result<(), (String, String)> {
         let refuse = |field: &str, message: &str| Err((field.to_owned(), message.to_owned()));
         let positive =
             |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());

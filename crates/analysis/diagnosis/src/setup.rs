@@ -3,25 +3,27 @@
 
 use std::sync::Arc;
 
-use sistership_model::effect::Form;
+use sistership_model::effect::EffectForm;
 use sistership_model::law::Law;
 use sistership_model::{Effect, Model, Trial};
 
-use super::Request;
+use super::DiagnosisInputs;
 use super::calibrated_model::CalibratedModel;
-use super::discount::is_from_outside;
+use super::discount::is_external;
 use super::evidence::DiscrepancyFactor;
 use super::linearised_trials::LinearisedTrials;
 use super::log_priors::{log_priors, states_odds};
-use super::nuisance::{Terms, columns, lacked, learned, learned_prior, prior};
+use super::nuisance::{
+    TermForms, learned_prior, learned_terms, missing_terms, model_columns, uncalibrated_prior,
+};
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
-use sistership_filtering::{Columns, Discrepancies, EffectCandidate};
+use sistership_filtering::{AxisDiscrepancies, EffectCandidate, FilterColumns};
 use sistership_identification::refine::RefineError;
 
 /// Candidate forms on trials: those whose channels every trial has, of effects that the model does
 /// not carry, except known errors of its instruments.
-pub(super) fn listed(
+pub(super) fn listed_candidates(
     model: &Model,
     law: &Law,
     effects: &[Arc<Effect>],
@@ -35,37 +37,40 @@ pub(super) fn listed(
         .map(|known| known.systematic_errors.as_slice())
         .unwrap_or_default();
     let of = |effect: &Arc<Effect>| -> Vec<EffectCandidate> {
-        let is_systematic = |form: &Form| {
+        let is_systematic = |form: &EffectForm| {
             systematic_errors
                 .iter()
                 .any(|error| error.name == effect.name && error.form.name == form.file.name)
         };
-        let forms =
-            effect.forms.iter().filter(|form| fits(form, law, trials) && !is_systematic(form));
+        let forms = effect
+            .forms
+            .iter()
+            .filter(|form| is_applicable(form, law, trials) && !is_systematic(form));
         let forms = forms.filter(|form| !form.file.only_as_change);
-        forms.map(|form| EffectCandidate::absent(&effect.name, form)).collect()
+        forms.map(|form| EffectCandidate::at_absence(&effect.name, form)).collect()
     };
     effects.iter().filter(carried).flat_map(of).collect()
 }
 
 /// Forms that are candidates for a change within a trial only.
-fn changing(request: &Request<'_>) -> Vec<EffectCandidate> {
+fn changing_candidates(request: &DiagnosisInputs<'_>) -> Vec<EffectCandidate> {
     let of = |effect: &Arc<Effect>| -> Vec<EffectCandidate> {
-        let can =
-            |form: &&Arc<Form>| form.file.only_as_change && fits(form, request.law, request.trials);
+        let can = |form: &&Arc<EffectForm>| {
+            form.file.only_as_change && is_applicable(form, request.law, request.trials)
+        };
         let forms = effect.forms.iter().filter(can);
-        forms.map(|form| EffectCandidate::absent(&effect.name, form)).collect()
+        forms.map(|form| EffectCandidate::at_absence(&effect.name, form)).collect()
     };
     request.effects.iter().flat_map(of).collect()
 }
 
 /// Candidate terms of the library's grammars.
-fn freed(request: &Request<'_>) -> Vec<EffectCandidate> {
-    let terms = lacked(request.model, request.law, request.effects, request.trials);
-    terms.iter().map(|(effect, form)| EffectCandidate::absent(effect, form)).collect()
+fn missing_term_candidates(request: &DiagnosisInputs<'_>) -> Vec<EffectCandidate> {
+    let terms = missing_terms(request.model, request.law, request.effects, request.trials);
+    terms.iter().map(|(effect, form)| EffectCandidate::at_absence(effect, form)).collect()
 }
 
-fn fits(form: &Form, law: &Law, trials: &[&Trial]) -> bool {
+fn is_applicable(form: &EffectForm, law: &Law, trials: &[&Trial]) -> bool {
     let everywhere =
         |channel: &_| trials.iter().all(|trial: &&Trial| trial.channel(*channel).is_some());
     let somewhere =
@@ -79,18 +84,22 @@ fn fits(form: &Form, law: &Law, trials: &[&Trial]) -> bool {
 ///
 /// # Errors
 /// Returns an error that names what the model or a trial lacks.
-pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, RefineError> {
-    let listed = listed(request.model, request.law, request.effects, request.trials);
-    let (freed, changing) = (freed(request), changing(request));
-    let terms: Terms = learned(request.model, request.law, request.effects, request.trials);
-    let nuisance = columns(request.model, request.law);
+pub(super) fn prepare_search<'a>(
+    request: &DiagnosisInputs<'a>,
+) -> Result<HypothesisSearch<'a>, RefineError> {
+    let listed = listed_candidates(request.model, request.law, request.effects, request.trials);
+    let (freed, changing) = (missing_term_candidates(request), changing_candidates(request));
+    let terms: TermForms =
+        learned_terms(request.model, request.law, request.effects, request.trials);
+    let nuisance = model_columns(request.model, request.law);
     let (fixed, levels) = match &request.model.uncertainty {
-        Some(uncertainty) => {
-            (learned_prior(uncertainty)?, THRESHOLDS.discrepancy.known_factors.map(known).to_vec())
-        }
+        Some(uncertainty) => (
+            learned_prior(uncertainty)?,
+            THRESHOLDS.discrepancy.known_factors.map(known_level).to_vec(),
+        ),
         None => (
-            prior(request.model, &nuisance, &terms, request.settings.slack),
-            THRESHOLDS.discrepancy.unknown_factors.map(unknown).to_vec(),
+            uncalibrated_prior(request.model, &nuisance, &terms, request.settings.slack),
+            THRESHOLDS.discrepancy.unknown_factors.map(unknown_level).to_vec(),
         ),
     };
     let shift = fixed
@@ -109,7 +118,7 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, 
         trials: request.trials,
         nuisance,
         terms,
-        fixed: fixed.from(&shift),
+        fixed: fixed.relative_to(&shift),
         calibrated_at_first: shift.clone(),
         calibrated: shift,
         expected: Vec::new(),
@@ -121,40 +130,41 @@ pub(super) fn search<'a>(request: &Request<'a>) -> Result<HypothesisSearch<'a>, 
         freed,
         changing,
     };
-    search.expected = expected(request, &search)?;
+    search.expected = expected_discrepancies(request, &search)?;
     Ok(search)
 }
 
 /// Adds a level of the discrepancy below that of the calibration, where an external influence is
 /// recorded: part of the calibration's discrepancy may be due to it.
 pub(super) fn with_level_below(mut search: HypothesisSearch<'_>) -> HypothesisSearch<'_> {
-    if search.model.uncertainty.is_some() && search.listed.iter().any(is_from_outside) {
-        search.levels.insert(0, known(THRESHOLDS.discrepancy.factor_below));
+    if search.model.uncertainty.is_some() && search.listed.iter().any(is_external) {
+        search.levels.insert(0, known_level(THRESHOLDS.discrepancy.factor_below));
     }
     search
 }
 
-fn known(factor: f64) -> DiscrepancyFactor {
+fn known_level(factor: f64) -> DiscrepancyFactor {
     DiscrepancyFactor {
         factor,
         log_prior: -0.5 * (factor.ln() / THRESHOLDS.discrepancy.known_spread).powi(2),
     }
 }
 
-fn unknown(factor: f64) -> DiscrepancyFactor {
+fn unknown_level(factor: f64) -> DiscrepancyFactor {
     DiscrepancyFactor { factor, log_prior: 0.0 }
 }
 
 /// Discrepancy of the model's calibration, or the least that is considered.
-fn expected(
-    request: &Request<'_>,
+fn expected_discrepancies(
+    request: &DiagnosisInputs<'_>,
     search: &HypothesisSearch<'_>,
-) -> Result<Discrepancies, RefineError> {
+) -> Result<AxisDiscrepancies, RefineError> {
     // Scales and axes alone are needed, so that the trials are not sampled.
-    let columns = Columns::default();
+    let columns = FilterColumns::default();
     let workspace =
         LinearisedTrials::new(&search.calibrated_model, columns, search.trials, Some(f64::MAX))?;
-    let mut expected = workspace.scales().discrepancies(THRESHOLDS.discrepancy.least_level);
+    let mut expected =
+        workspace.motion_scales().level_discrepancies(THRESHOLDS.discrepancy.least_level);
     if let Some(uncertainty) = &request.model.uncertainty {
         for (axis, discrepancy) in workspace.axes().iter().zip(&mut expected) {
             if let Some(known) = uncertainty.discrepancy.get(axis) {

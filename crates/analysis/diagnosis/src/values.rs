@@ -7,30 +7,30 @@ use sistership_model::effect::{ActsOn, AppliedEffect};
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, particulars};
 
-use super::outcome::Value;
+use super::outcome::ValueWithError;
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::EffectCandidate;
 
 /// Parameters of a candidate and quantities that follow from them, by the delta method;
 /// `covariance` is that of its parameters.
-pub(super) fn values(
+pub(super) fn values_with_errors(
     candidate: &EffectCandidate,
     covariance: &DMatrix<f64>,
     model: &Model,
-) -> BTreeMap<String, Value> {
+) -> BTreeMap<String, ValueWithError> {
     let names: Vec<&String> = candidate.form.parameters.keys().collect();
     let error = |i: usize| covariance[(i, i)].max(0.0).sqrt();
-    let own = names
-        .iter()
-        .enumerate()
-        .map(|(i, name)| ((*name).clone(), Value { value: candidate.at[i], se: error(i) }));
-    let mut values: BTreeMap<String, Value> = own.collect();
+    let own = names.iter().enumerate().map(|(i, name)| {
+        ((*name).clone(), ValueWithError { value: candidate.at[i], se: error(i) })
+    });
+    let mut values: BTreeMap<String, ValueWithError> = own.collect();
     for name in candidate.form.reports.keys() {
         let at = |point: &[f64]| {
             let parameter =
                 |known: &str| names.iter().position(|name| *name == known).map(|i| point[i]);
-            candidate.form.report(name, &|known| {
-                parameter(known).or_else(|| particulars::value(&model.particulars, known))
+            candidate.form.report_value(name, &|known| {
+                parameter(known)
+                    .or_else(|| particulars::particular_value(&model.particulars, known))
             })
         };
         let Some(value) = at(&candidate.at) else { continue };
@@ -45,7 +45,7 @@ pub(super) fn values(
         let gradient =
             DVector::from_iterator(names.len(), (0..names.len()).map(|i| slope(i).unwrap_or(0.0)));
         let se = (gradient.transpose() * covariance * &gradient)[(0, 0)].max(0.0).sqrt();
-        values.insert(name.clone(), Value { value, se });
+        values.insert(name.clone(), ValueWithError { value, se });
     }
     values
 }
@@ -63,7 +63,7 @@ pub(super) fn own_covariance(
 
 /// Model with effects. Its coefficients stay unchanged: their shift on the new trials was fitted
 /// together with terms that the model does not have, and would be wrong without these.
-pub(super) fn model_with(
+pub(super) fn model_with_effects(
     model: &Model,
     candidates: &[EffectCandidate],
     errors: Option<&DMatrix<f64>>,
@@ -71,19 +71,19 @@ pub(super) fn model_with(
     let mut model = model.clone();
     for (place, candidate) in candidates.iter().enumerate() {
         let covariance = errors.map(|errors| own_covariance(candidates, place, errors));
-        model.effects.push(applied(candidate, covariance.as_ref()));
+        model.effects.push(applied_effect(candidate, covariance.as_ref()));
     }
     model
 }
 
-fn applied(candidate: &EffectCandidate, covariance: Option<&DMatrix<f64>>) -> AppliedEffect {
+fn applied_effect(candidate: &EffectCandidate, covariance: Option<&DMatrix<f64>>) -> AppliedEffect {
     let quantity = |(i, (name, value)): (usize, (&String, &f64))| {
         let standard_error = covariance.map(|covariance| covariance[(i, i)].max(0.0).sqrt());
         (name.clone(), Quantity { standard_error, ..Quantity::new(*value, "diagnosed") })
     };
     AppliedEffect {
         name: candidate.effect.clone(),
-        acts_on: acts_on(candidate),
+        acts_on: form_target(candidate),
         parameters: candidate
             .form
             .parameters
@@ -97,7 +97,7 @@ fn applied(candidate: &EffectCandidate, covariance: Option<&DMatrix<f64>>) -> Ap
 }
 
 /// Target of a form's action.
-pub(super) fn acts_on(candidate: &EffectCandidate) -> ActsOn {
+pub(super) fn form_target(candidate: &EffectCandidate) -> ActsOn {
     let form = &candidate.form;
     match (form.forces.is_empty(), form.measures.is_empty()) {
         (false, _) => ActsOn::Force,

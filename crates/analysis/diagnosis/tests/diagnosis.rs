@@ -8,15 +8,16 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, Normal};
 use sistership_diagnosis::{
-    CalibrationSettings, Diagnosis, OriginKind, Request, Settings, Verdict, calibrate, diagnose,
+    CalibrationSettings, Diagnosis, DiagnosisInputs, OriginKind, Settings, Verdict,
+    calibrate_model, diagnose,
 };
 use sistership_model::effect::AppliedEffect;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Channel;
 use sistership_model::{Effect, Model, Trial, Zoo};
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_simulation::state::{RECORDED, at};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
+use sistership_simulation::state::{RECORDED_CHANNELS, at};
 
 const NOISE: [f64; 6] = [2.5e-3, 3e-3, 5e-5, 3.5e-4, 0.3, 0.3];
 
@@ -26,7 +27,7 @@ fn trials(zoo: &Zoo, hidden: Option<AppliedEffect>) -> Vec<Trial> {
 }
 
 fn recorded(zoo: &Zoo, hidden: Option<AppliedEffect>, noise: [f64; 6]) -> Vec<Trial> {
-    let mut truth = zoo.model("mariner").unwrap();
+    let mut truth = zoo.find_model("mariner").unwrap();
     truth.effects.extend(hidden);
     let ship = Ship::new(&truth, zoo.law(&truth.law).unwrap()).unwrap();
     let settings = ManoeuvreSettings {
@@ -35,17 +36,17 @@ fn recorded(zoo: &Zoo, hidden: Option<AppliedEffect>, noise: [f64; 6]) -> Vec<Tr
         ..ManoeuvreSettings::default()
     };
     let tracks = [
-        turn(&ship, 15.0, &settings).unwrap().track,
-        zigzag(&ship, 10.0, 10.0, &settings).unwrap().track,
+        simulate_turn(&ship, 15.0, &settings).unwrap().track,
+        simulate_zigzag(&ship, 10.0, 10.0, &settings).unwrap().track,
     ];
     let mut random = ChaCha12Rng::seed_from_u64(7);
     let mut record = |(place, track): (usize, &sistership_simulation::Trajectory)| {
         let mut trial = Trial { name: format!("trial-{place}"), ..Trial::default() };
         trial.t_s = track.t_s.iter().copied().step_by(5).collect();
-        for (&(channel, index), sigma) in RECORDED.iter().zip(noise) {
+        for (&(channel, index), sigma) in RECORDED_CHANNELS.iter().zip(noise) {
             let normal = Normal::new(0.0, sigma).unwrap();
             let noisy = track
-                .column(index)
+                .state_column(index)
                 .into_iter()
                 .step_by(5)
                 .map(|value| value + normal.sample(&mut random));
@@ -53,7 +54,7 @@ fn recorded(zoo: &Zoo, hidden: Option<AppliedEffect>, noise: [f64; 6]) -> Vec<Tr
         }
         trial
             .channels
-            .insert(Channel::Delta, track.column(at::DELTA).into_iter().step_by(5).collect());
+            .insert(Channel::Delta, track.state_column(at::DELTA).into_iter().step_by(5).collect());
         trial
     };
     tracks.iter().enumerate().map(&mut record).collect()
@@ -99,8 +100,11 @@ fn among(
         names.iter().map(|name| Arc::clone(zoo.effect(name).unwrap())).collect();
     let trials: Vec<&Trial> = trials.iter().collect();
     let law = zoo.law(&model.law).unwrap();
-    diagnose(&Request { model, law, effects: &effects, trials: &trials, settings }, &|_, _| true)
-        .unwrap()
+    diagnose(
+        &DiagnosisInputs { model, law, effects: &effects, trials: &trials, settings },
+        &|_, _| true,
+    )
+    .unwrap()
 }
 
 fn names(diagnosis: &Diagnosis) -> Vec<&str> {
@@ -109,8 +113,8 @@ fn names(diagnosis: &Diagnosis) -> Vec<&str> {
 
 #[test]
 fn nothing_is_missing_from_the_true_model() {
-    let zoo = Zoo::embedded().unwrap();
-    let diagnosis = diagnosed(&zoo, &zoo.model("mariner").unwrap(), &trials(&zoo, None));
+    let zoo = Zoo::load_embedded().unwrap();
+    let diagnosis = diagnosed(&zoo, &zoo.find_model("mariner").unwrap(), &trials(&zoo, None));
     assert_eq!(
         diagnosis.verdict,
         Verdict::Complete,
@@ -123,9 +127,10 @@ fn nothing_is_missing_from_the_true_model() {
 
 #[test]
 fn a_hidden_current_is_named_with_its_speed_and_direction() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let effect = hidden(&zoo, "current", &[("north_m_s", 0.3), ("east_m_s", -0.4)]);
-    let diagnosis = diagnosed(&zoo, &zoo.model("mariner").unwrap(), &trials(&zoo, Some(effect)));
+    let diagnosis =
+        diagnosed(&zoo, &zoo.find_model("mariner").unwrap(), &trials(&zoo, Some(effect)));
     let names: Vec<&str> = diagnosis.effects.iter().map(|found| found.name.as_str()).collect();
     assert_eq!(names, ["current"]);
     let speed = diagnosis.effects[0].parameters["speed_m_s"];
@@ -140,9 +145,10 @@ fn a_hidden_current_is_named_with_its_speed_and_direction() {
 
 #[test]
 fn a_hidden_rudder_offset_is_named_with_its_angle() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let effect = hidden(&zoo, "rudder-offset", &[("offset_rad", 0.02)]);
-    let diagnosis = diagnosed(&zoo, &zoo.model("mariner").unwrap(), &trials(&zoo, Some(effect)));
+    let diagnosis =
+        diagnosed(&zoo, &zoo.find_model("mariner").unwrap(), &trials(&zoo, Some(effect)));
     assert_eq!(diagnosis.effects[0].name, "rudder-offset");
     let offset = diagnosis.effects[0].parameters["offset_rad"];
     assert!((offset.value - 0.02).abs() < 1e-3, "{offset:?}");
@@ -150,8 +156,8 @@ fn a_hidden_rudder_offset_is_named_with_its_angle() {
 
 #[test]
 fn an_effect_is_named_above_its_detection_limit_and_not_far_below() {
-    let zoo = Zoo::embedded().unwrap();
-    let model = zoo.model("mariner").unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = zoo.find_model("mariner").unwrap();
     let limits = diagnosed(&zoo, &model, &trials(&zoo, None)).limits;
     let sizes = [("rudder-offset", "offset_rad"), ("extra-resistance", "coefficient")];
     for (effect, parameter) in sizes {
@@ -167,8 +173,8 @@ fn an_effect_is_named_above_its_detection_limit_and_not_far_below() {
 
 #[test]
 fn what_is_held_for_impossible_is_not_named() {
-    let zoo = Zoo::embedded().unwrap();
-    let model = zoo.model("mariner").unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = zoo.find_model("mariner").unwrap();
     let trials = trials(&zoo, Some(hidden(&zoo, "rudder-offset", &[("offset_rad", 0.02)])));
     assert_eq!(names(&diagnosed(&zoo, &model, &trials)), ["rudder-offset"]);
     let prior_odds = [("rudder-offset".to_owned(), 1e-300)].into();
@@ -180,9 +186,9 @@ fn what_is_held_for_impossible_is_not_named() {
 
 #[test]
 fn a_force_that_no_effect_has_is_told_by_its_equation() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let effect = hidden(&zoo, "extra-resistance", &[("coefficient", 0.01)]);
-    let (trials, model) = (trials(&zoo, Some(effect)), zoo.model("mariner").unwrap());
+    let (trials, model) = (trials(&zoo, Some(effect)), zoo.find_model("mariner").unwrap());
     let diagnosis = among(&["yaw-rate-bias"], &zoo, &model, &trials, &Settings::default());
     assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{:?}", diagnosis.before);
     let first = &diagnosis.origins[0];
@@ -191,14 +197,14 @@ fn a_force_that_no_effect_has_is_told_by_its_equation() {
 
 #[test]
 fn a_compass_that_swings_is_told_by_its_readings() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let mut trials = trials(&zoo, None);
     for trial in &mut trials {
         let t_s = trial.t_s.clone();
         let headings = trial.channels.get_mut(&Channel::Psi).unwrap();
         headings.iter_mut().zip(&t_s).for_each(|(psi, t)| *psi += 0.02 * (t / 7.0).sin());
     }
-    let diagnosis = diagnosed(&zoo, &zoo.model("mariner").unwrap(), &trials);
+    let diagnosis = diagnosed(&zoo, &zoo.find_model("mariner").unwrap(), &trials);
     assert_eq!(diagnosis.verdict, Verdict::Unexplained);
     let first = &diagnosis.origins[0];
     assert_eq!((first.of, first.channel.as_str()), (OriginKind::Readings, "psi"), "{first:?}");
@@ -208,15 +214,15 @@ fn a_compass_that_swings_is_told_by_its_readings() {
 /// read off a path with this noise in it is there on trials of the very model.
 #[test]
 fn a_noisy_gyro_is_not_late() {
-    let zoo = Zoo::embedded().unwrap();
-    let model = zoo.model("mariner").unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = zoo.find_model("mariner").unwrap();
     let trials = recorded(&zoo, None, [2.5e-3, 3e-3, 8e-4, 3.5e-4, 0.3, 0.3]);
     let trials: Vec<&Trial> = trials.iter().collect();
     let effects = [Arc::clone(zoo.effect("time-delay").unwrap())];
     let law = zoo.law(&model.law).unwrap();
     let explained = |expected_rates: bool| {
         let settings = CalibrationSettings { expected_rates, ..CalibrationSettings::default() };
-        let uncertainty = calibrate(&model, law, &effects, &trials, settings).unwrap();
+        let uncertainty = calibrate_model(&model, law, &effects, &trials, settings).unwrap();
         uncertainty.false_alarm_levels["time-delay/yaw-rate"].together
     };
     let (expected, on_path) = (explained(true), explained(false));
@@ -242,8 +248,8 @@ fn with_log(trials: &mut [Trial], (north, east): (f64, f64), scale: f64) {
 
 #[test]
 fn a_log_through_the_water_measures_what_a_current_leaves_of_the_speed() {
-    let zoo = Zoo::embedded().unwrap();
-    let (model, library) = (zoo.model("mariner").unwrap(), ["current", "speed-log"]);
+    let zoo = Zoo::load_embedded().unwrap();
+    let (model, library) = (zoo.find_model("mariner").unwrap(), ["current", "speed-log"]);
     let effect = hidden(&zoo, "current", &[("north_m_s", 0.3), ("east_m_s", -0.4)]);
     let mut trials = trials(&zoo, Some(effect));
     let settings = Settings::default();
@@ -260,8 +266,8 @@ fn a_log_through_the_water_measures_what_a_current_leaves_of_the_speed() {
 
 #[test]
 fn a_log_that_reads_too_much_is_no_current() {
-    let zoo = Zoo::embedded().unwrap();
-    let (model, library) = (zoo.model("mariner").unwrap(), ["current", "speed-log"]);
+    let zoo = Zoo::load_embedded().unwrap();
+    let (model, library) = (zoo.find_model("mariner").unwrap(), ["current", "speed-log"]);
     let mut trials = trials(&zoo, None);
     with_log(&mut trials, (0.0, 0.0), 1.04);
     let found = among(&library, &zoo, &model, &trials, &Settings::default());

@@ -4,9 +4,9 @@
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::Discrepancy;
 
-use super::super::filter::whitened;
-use super::super::linearised::{RateResponse, Sizes};
-use super::super::noise::Instrument;
+use super::super::filter::whiten_part;
+use super::super::linearised::{LinearisationSizes, RateResponse};
+use super::super::noise::NoiseLevel;
 use super::super::thresholds::RESIDUAL;
 use super::*;
 
@@ -18,16 +18,16 @@ const READING: f64 = 0.09;
 const WALK: f64 = 0.04;
 
 /// A record of one reading a second; the first state is a velocity.
-fn record(samples: usize, states: usize, channel: (Channel, usize)) -> Linearised {
+fn record(samples: usize, states: usize, channel: (Channel, usize)) -> LinearisedPart {
     let mut slopes = vec![0.0; states * states];
     if states == 2 {
         // The second state is the integral of the first.
         slopes[2] = 1.0;
     }
-    Linearised {
+    LinearisedPart {
         samples: (0..samples).collect(),
         t_s: (0..samples).map(|k| k as f64).collect(),
-        sizes: Sizes { states, axes: 1, columns: 0 },
+        sizes: LinearisationSizes { states, axes: 1, columns: 0 },
         jacobian: slopes.repeat(samples),
         accelerations: Vec::new(),
         defect: vec![0.0; states * samples],
@@ -41,12 +41,12 @@ fn record(samples: usize, states: usize, channel: (Channel, usize)) -> Linearise
     }
 }
 
-fn noise(channel: Channel, walk: f64) -> Noise {
-    let instrument = Instrument { deviation: READING.sqrt(), drift: walk.sqrt() };
+fn noise(channel: Channel, walk: f64) -> InstrumentNoise {
+    let instrument = NoiseLevel { deviation: READING.sqrt(), drift: walk.sqrt() };
     std::iter::once((channel, instrument)).collect()
 }
 
-fn discrepancy(white: f64) -> Discrepancies {
+fn discrepancy(white: f64) -> AxisDiscrepancies {
     vec![Discrepancy { deviation: 1e-9, time_s: 1.0, white: white.sqrt() }]
 }
 
@@ -56,10 +56,14 @@ fn last_variance(of: &dyn Fn(usize) -> f64) -> f64 {
 }
 
 /// Innovations, not whitened, from a unit in one late reading on.
-fn after_unit(mut part: Linearised, by: (&Noise, &Discrepancies), variance: f64) -> [f64; 3] {
+fn after_unit(
+    mut part: LinearisedPart,
+    by: (&InstrumentNoise, &AxisDiscrepancies),
+    variance: f64,
+) -> [f64; 3] {
     let at = LONG - 3;
     part.reading[at] = 1.0;
-    let rows = whitened(&part, by.0, by.1).unwrap().0;
+    let rows = whiten_part(&part, by.0, by.1).unwrap().0;
     std::array::from_fn(|k| rows[at + k] * variance.sqrt())
 }
 
@@ -74,7 +78,7 @@ fn a_random_walk_has_its_steady_gain() {
     // What the instrument drifts and what the acceleration scatters are the same to a walk.
     for share in [0.0, 0.25, 1.0] {
         let by = (&noise(Channel::U, share * WALK), &discrepancy((1.0 - share) * WALK));
-        let of = |samples: usize| whitened(&record(samples, 1, velocity), by.0, by.1).unwrap().1;
+        let of = |samples: usize| whiten_part(&record(samples, 1, velocity), by.0, by.1).unwrap().1;
         let predicted = 0.5 * (WALK + (WALK * WALK + 4.0 * WALK * READING).sqrt());
         let variance = predicted + READING;
         assert_near(last_variance(&of), variance);
@@ -104,7 +108,7 @@ fn a_random_walk_has_its_smoothed_variance() {
 fn a_constant_velocity_has_its_steady_gains() {
     let position = (Channel::X, 1);
     let by = (&noise(Channel::X, 0.0), &discrepancy(WALK));
-    let of = |samples: usize| whitened(&record(samples, 2, position), by.0, by.1).unwrap().1;
+    let of = |samples: usize| whiten_part(&record(samples, 2, position), by.0, by.1).unwrap().1;
     let index = (WALK / READING).sqrt();
     let z = 0.5 * (index + (index * index + 16.0).sqrt());
     let u = 0.5 * (z + (z * z - 4.0).sqrt());
@@ -129,10 +133,10 @@ fn a_late_instrument_follows_the_rate_that_is_expected() {
     part.reading = vec![0.5, 0.4, 0.1, -0.3, 0.2];
     let by = (&noise(Channel::U, WALK), &discrepancy(WALK));
     let response = RateResponse { channel: 0, column: None, state: 0, by: vec![-delay; samples] };
-    let late = Linearised { by_rate: vec![response], ..part.clone() };
+    let late = LinearisedPart { by_rate: vec![response], ..part.clone() };
     // By hand: the covariance is that of a reading without delay.
     let (mut mean, mut variance) = (0.0, (RESIDUAL.start * READING.sqrt()).powi(2));
-    let rows = whitened(&late, by.0, by.1).unwrap().0;
+    let rows = whiten_part(&late, by.0, by.1).unwrap().0;
     let transition = 1.0 + slope + 0.5 * slope * slope;
     for (k, row) in rows.iter().enumerate() {
         if k > 0 {

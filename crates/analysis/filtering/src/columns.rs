@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
-use sistership_model::effect::{Form, qualified};
+use sistership_model::effect::{EffectForm, qualified_name};
 use sistership_model::law::Law;
 
 /// A property of the model that may differ slightly from its value.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Nuisance {
+pub struct NuisanceColumn {
     /// Name, such as `Y_vvr`.
     pub name: String,
     /// Meaning of the column.
@@ -45,20 +45,20 @@ pub struct EffectCandidate {
     /// The effect's name.
     pub effect: String,
     /// The form.
-    pub form: Arc<Form>,
+    pub form: Arc<EffectForm>,
     /// Values of its parameters, in their order.
     pub at: Vec<f64>,
 }
 
 impl EffectCandidate {
     /// Creates a candidate at the absence of its effect.
-    pub fn absent(effect: &str, form: &Arc<Form>) -> Self {
+    pub fn at_absence(effect: &str, form: &Arc<EffectForm>) -> Self {
         let at = form.parameters.values().map(|parameter| parameter.absent).collect();
         Self { effect: effect.to_owned(), form: Arc::clone(form), at }
     }
 
     /// Distance of each parameter from the absence of the effect.
-    pub fn change(&self) -> Vec<f64> {
+    pub fn parameter_changes(&self) -> Vec<f64> {
         self.at
             .iter()
             .zip(self.form.parameters.values())
@@ -67,26 +67,29 @@ impl EffectCandidate {
     }
 
     /// Qualified names of its parameters in a law with applied effects.
-    pub fn qualified(&self) -> impl Iterator<Item = String> + '_ {
-        self.form.parameters.keys().map(|name| qualified(&self.effect, &self.form.file.name, name))
+    pub fn qualified_names(&self) -> impl Iterator<Item = String> + '_ {
+        self.form
+            .parameters
+            .keys()
+            .map(|name| qualified_name(&self.effect, &self.form.file.name, name))
     }
 
     /// Unique key, `effect/form`.
-    pub fn key(&self) -> String {
+    pub fn candidate_key(&self) -> String {
         format!("{}/{}", self.effect, self.form.file.name)
     }
 }
 
 /// Meaning of the columns: coefficients first, then the parameters of each candidate.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Columns {
+pub struct FilterColumns {
     /// Coefficients.
-    pub nuisance: Vec<Nuisance>,
+    pub nuisance: Vec<NuisanceColumn>,
     /// Candidates.
     pub candidates: Vec<EffectCandidate>,
 }
 
-impl Columns {
+impl FilterColumns {
     /// Number of columns.
     pub fn len(&self) -> usize {
         self.nuisance.len()
@@ -99,7 +102,7 @@ impl Columns {
     }
 
     /// Indices of a candidate's parameters among the columns.
-    pub fn places(&self, candidate: usize) -> Range<usize> {
+    pub fn candidate_columns(&self, candidate: usize) -> Range<usize> {
         let before: usize =
             self.candidates[..candidate].iter().map(|candidate| candidate.at.len()).sum();
         let start = self.nuisance.len() + before;
@@ -108,18 +111,28 @@ impl Columns {
 
     /// Indices of the columns that represent a candidate: its own, or that of the coefficient which
     /// it frees.
-    pub fn showing(&self, candidate: &EffectCandidate) -> Vec<usize> {
+    pub fn matching_columns(&self, candidate: &EffectCandidate) -> Vec<usize> {
         // A candidate that only frees a coefficient has no column of its own.
-        let own = self.candidates.iter().position(|known| known.key() == candidate.key());
+        let own = self
+            .candidates
+            .iter()
+            .position(|known| known.candidate_key() == candidate.candidate_key());
         let freed =
             || self.nuisance.iter().position(|nuisance| nuisance.name == candidate.form.file.name);
-        own.map_or_else(|| freed().into_iter().collect(), |own| self.places(own).collect())
+        own.map_or_else(
+            || freed().into_iter().collect(),
+            |own| self.candidate_columns(own).collect(),
+        )
     }
 
     /// Nuisance columns of a model: its coefficients, terms of a grammar that it lacks, and the
     /// virtual masses of its law.
-    pub fn nuisance(model: &Model, law: &Law, extra: &[(String, Axis)]) -> Vec<Nuisance> {
-        let axis = |name: &str| law.term(name).ok().map(|(axis, _)| axis);
+    pub fn nuisance_columns(
+        model: &Model,
+        law: &Law,
+        extra: &[(String, Axis)],
+    ) -> Vec<NuisanceColumn> {
+        let axis = |name: &str| law.unscaled_regressor(name).ok().map(|(axis, _)| axis);
         let own = model
             .coefficients
             .keys()
@@ -128,16 +141,16 @@ impl Columns {
         // The mass matrix is symmetric: one triangle suffices.
         let upper = law.mass.keys().filter(|(row, column)| row <= column);
         let masses = upper.map(|&(row, column)| {
-            (format!("{MASS}{row}{column}"), NuisanceKind::Mass(row, column))
+            (format!("{MASS_PREFIX}{row}{column}"), NuisanceKind::Mass(row, column))
         });
-        own.chain(lacked).chain(masses).map(|(name, kind)| Nuisance { name, kind }).collect()
+        own.chain(lacked).chain(masses).map(|(name, kind)| NuisanceColumn { name, kind }).collect()
     }
 }
 
 /// Prefix of the names of virtual masses.
-pub const MASS: &str = "mass ";
+pub const MASS_PREFIX: &str = "mass ";
 
 /// Name under which a law keeps the regressor of a term that its model lacks.
-pub fn lacked_name(term: &str) -> String {
+pub fn missing_term_name(term: &str) -> String {
     format!("lacked/{term}")
 }

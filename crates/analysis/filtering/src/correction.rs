@@ -8,15 +8,15 @@
 
 use std::sync::Arc;
 
-use sistership_simulation::branch::{AdditionGradient, Instant, LearnedBranch};
-use sistership_simulation::tape::Lanes;
+use sistership_simulation::branch::{AdditionGradient, CorrectionInstant, CorrectionModel};
+use sistership_simulation::tape::LaneValues;
 
 use super::lanes::LANES;
 
 /// A learned correction, and the indices of its inputs among those of the law.
 #[derive(Debug, Clone)]
-pub(super) struct Correction {
-    pub learned: Arc<dyn LearnedBranch>,
+pub(super) struct AttachedCorrection {
+    pub learned: Arc<dyn CorrectionModel>,
     pub delta: Option<usize>,
     pub n: Option<usize>,
 }
@@ -26,40 +26,40 @@ const VELOCITIES: usize = 3;
 
 /// The correction at a block of samples.
 pub(super) struct CorrectionBlock<'a> {
-    correction: &'a Correction,
+    correction: &'a AttachedCorrection,
     gradients: [AdditionGradient; LANES],
 }
 
 impl<'a> CorrectionBlock<'a> {
-    pub fn new(correction: &'a Correction) -> Self {
+    pub fn new(correction: &'a AttachedCorrection) -> Self {
         Self { correction, gradients: [AdditionGradient::default(); LANES] }
     }
 
     /// Evaluates the correction where the law gives `rates`, and adds it to them. `velocities` are
     /// u, v, r, `inputs` those of the law.
-    pub fn add(
+    pub fn add_to_rates(
         &mut self,
-        velocities: [Lanes<LANES>; VELOCITIES],
-        inputs: &[Lanes<LANES>],
-        rates: &mut [Lanes<LANES>],
+        velocities: [LaneValues<LANES>; VELOCITIES],
+        inputs: &[LaneValues<LANES>],
+        rates: &mut [LaneValues<LANES>],
     ) {
         let at = |place: Option<usize>, lane: usize| place.map_or(0.0, |place| inputs[place][lane]);
         for lane in 0..LANES {
-            let instant = Instant {
+            let instant = CorrectionInstant {
                 velocities: velocities.map(|velocity| velocity[lane]),
                 delta_rad: at(self.correction.delta, lane),
                 n_rps: at(self.correction.n, lane),
                 accelerations: [rates[0][lane], rates[1][lane], rates[2][lane]],
             };
-            let added = self.correction.learned.addition(&instant);
-            self.gradients[lane] = self.correction.learned.gradient(&instant);
+            let added = self.correction.learned.rate_additions(&instant);
+            self.gradients[lane] = self.correction.learned.addition_gradient(&instant);
             rates.iter_mut().zip(added).for_each(|(rate, added)| rate[lane] += added);
         }
     }
 
     /// Turns derivatives of the law's accelerations into those of the ship's: rows of `columns`
     /// numbers, one for each axis.
-    pub fn carry_over(&self, lane: usize, rows: &mut [f64], columns: usize) {
+    pub fn apply_chain_rule(&self, lane: usize, rows: &mut [f64], columns: usize) {
         let by = &self.gradients[lane].by_acceleration;
         // A correction that does not depend on the law's accelerations changes no derivative here.
         if by.iter().flatten().all(|slope| *slope == 0.0) {
@@ -76,7 +76,7 @@ impl<'a> CorrectionBlock<'a> {
     }
 
     /// Adds the derivatives of the correction with the velocities, which are the first states.
-    pub fn add_states(&self, lane: usize, jacobian: &mut [f64], states: usize) {
+    pub fn add_velocity_slopes(&self, lane: usize, jacobian: &mut [f64], states: usize) {
         for (axis, slopes) in self.gradients[lane].by_velocity.iter().enumerate() {
             let row = &mut jacobian[axis * states..][..VELOCITIES];
             row.iter_mut().zip(slopes).for_each(|(to, slope)| *to += slope);
@@ -85,8 +85,8 @@ impl<'a> CorrectionBlock<'a> {
 
     /// Derivatives with an input of the law, by axis; none where the correction does not depend on
     /// it.
-    pub fn by_input(&self, lane: usize, input: usize) -> Option<[f64; VELOCITIES]> {
-        let Correction { delta, n, .. } = *self.correction;
+    pub fn input_slopes(&self, lane: usize, input: usize) -> Option<[f64; VELOCITIES]> {
+        let AttachedCorrection { delta, n, .. } = *self.correction;
         match Some(input) {
             found if found == delta => Some(self.gradients[lane].by_delta),
             found if found == n => Some(self.gradients[lane].by_n),

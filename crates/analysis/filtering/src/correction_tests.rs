@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
-use sistership_model::branch::{Branch, BranchMode, BranchRecipe, Learner};
+use sistership_model::branch::{CorrectionDocument, CorrectionMode, CorrectionRecipe, Learner};
 use sistership_model::effect::AppliedEffect;
-use sistership_model::learned::Attached;
+use sistership_model::learned::AttachedWeights;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Channel;
@@ -9,25 +9,26 @@ use sistership_model::validity::Region;
 use sistership_model::{Effect, Law, Model, Trial, Zoo};
 use sistership_simulation::Ship;
 use sistership_simulation::branch::AdditionFormulas;
-use sistership_simulation::plant::Work;
+use sistership_simulation::plant::PlantWorkspace;
 use sistership_simulation::state::{StateVector, at};
 
 use super::*;
 use crate::{
-    Columns, Detail, EffectCandidate, Linearised, ResidualSystem, TrialReadings, linearise,
+    EffectCandidate, FilterColumns, LinearisationDetail, LinearisedPart, ResidualSystem,
+    TrialReadings, linearise,
 };
 
 /// Smooth in everything that it sees; it takes a third of the law's place.
 #[derive(Debug)]
 struct Known;
 
-impl LearnedBranch for Known {
-    fn addition(&self, at: &Instant) -> [f64; 3] {
+impl CorrectionModel for Known {
+    fn rate_additions(&self, at: &CorrectionInstant) -> [f64; 3] {
         let ([u, v, r], [a, b, c]) = (at.velocities, at.accelerations);
         [0.01 * u * v - a / 3.0, 0.2 * u * r * at.delta_rad - b / 3.0, 1e-3 * v * v - c / 3.0]
     }
 
-    fn gradient(&self, at: &Instant) -> AdditionGradient {
+    fn addition_gradient(&self, at: &CorrectionInstant) -> AdditionGradient {
         let [u, v, r] = at.velocities;
         let third = -1.0 / 3.0;
         AdditionGradient {
@@ -42,18 +43,18 @@ impl LearnedBranch for Known {
         }
     }
 
-    fn formulas(&self) -> AdditionFormulas {
+    fn addition_formulas(&self) -> AdditionFormulas {
         AdditionFormulas::default()
     }
 
-    fn share(&self, _: &Instant) -> f64 {
+    fn active_share(&self, _: &CorrectionInstant) -> f64 {
         1.0
     }
 }
 
 /// The Mariner with that correction.
 fn model(zoo: &Zoo) -> Model {
-    let recipe = BranchRecipe {
+    let recipe = CorrectionRecipe {
         learner: Learner::KernelRidge { centres: 1, length: 1.0, ridge: 1.0 },
         seed: 1,
         window_s: 1.0,
@@ -61,16 +62,16 @@ fn model(zoo: &Zoo) -> Model {
         trials: Vec::new(),
     };
     let columns = ["u", "v", "r"].map(|name| (name.to_owned(), vec![-1.0, 1.0]));
-    let branch = Branch {
-        mode: BranchMode::Serial,
+    let branch = CorrectionDocument {
+        mode: CorrectionMode::Serial,
         outputs: Vec::new(),
         weights_sha256: String::new(),
-        domain: Region::of(&columns.into()).unwrap(),
+        domain: Region::from_samples(&columns.into()).unwrap(),
         fade: 1.0,
         recipe,
-        learned: Attached::new(Arc::new(Known)),
+        learned: AttachedWeights::new(Arc::new(Known)),
     };
-    Model { branch: Some(branch), ..zoo.model("mariner").unwrap() }
+    Model { branch: Some(branch), ..zoo.find_model("mariner").unwrap() }
 }
 
 const STATE: [(Channel, usize, f64); 6] = [
@@ -98,7 +99,7 @@ fn rates(model: &Model, law: &Law, moved: &dyn Fn(&mut StateVector)) -> [f64; 3]
     let mut state = StateVector::zeros();
     STATE.iter().for_each(|(_, place, value)| state[*place] = *value);
     moved(&mut state);
-    let rate = ship.rate_with(&state, &ship.inputs(DELTA, 0.0), &mut Work::default());
+    let rate = ship.rate_with(&state, &ship.inputs_for(DELTA, 0.0), &mut PlantWorkspace::default());
     [rate[at::U], rate[at::V], rate[at::R]]
 }
 
@@ -107,12 +108,12 @@ fn slope(of: &dyn Fn(f64) -> [f64; 3], step: f64) -> [f64; 3] {
     std::array::from_fn(|k| (above[k] - below[k]) / (2.0 * step))
 }
 
-fn linearised(model: &Model, law: &Law, columns: Columns) -> Linearised {
+fn linearised(model: &Model, law: &Law, columns: FilterColumns) -> LinearisedPart {
     let dressed = law.with_effects(model).unwrap();
     let system = ResidualSystem::new(model, &dressed, columns, VelocityFrame::Ground).unwrap();
     let trial = trial();
     let record = TrialReadings::new(&trial, 0.0, 0.0);
-    linearise(&system, &record, Detail::Whole).unwrap().remove(0)
+    linearise(&system, &record, LinearisationDetail::Whole).unwrap().remove(0)
 }
 
 fn assert_close(found: [f64; 3], expected: [f64; 3], what: &str) {
@@ -123,16 +124,16 @@ fn assert_close(found: [f64; 3], expected: [f64; 3], what: &str) {
 
 #[test]
 fn a_correction_is_part_of_what_is_linearised() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let (model, law) = (model(&zoo), zoo.law("abkowitz").unwrap());
-    let part = linearised(&model, law, Columns::default());
+    let part = linearised(&model, law, FilterColumns::default());
     let states = part.sizes.states;
     let by_state = |state: usize| [0, 1, 2].map(|row| part.jacobian[row * states + state]);
     for (state, place) in [(0, at::U), (1, at::V), (2, at::R)] {
         let expected = slope(&|by| rates(&model, law, &|state| state[place] += by), 1e-4);
         assert_close(by_state(state), expected, "state");
     }
-    let alone = linearised(&model.foundation(), law, Columns::default());
+    let alone = linearised(&model.without_correction(), law, FilterColumns::default());
     assert_ne!(part.jacobian, alone.jacobian, "it is the correction that is compared");
     // What the model moves more than the path, in a second.
     let moves = rates(&model, law, &|_| {});
@@ -141,14 +142,14 @@ fn a_correction_is_part_of_what_is_linearised() {
 
 #[test]
 fn coefficients_and_effects_act_around_it() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let (model, law) = (model(&zoo), zoo.law("abkowitz").unwrap());
-    let nuisance = Columns::nuisance(&model, law, &[]);
+    let nuisance = FilterColumns::nuisance_columns(&model, law, &[]);
     let own = nuisance.iter().position(|known| known.name == "N_r").unwrap();
     let effect = zoo.effect("rudder-offset").unwrap();
     let form = effect.forms.iter().find(|form| form.file.name == "constant").unwrap();
-    let candidate = EffectCandidate::absent(&effect.name, form);
-    let columns = Columns { nuisance, candidates: vec![candidate] };
+    let candidate = EffectCandidate::at_absence(&effect.name, form);
+    let columns = FilterColumns { nuisance, candidates: vec![candidate] };
     let count = columns.len();
     let part = linearised(&model, law, columns);
     let column = |place: usize| [0, 1, 2].map(|row| part.accelerations[row * count + place]);

@@ -8,10 +8,10 @@ use nalgebra::{DMatrix, DVector};
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::Discrepancy;
 
-use super::super::filter::{errors, responses, whitened};
-use super::super::likelihood::deviances;
-use super::super::linearised::Sizes;
-use super::super::noise::Instrument;
+use super::super::filter::{column_responses, prediction_errors, whiten_part};
+use super::super::likelihood::part_deviances;
+use super::super::linearised::LinearisationSizes;
+use super::super::noise::NoiseLevel;
 use super::super::thresholds::RESIDUAL;
 use super::*;
 
@@ -32,12 +32,12 @@ fn numbers(count: usize, size: f64, seed: u64) -> Vec<f64> {
 
 /// A record of so many samples, of which some are missing: from the fourth to the fifth it is three
 /// times as long as between the others.
-fn record(samples: usize, every: usize, channels: &[(Channel, usize)]) -> Linearised {
+fn record(samples: usize, every: usize, channels: &[(Channel, usize)]) -> LinearisedPart {
     let (readings, seed) = (samples * channels.len(), 11 + samples as u64);
-    Linearised {
+    LinearisedPart {
         samples: (0..samples).collect(),
         t_s: (0..samples).map(|k| 0.5 * k as f64 + if k > 3 { 1.0 } else { 0.0 }).collect(),
-        sizes: Sizes { states: STATES, axes: AXES, columns: COLUMNS },
+        sizes: LinearisationSizes { states: STATES, axes: AXES, columns: COLUMNS },
         jacobian: numbers(STATES * STATES * samples, 0.3, seed),
         accelerations: numbers(AXES * COLUMNS * samples, 0.5, seed + 1),
         defect: numbers(STATES * samples, 0.1, seed + 2),
@@ -52,12 +52,12 @@ fn record(samples: usize, every: usize, channels: &[(Channel, usize)]) -> Linear
 }
 
 /// The same by instruments that say mixtures of states.
-fn mixed(part: Linearised) -> Linearised {
-    Linearised { by_state: Some(numbers(STATES * part.reading.len(), 1.0, 5)), ..part }
+fn mixed(part: LinearisedPart) -> LinearisedPart {
+    LinearisedPart { by_state: Some(numbers(STATES * part.reading.len(), 1.0, 5)), ..part }
 }
 
-fn noise() -> Noise {
-    let instrument = |deviation: f64, drift: f64| Instrument { deviation, drift };
+fn noise() -> InstrumentNoise {
+    let instrument = |deviation: f64, drift: f64| NoiseLevel { deviation, drift };
     let all = [
         (Channel::U, instrument(0.2, 0.02)),
         (Channel::V, instrument(0.3, 0.05)),
@@ -66,7 +66,7 @@ fn noise() -> Noise {
     all.into_iter().collect()
 }
 
-fn discrepancies() -> Discrepancies {
+fn discrepancies() -> AxisDiscrepancies {
     vec![
         Discrepancy { deviation: 0.3, time_s: 2.0, white: 0.1 },
         Discrepancy { deviation: 0.2, time_s: 5.0, white: 0.05 },
@@ -77,7 +77,7 @@ const BOTH: [(Channel, usize); 3] = [(Channel::U, 0), (Channel::V, 1), (Channel:
 
 /// Records with missing samples, with readings at every third sample, with a state that is not
 /// read, and with mixed readings.
-fn records() -> Vec<Linearised> {
+fn records() -> Vec<LinearisedPart> {
     vec![
         record(7, 1, &BOTH),
         record(10, 3, &BOTH),
@@ -101,7 +101,7 @@ struct DensePrior {
 }
 
 impl DensePrior {
-    fn new(part: &Linearised) -> Self {
+    fn new(part: &LinearisedPart) -> Self {
         let count = part.samples.len();
         let size = ORDER * count;
         let mut mean = DVector::zeros(size);
@@ -153,7 +153,7 @@ impl DensePrior {
     }
 }
 
-fn start_variance(part: &Linearised) -> DVector<f64> {
+fn start_variance(part: &LinearisedPart) -> DVector<f64> {
     let of = |place: usize| match place.checked_sub(STATES) {
         Some(axis) => discrepancies()[axis].deviation.powi(2),
         None => part
@@ -168,7 +168,7 @@ fn start_variance(part: &Linearised) -> DVector<f64> {
 }
 
 /// Transition of states and discrepancies, and what columns cause of states.
-fn interval(part: &Linearised, k: usize) -> (DMatrix<f64>, DMatrix<f64>) {
+fn interval(part: &LinearisedPart, k: usize) -> (DMatrix<f64>, DMatrix<f64>) {
     let dt = part.t_s[k + 1] - part.t_s[k];
     let a = DMatrix::from_row_slice(STATES, STATES, &part.jacobian[9 * k..][..9]);
     let unit = DMatrix::<f64>::identity(STATES, STATES);
@@ -186,7 +186,7 @@ fn interval(part: &Linearised, k: usize) -> (DMatrix<f64>, DMatrix<f64>) {
     (transition, accelerated * columns)
 }
 
-fn interval_variance(part: &Linearised, k: usize) -> DVector<f64> {
+fn interval_variance(part: &LinearisedPart, k: usize) -> DVector<f64> {
     let dt = part.t_s[k + 1] - part.t_s[k];
     let all = discrepancies();
     let drift = |state: usize| {
@@ -204,7 +204,7 @@ fn interval_variance(part: &Linearised, k: usize) -> DVector<f64> {
 }
 
 /// All readings: by states, as they are, by columns, and their variances.
-fn readings(part: &Linearised) -> (DMatrix<f64>, DVector<f64>, DMatrix<f64>, DVector<f64>) {
+fn readings(part: &LinearisedPart) -> (DMatrix<f64>, DVector<f64>, DMatrix<f64>, DVector<f64>) {
     let count = part.samples.len();
     let channels = part.channels.len();
     let read: Vec<(usize, usize)> = (0..count)
@@ -247,7 +247,7 @@ fn innovations_and_columns_are_those_of_the_joint_distribution() {
         let (residual, columns) = dense.residuals();
         let innovations = root.solve_lower_triangular(&residual).unwrap();
         let columns = root.solve_lower_triangular(&columns).unwrap();
-        let (rows, log_variance) = whitened(&part, &noise(), &discrepancies()).unwrap();
+        let (rows, log_variance) = whiten_part(&part, &noise(), &discrepancies()).unwrap();
         assert_eq!(rows.len(), innovations.len() * (1 + COLUMNS));
         for (place, row) in rows.chunks_exact(1 + COLUMNS).enumerate() {
             assert_near(row[0], innovations[place], 1.0, "innovation");
@@ -266,9 +266,10 @@ fn innovations_and_columns_are_those_of_the_joint_distribution() {
 fn the_likelihood_is_that_of_the_joint_distribution() {
     let parameters = [0.7, -0.4];
     let records = records();
-    let along: Vec<Linearised> = records.iter().map(|part| part.along(&parameters)).collect();
-    let each: Vec<&Linearised> = along.iter().chain(&along).collect();
-    let found = deviances(&each, &noise(), &discrepancies()).unwrap();
+    let along: Vec<LinearisedPart> =
+        records.iter().map(|part| part.combine_columns(&parameters)).collect();
+    let each: Vec<&LinearisedPart> = along.iter().chain(&along).collect();
+    let found = part_deviances(&each, &noise(), &discrepancies()).unwrap();
     for (place, part) in records.iter().chain(&records).enumerate() {
         let dense = DensePrior::new(part);
         let covariance = dense.reading_covariance();
@@ -279,9 +280,9 @@ fn the_likelihood_is_that_of_the_joint_distribution() {
         assert_near(found[place], deviance, 1.0, "deviance");
     }
     for part in &along {
-        let (errors, _) = errors(part, &noise(), &discrepancies()).unwrap();
-        let (rows, _) = whitened(part, &noise(), &discrepancies()).unwrap();
-        let caused = responses(part, &noise(), &discrepancies()).unwrap();
+        let (errors, _) = prediction_errors(part, &noise(), &discrepancies()).unwrap();
+        let (rows, _) = whiten_part(part, &noise(), &discrepancies()).unwrap();
+        let caused = column_responses(part, &noise(), &discrepancies()).unwrap();
         for (k, row) in rows.chunks_exact(2).enumerate() {
             assert_eq!((errors[k], caused[k]), (row[0] - row[1], row[1]));
         }
@@ -310,7 +311,7 @@ fn smoothed_states_are_those_of_the_joint_distribution() {
 fn what_is_told_of_a_smoothed_part_are_its_discrepancies() {
     let part = record(9, 1, &BOTH);
     let states = smoothed_states(&part, &noise(), &discrepancies()).unwrap();
-    let told = smoothed(&part, &noise(), &discrepancies()).unwrap();
+    let told = smooth_discrepancies(&part, &noise(), &discrepancies()).unwrap();
     assert_eq!((told.values.len(), told.deviations.len()), (AXES, AXES));
     for (k, state) in states.iter().enumerate() {
         for axis in 0..AXES {
@@ -326,11 +327,11 @@ fn a_channel_without_known_noise_is_refused_by_its_name() {
     let part = record(6, 1, &BOTH);
     let mut less = noise();
     less.remove(&Channel::V);
-    let along = part.along(&[0.0, 0.0]);
+    let along = part.combine_columns(&[0.0, 0.0]);
     let refusals = [
-        whitened(&part, &less, &discrepancies()).unwrap_err().to_string(),
-        smoothed(&part, &less, &discrepancies()).unwrap_err().to_string(),
-        deviances(&[&along, &along], &less, &discrepancies()).unwrap_err().to_string(),
+        whiten_part(&part, &less, &discrepancies()).unwrap_err().to_string(),
+        smooth_discrepancies(&part, &less, &discrepancies()).unwrap_err().to_string(),
+        part_deviances(&[&along, &along], &less, &discrepancies()).unwrap_err().to_string(),
     ];
     for refusal in refusals {
         assert!(refusal.contains("no noise is known of the channel `v`"), "{refusal}");
@@ -341,6 +342,6 @@ fn a_channel_without_known_noise_is_refused_by_its_name() {
 fn discrepancies_of_another_model_are_refused() {
     let part = record(6, 1, &BOTH);
     let less = vec![discrepancies()[0]];
-    let refusal = whitened(&part, &noise(), &less).unwrap_err().to_string();
+    let refusal = whiten_part(&part, &noise(), &less).unwrap_err().to_string();
     assert!(refusal.contains("discrepancies of 1 accelerations, and the model has 2"), "{refusal}");
 }

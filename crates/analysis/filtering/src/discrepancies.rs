@@ -3,4 +3,4 @@
 use sistership_model::uncertainty::Discrepancy;
 
 /// Discrepancy of each acceleration, in the order of the filter's axes.
-pub type Discrepancies = Vec<Discrepancy>;
+pub type AxisDiscrepancies = Vec<Discrepancy>;

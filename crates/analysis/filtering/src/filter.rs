@@ -3,41 +3,41 @@
 
 use sistership_identification::refine::RefineError;
 
-use super::discrepancies::Discrepancies;
-use super::gram::Gram;
+use super::discrepancies::AxisDiscrepancies;
+use super::gram::GramMatrix;
 use super::kalman_filter::KalmanFilter;
-use super::linearised::Linearised;
-use super::noise::Noise;
-use sistership_simulation::wide::{Wide, widest};
+use super::linearised::LinearisedPart;
+use super::noise::InstrumentNoise;
+use sistership_simulation::wide::{SimdKernel, dispatch_simd};
 
 /// Rows of prediction errors, and the sum of the logarithms of their predicted variances.
-pub type Whitened = (Vec<f64>, f64);
+pub type WhitenedRows = (Vec<f64>, f64);
 
 /// Returns the products of whitened residual and columns of a part of a trial, summed over
 /// readings.
 ///
 /// # Errors
 /// Returns an error if the noise of a channel is unknown.
-pub fn filter(
-    linear: &Linearised,
-    noise: &Noise,
-    discrepancies: &Discrepancies,
-) -> Result<Gram, RefineError> {
-    filter_first(linear, linear.sizes.columns, noise, discrepancies)
+pub fn filter_part(
+    linear: &LinearisedPart,
+    noise: &InstrumentNoise,
+    discrepancies: &AxisDiscrepancies,
+) -> Result<GramMatrix, RefineError> {
+    filter_columns(linear, linear.sizes.columns, noise, discrepancies)
 }
 
 /// Returns the products of whitened residual and the first columns of a part of a trial.
 ///
 /// # Errors
 /// Returns an error if the noise of a channel is unknown.
-pub fn filter_first(
-    linear: &Linearised,
+pub fn filter_columns(
+    linear: &LinearisedPart,
     columns: usize,
-    noise: &Noise,
-    discrepancies: &Discrepancies,
-) -> Result<Gram, RefineError> {
-    let (rows, log_variance) = whitened_first(linear, columns, noise, discrepancies)?;
-    Ok(Gram::of_rows(&rows, 1 + columns, log_variance))
+    noise: &InstrumentNoise,
+    discrepancies: &AxisDiscrepancies,
+) -> Result<GramMatrix, RefineError> {
+    let (rows, log_variance) = whiten_columns(linear, columns, noise, discrepancies)?;
+    Ok(GramMatrix::from_rows(&rows, 1 + columns, log_variance))
 }
 
 /// Returns the prediction errors of a part with one column that combines all others, divided by the
@@ -46,12 +46,12 @@ pub fn filter_first(
 ///
 /// # Errors
 /// Returns an error if the noise of a channel is unknown.
-pub fn errors(
-    linear: &Linearised,
-    noise: &Noise,
-    discrepancies: &Discrepancies,
-) -> Result<Whitened, RefineError> {
-    let (rows, log_variance) = whitened(linear, noise, discrepancies)?;
+pub fn prediction_errors(
+    linear: &LinearisedPart,
+    noise: &InstrumentNoise,
+    discrepancies: &AxisDiscrepancies,
+) -> Result<WhitenedRows, RefineError> {
+    let (rows, log_variance) = whiten_part(linear, noise, discrepancies)?;
     Ok((rows.chunks_exact(2).map(|row| row[0] - row[1]).collect(), log_variance))
 }
 
@@ -60,12 +60,12 @@ pub fn errors(
 ///
 /// # Errors
 /// Returns an error if the noise of a channel is unknown.
-pub fn responses(
-    linear: &Linearised,
-    noise: &Noise,
-    discrepancies: &Discrepancies,
+pub fn column_responses(
+    linear: &LinearisedPart,
+    noise: &InstrumentNoise,
+    discrepancies: &AxisDiscrepancies,
 ) -> Result<Vec<f64>, RefineError> {
-    let (rows, _) = whitened(linear, noise, discrepancies)?;
+    let (rows, _) = whiten_part(linear, noise, discrepancies)?;
     Ok(rows.chunks_exact(2).map(|row| row[1]).collect())
 }
 
@@ -75,41 +75,46 @@ pub fn responses(
 ///
 /// # Errors
 /// Returns an error if the noise of a channel is unknown.
-pub fn whitened(
-    linear: &Linearised,
-    noise: &Noise,
-    discrepancies: &Discrepancies,
-) -> Result<Whitened, RefineError> {
-    whitened_first(linear, linear.sizes.columns, noise, discrepancies)
+pub fn whiten_part(
+    linear: &LinearisedPart,
+    noise: &InstrumentNoise,
+    discrepancies: &AxisDiscrepancies,
+) -> Result<WhitenedRows, RefineError> {
+    whiten_columns(linear, linear.sizes.columns, noise, discrepancies)
 }
 
-fn whitened_first(
-    linear: &Linearised,
+fn whiten_columns(
+    linear: &LinearisedPart,
     columns: usize,
-    noise: &Noise,
-    discrepancies: &Discrepancies,
-) -> Result<Whitened, RefineError> {
+    noise: &InstrumentNoise,
+    discrepancies: &AxisDiscrepancies,
+) -> Result<WhitenedRows, RefineError> {
     let width = 1 + columns;
     let filter = KalmanFilter::new(vec![linear], noise, discrepancies, width)?;
     // Exact capacity: the number of rows is known, and a grown vector would keep spare memory.
     let mut rows = Vec::new();
     rows.reserve_exact(linear.reading.len() * width);
     let mut log_variance = 0.0;
-    widest(Whitening { linear, filter, rows: &mut rows, log_variance: &mut log_variance });
+    dispatch_simd(WhiteningKernel {
+        linear,
+        filter,
+        rows: &mut rows,
+        log_variance: &mut log_variance,
+    });
     Ok((rows, log_variance))
 }
 
 /// Arguments of a filter pass over a part of a trial.
-struct Whitening<'a> {
-    linear: &'a Linearised,
+struct WhiteningKernel<'a> {
+    linear: &'a LinearisedPart,
     filter: KalmanFilter<'a, f64>,
     rows: &'a mut Vec<f64>,
     log_variance: &'a mut f64,
 }
 
-impl Wide for Whitening<'_> {
+impl SimdKernel for WhiteningKernel<'_> {
     #[inline(always)]
-    fn go(self) {
+    fn run(self) {
         let Self { linear, mut filter, rows, log_variance } = self;
         for k in 0..linear.samples.len() {
             if k > 0 {

@@ -4,18 +4,18 @@ use sistership_identification::refine::RefineError;
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::Discrepancy;
 
-use super::discrepancies::Discrepancies;
-use super::linearised::Linearised;
-use super::noise::{Instrument, Noise};
+use super::discrepancies::AxisDiscrepancies;
+use super::linearised::LinearisedPart;
+use super::noise::{InstrumentNoise, NoiseLevel};
 use super::thresholds::RESIDUAL;
 
 /// Noise of the channels, states and axes of a part.
 pub(super) struct FilterNoise {
     /// Noise of each channel.
-    instruments: Vec<Instrument>,
+    instruments: Vec<NoiseLevel>,
     /// Instrument that reads each state, if any.
-    readers: Vec<Option<Instrument>>,
-    discrepancies: Discrepancies,
+    readers: Vec<Option<NoiseLevel>>,
+    discrepancies: AxisDiscrepancies,
 }
 
 impl FilterNoise {
@@ -25,9 +25,9 @@ impl FilterNoise {
     /// Returns an error if the noise of a channel is unknown, or if the number of discrepancies
     /// differs from that of accelerations.
     pub fn new(
-        part: &Linearised,
-        noise: &Noise,
-        discrepancies: &Discrepancies,
+        part: &LinearisedPart,
+        noise: &InstrumentNoise,
+        discrepancies: &AxisDiscrepancies,
     ) -> Result<Self, RefineError> {
         if discrepancies.len() != part.sizes.axes {
             return Err(RefineError::Law(format!(
@@ -37,7 +37,7 @@ impl FilterNoise {
             )));
         }
         let known = |(channel, _): &(Channel, usize)| {
-            noise.get(channel).copied().ok_or_else(|| unknown_noise(*channel))
+            noise.get(channel).copied().ok_or_else(|| unknown_noise_error(*channel))
         };
         let instruments = part.channels.iter().map(known).collect::<Result<Vec<_>, _>>()?;
         let reader = |state: usize| {
@@ -51,7 +51,7 @@ impl FilterNoise {
     /// Variances before the first reading, of states and then of discrepancies. A state without an
     /// instrument starts on the path.
     pub fn start_variances(&self) -> impl Iterator<Item = f64> + '_ {
-        let of_state = |reader: &Option<Instrument>| {
+        let of_state = |reader: &Option<NoiseLevel>| {
             reader.map_or(RESIDUAL.unread_variance, |instrument| {
                 (RESIDUAL.start * instrument.deviation).powi(2)
             })
@@ -62,7 +62,7 @@ impl FilterNoise {
 
     /// Variance of the drift of each state in a second.
     pub fn state_densities(&self) -> impl Iterator<Item = f64> + '_ {
-        let drift = |reader: &Option<Instrument>| {
+        let drift = |reader: &Option<NoiseLevel>| {
             reader.map_or(RESIDUAL.unread_drift, |instrument| instrument.drift).powi(2)
         };
         self.readers.iter().map(drift)
@@ -80,7 +80,7 @@ impl FilterNoise {
 }
 
 /// Error for readings of a channel whose noise is unknown.
-pub fn unknown_noise(channel: Channel) -> RefineError {
+pub fn unknown_noise_error(channel: Channel) -> RefineError {
     RefineError::Data(format!(
         "no noise is known of the channel `{}`: it is told from seven readings that follow each \
          other without a gap; give a trial that has them, or leave the channel out",

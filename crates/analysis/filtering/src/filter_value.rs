@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg};
 
-use super::linearised::Linearised;
+use super::linearised::LinearisedPart;
 
 /// Parts in lockstep: one vector of doubles of AVX2. With twice as many, most would wait for the
 /// longest, and the six trials of many a ship would be one task.
@@ -24,17 +24,17 @@ pub(super) trait FilterValue:
 
     /// Returns true if products with the value need not be added: it is zero, and the test is
     /// cheaper than the addition.
-    fn is_idle(self) -> bool;
+    fn is_skippable(self) -> bool;
 
     /// Sums rows of a matrix by their weights; `stride` is the distance between the beginnings of
     /// consecutive rows.
-    fn combine(weights: &[Self], rows: &[Self], stride: usize, sum: &mut [Self]);
+    fn weighted_sum(weights: &[Self], rows: &[Self], stride: usize, sum: &mut [Self]);
 
     /// Returns a row of numbers of each part, interleaved by lane; `room` is the buffer for it
     /// where one is needed.
-    fn row<'a>(
-        parts: &[&'a Linearised],
-        of: impl Fn(usize, &'a Linearised) -> &'a [f64],
+    fn lane_row<'a>(
+        parts: &[&'a LinearisedPart],
+        of: impl Fn(usize, &'a LinearisedPart) -> &'a [f64],
         room: &'a mut Vec<Self>,
     ) -> &'a [Self];
 
@@ -62,26 +62,26 @@ impl FilterValue for f64 {
     }
 
     #[inline(always)]
-    fn is_idle(self) -> bool {
+    fn is_skippable(self) -> bool {
         self == 0.0
     }
 
     /// Row after row, each in wide instructions.
     #[inline(always)]
-    fn combine(weights: &[Self], rows: &[Self], stride: usize, sum: &mut [Self]) {
+    fn weighted_sum(weights: &[Self], rows: &[Self], stride: usize, sum: &mut [Self]) {
         sum.fill(0.0);
         for (weight, row) in weights.iter().zip(rows.chunks(stride)) {
             // Skipped zeros leave the sum exactly as it is for finite rows.
             if *weight != 0.0 {
-                axpy(*weight, row, sum);
+                add_scaled(*weight, row, sum);
             }
         }
     }
 
     #[inline(always)]
-    fn row<'a>(
-        parts: &[&'a Linearised],
-        of: impl Fn(usize, &'a Linearised) -> &'a [f64],
+    fn lane_row<'a>(
+        parts: &[&'a LinearisedPart],
+        of: impl Fn(usize, &'a LinearisedPart) -> &'a [f64],
         _: &'a mut Vec<Self>,
     ) -> &'a [Self] {
         of(0, parts[0])
@@ -145,13 +145,13 @@ impl FilterValue for ValueLanes {
     }
 
     #[inline(always)]
-    fn is_idle(self) -> bool {
+    fn is_skippable(self) -> bool {
         false
     }
 
     /// Number after number, each of which is a wide register.
     #[inline(always)]
-    fn combine(weights: &[Self], rows: &[Self], stride: usize, sum: &mut [Self]) {
+    fn weighted_sum(weights: &[Self], rows: &[Self], stride: usize, sum: &mut [Self]) {
         for (column, to) in sum.iter_mut().enumerate() {
             let mut own = Self([0.0; LANES]);
             // In the order of the rows, as for one part, so that the results are the same to the
@@ -164,9 +164,9 @@ impl FilterValue for ValueLanes {
     }
 
     #[inline(always)]
-    fn row<'a>(
-        parts: &[&'a Linearised],
-        of: impl Fn(usize, &'a Linearised) -> &'a [f64],
+    fn lane_row<'a>(
+        parts: &[&'a LinearisedPart],
+        of: impl Fn(usize, &'a LinearisedPart) -> &'a [f64],
         room: &'a mut Vec<Self>,
     ) -> &'a [Self] {
         room.resize(of(0, parts[0]).len(), Self([0.0; LANES]));
@@ -179,7 +179,7 @@ impl FilterValue for ValueLanes {
 
 /// Adds a multiple of a row to another.
 #[inline(always)]
-pub(super) fn axpy<V: FilterValue>(weight: V, from: &[V], to: &mut [V]) {
+pub(super) fn add_scaled<V: FilterValue>(weight: V, from: &[V], to: &mut [V]) {
     for (to, from) in to.iter_mut().zip(from) {
         to.add_product(weight, *from);
     }

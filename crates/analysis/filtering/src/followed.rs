@@ -1,21 +1,21 @@
 //! Inputs that the ship follows otherwise than recorded: with a lag, or within a dead band.
 
-use sistership_simulation::interpolate::{lagged, within_band};
+use sistership_simulation::interpolate::{apply_dead_band, apply_lag};
 
 use super::thresholds::RESIDUAL;
 
 /// An input on which a parameter acts, and the kind of action.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Followed {
+pub(super) struct FollowedInput {
     /// Index among the inputs of the law.
     pub input: usize,
-    pub way: Following,
+    pub way: InputResponse,
 }
 
 /// Kind of deviation from a recorded input, with one figure that is zero where the record is
 /// followed.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Following {
+pub(super) enum InputResponse {
     /// First-order lag, by its time constant, s.
     Late,
     /// Dead band that the input has to leave, by half of its width in the unit of the input.
@@ -24,9 +24,9 @@ pub(super) enum Following {
 
 /// Record with a play in its running mean. A play about the record itself would remove the noise of
 /// its readings, and would seem likely for that reason.
-fn behind_play(recorded: &[f64], half: f64) -> Vec<f64> {
+fn apply_play(recorded: &[f64], half: f64) -> Vec<f64> {
     let quiet = running_mean(recorded, RESIDUAL.band_mean);
-    let held = within_band(&quiet, half);
+    let held = apply_dead_band(&quiet, half);
     recorded.iter().zip(quiet.iter().zip(held)).map(|(x, (mean, held))| x + (held - mean)).collect()
 }
 
@@ -37,19 +37,19 @@ fn running_mean(values: &[f64], window: usize) -> Vec<f64> {
     (0..values.len()).map(|k| near(k).iter().sum::<f64>() / near(k).len() as f64).collect()
 }
 
-impl Following {
+impl InputResponse {
     /// Input that the ship follows, with a value of the figure.
-    pub fn of(self, t_s: &[f64], recorded: &[f64], figure: f64) -> Vec<f64> {
+    pub fn followed_input(self, t_s: &[f64], recorded: &[f64], figure: f64) -> Vec<f64> {
         // A play is applied to the running mean, a lag to the record itself.
         match self {
-            Self::Late => lagged(t_s, recorded, figure),
-            Self::WithinBand => behind_play(recorded, figure),
+            Self::Late => apply_lag(t_s, recorded, figure),
+            Self::WithinBand => apply_play(recorded, figure),
         }
     }
 
     /// Increment of the figure for its derivative; where the figure is zero, at least the start of
     /// the search.
-    pub fn more(self, figure: f64, start: f64) -> f64 {
+    pub fn derivative_step(self, figure: f64, start: f64) -> f64 {
         let least = match self {
             Self::Late => RESIDUAL.lag_step_s,
             Self::WithinBand => RESIDUAL.band_step,

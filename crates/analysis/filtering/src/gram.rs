@@ -8,7 +8,7 @@ use super::symmetric_products::symmetric_products;
 /// Products of whitened residual (index 0) and columns (from 1), with the further terms of the
 /// likelihood.
 #[derive(Debug, Clone)]
-pub struct Gram {
+pub struct GramMatrix {
     /// Symmetric; index 0 is the residual.
     pub products: DMatrix<f64>,
     /// Sum of the logarithms of the predicted variances.
@@ -22,28 +22,28 @@ const BLOCK: usize = 48;
 /// Number of rows or columns up to which it does not fuse (nalgebra's `gemm`, 5).
 const UNFUSED: usize = 5;
 
-impl Gram {
+impl GramMatrix {
     /// Sums the products of whitened rows, each of `width` numbers, the residual first.
-    pub fn of_rows(rows: &[f64], width: usize, log_variance: f64) -> Self {
+    pub fn from_rows(rows: &[f64], width: usize, log_variance: f64) -> Self {
         let count = rows.len() / width;
-        Self { products: products(rows, (width, count)), log_variance, count }
+        Self { products: column_products(rows, (width, count)), log_variance, count }
     }
 
     /// Sums the products of whitened readings as columns, the residual first in each; a matrix
     /// without numbers is allowed.
-    pub fn of_columns(readings: &DMatrix<f64>, log_variance: f64) -> Self {
-        let products = products(readings.as_slice(), readings.shape());
+    pub fn from_columns(readings: &DMatrix<f64>, log_variance: f64) -> Self {
+        let products = column_products(readings.as_slice(), readings.shape());
         Self { products, log_variance, count: readings.ncols() }
     }
 
     /// Creates the sums of no sample.
-    pub fn empty(width: usize) -> Self {
+    pub fn zeros(width: usize) -> Self {
         Self { products: DMatrix::zeros(width, width), log_variance: 0.0, count: 0 }
     }
 
     /// Selects some of the columns (the residual first, then these indices of columns); an index
     /// may occur more than once.
-    pub fn select(&self, columns: &[usize]) -> Self {
+    pub fn select_columns(&self, columns: &[usize]) -> Self {
         let place = |i: usize| if i == 0 { 0 } else { 1 + columns[i - 1] };
         let size = 1 + columns.len();
         let products = DMatrix::from_fn(size, size, |i, j| self.products[(place(i), place(j))]);
@@ -58,8 +58,8 @@ impl Gram {
     }
 
     /// Adds the sums of all parts.
-    pub fn sum<'a>(parts: impl IntoIterator<Item = &'a Self>, width: usize) -> Self {
-        parts.into_iter().fold(Self::empty(width), |mut sum, part| {
+    pub fn sum_parts<'a>(parts: impl IntoIterator<Item = &'a Self>, width: usize) -> Self {
+        parts.into_iter().fold(Self::zeros(width), |mut sum, part| {
             sum.add(part);
             sum
         })
@@ -68,23 +68,25 @@ impl Gram {
 
 /// Products of all columns over readings. Small products, which a general product does not fuse,
 /// are computed by that one: models that were made by it are still verified bit by bit.
-fn products(rows: &[f64], (width, count): (usize, usize)) -> DMatrix<f64> {
+fn column_products(rows: &[f64], (width, count): (usize, usize)) -> DMatrix<f64> {
     let readings = DMatrixView::from_slice(rows, width, count);
     let is_fused = width > UNFUSED && count > UNFUSED;
     let fused = is_fused.then(|| symmetric_products(rows, width)).flatten();
-    let Some(mut products) = fused else { return in_blocks(readings) };
+    let Some(mut products) = fused else { return blocked_products(readings) };
     // The last block of columns may be too small to be fused: it is computed again by the general
     // product.
     let last = width % BLOCK;
     if last <= UNFUSED {
         let own = readings.rows(width - last, last);
-        products.view_mut((width - last, width - last), (last, last)).copy_from(&in_blocks(own));
+        products
+            .view_mut((width - last, width - last), (last, last))
+            .copy_from(&blocked_products(own));
     }
     products
 }
 
 /// Products by a general product, of which one triangle is computed.
-fn in_blocks(readings: DMatrixView<'_, f64>) -> DMatrix<f64> {
+fn blocked_products(readings: DMatrixView<'_, f64>) -> DMatrix<f64> {
     let width = readings.nrows();
     let mut products = DMatrix::zeros(width, width);
     for start in (0..width).step_by(BLOCK) {
@@ -106,8 +108,8 @@ mod tests {
         let cases = [(9, 0), (0, 9), (4, 30), (6, 3), (300, 50), (700, 96), (256, 101), (90, 151)];
         for (count, width) in cases {
             let rows: Vec<f64> = (0..count * width).map(reading).collect();
-            let blocks = in_blocks(DMatrixView::from_slice(&rows, width, count));
-            let own = products(&rows, (width, count));
+            let blocks = blocked_products(DMatrixView::from_slice(&rows, width, count));
+            let own = column_products(&rows, (width, count));
             assert_eq!(own.shape(), (width, width));
             let differ = own.iter().zip(&blocks).filter(|(a, b)| a.to_bits() != b.to_bits());
             assert_eq!(differ.count(), 0, "{count} readings of {width} columns");

@@ -10,8 +10,8 @@ use sistership_model::trial::Channel;
 use super::thresholds::RESIDUAL;
 
 /// Ranges of samples without a gap and further than `settles_s` from any jump.
-pub fn undisturbed(trial: &Trial, settles_s: f64) -> Vec<Range<usize>> {
-    let jumps = jumps(trial);
+pub fn undisturbed_ranges(trial: &Trial, settles_s: f64) -> Vec<Range<usize>> {
+    let jumps = jump_times(trial);
     let is_near = |k: usize| {
         // Jumps are in order, so only the neighbours on both sides can be near.
         let next = jumps.partition_point(|&jump| jump < trial.t_s[k]);
@@ -20,7 +20,7 @@ pub fn undisturbed(trial: &Trial, settles_s: f64) -> Vec<Range<usize>> {
         near(jumps.get(next)) || near(next.checked_sub(1).and_then(|before| jumps.get(before)))
     };
     let kept: Vec<Range<usize>> =
-        trial.segments().into_iter().flat_map(|range| runs(range, &|k| !is_near(k))).collect();
+        trial.segments().into_iter().flat_map(|range| kept_runs(range, &|k| !is_near(k))).collect();
     let left: usize = kept.iter().map(Range::len).sum();
     if (left as f64) < (1.0 - RESIDUAL.most_lost) * trial.len() as f64 {
         trial.segments()
@@ -30,7 +30,7 @@ pub fn undisturbed(trial: &Trial, settles_s: f64) -> Vec<Range<usize>> {
 }
 
 /// Runs of a range over which all samples are kept.
-fn runs(range: Range<usize>, keep: &dyn Fn(usize) -> bool) -> Vec<Range<usize>> {
+fn kept_runs(range: Range<usize>, keep: &dyn Fn(usize) -> bool) -> Vec<Range<usize>> {
     let (mut runs, mut start) = (Vec::new(), range.start);
     for k in range.clone() {
         if !keep(k) {
@@ -44,22 +44,22 @@ fn runs(range: Range<usize>, keep: &dyn Fn(usize) -> bool) -> Vec<Range<usize>> 
 }
 
 /// Times in the middle of steps that jump, in order, s.
-fn jumps(trial: &Trial) -> Vec<f64> {
+fn jump_times(trial: &Trial) -> Vec<f64> {
     // Rates over the ground: x' = u cos(psi) - v sin(psi), and y' by the angle turned by -90 deg.
     let rates = [
-        (Channel::X, ground(trial, 0.0)),
-        (Channel::Y, ground(trial, -0.5 * std::f64::consts::PI)),
+        (Channel::X, ground_speed(trial, 0.0)),
+        (Channel::Y, ground_speed(trial, -0.5 * std::f64::consts::PI)),
     ];
     let turn = trial.channel(Channel::R).map(<[f64]>::to_vec);
     let pairs = rates.into_iter().chain([(Channel::Psi, turn)]);
     let mut jumps: Vec<f64> =
-        pairs.flat_map(|(channel, rate)| of_channel(trial, channel, rate.as_deref())).collect();
+        pairs.flat_map(|(channel, rate)| channel_jumps(trial, channel, rate.as_deref())).collect();
     jumps.sort_by(f64::total_cmp);
     jumps
 }
 
 /// Speed over the ground along the x axis turned by an angle, m/s.
-fn ground(trial: &Trial, turned: f64) -> Option<Vec<f64>> {
+fn ground_speed(trial: &Trial, turned: f64) -> Option<Vec<f64>> {
     let (u, v, psi) =
         (trial.channel(Channel::U)?, trial.channel(Channel::V)?, trial.channel(Channel::Psi)?);
     let one =
@@ -67,7 +67,7 @@ fn ground(trial: &Trial, turned: f64) -> Option<Vec<f64>> {
     Some(u.iter().zip(v).zip(psi).map(one).collect())
 }
 
-fn of_channel(trial: &Trial, channel: Channel, rate: Option<&[f64]>) -> Vec<f64> {
+fn channel_jumps(trial: &Trial, channel: Channel, rate: Option<&[f64]>) -> Vec<f64> {
     let (Some(values), Some(rate)) = (trial.channel(channel), rate) else { return Vec::new() };
     let step = |k: usize| trial.t_s[k] - trial.t_s[k - 1];
     let steps: Vec<usize> = trial.segments().into_iter().flat_map(|range| range.skip(1)).collect();
@@ -78,13 +78,14 @@ fn of_channel(trial: &Trial, channel: Channel, rate: Option<&[f64]>) -> Vec<f64>
         .collect();
     let fastest = steps.iter().map(|&k| (step(k) * rate[k]).abs()).fold(0.0, f64::max);
     // The second limit keeps a position that is held between fixes from being a jump.
-    let limit = (RESIDUAL.jump * scatter(&apart)).max(RESIDUAL.least_jump * fastest);
+    let limit =
+        (RESIDUAL.jump * deviation_from_magnitudes(&apart)).max(RESIDUAL.least_jump * fastest);
     let jumping = steps.iter().zip(&apart).filter(|(_, apart)| **apart > limit);
     jumping.map(|(&k, _)| 0.5 * (trial.t_s[k] + trial.t_s[k - 1])).collect()
 }
 
 /// Standard deviation of a normal variable with the median of these magnitudes.
-fn scatter(magnitudes: &[f64]) -> f64 {
+fn deviation_from_magnitudes(magnitudes: &[f64]) -> f64 {
     let (mut ordered, middle) = (magnitudes.to_vec(), magnitudes.len() / 2);
     if ordered.is_empty() {
         return 0.0;
@@ -118,13 +119,13 @@ mod tests {
 
     #[test]
     fn a_jump_parts_a_trial() {
-        let parts = undisturbed(&run(0.5), 3.0);
+        let parts = undisturbed_ranges(&run(0.5), 3.0);
         assert_eq!(parts, [0..470, 530..1000]);
     }
 
     #[test]
     fn scatter_does_not() {
-        assert_eq!(undisturbed(&run(0.0), 3.0), vec![0..1000; 1]);
+        assert_eq!(undisturbed_ranges(&run(0.0), 3.0), vec![0..1000; 1]);
     }
 
     #[test]
@@ -134,6 +135,6 @@ mod tests {
             let values = held.channels.get_mut(&channel).unwrap();
             *values = (0..1000).map(|k| values[k / 10 * 10]).collect();
         }
-        assert_eq!(undisturbed(&held, 3.0), vec![0..1000; 1]);
+        assert_eq!(undisturbed_ranges(&held, 3.0), vec![0..1000; 1]);
     }
 }

@@ -42,15 +42,21 @@ mod tapes;
 mod thresholds;
 mod transition;
 
-pub use columns::{Columns, EffectCandidate, Nuisance, NuisanceKind, lacked_name};
-pub use discrepancies::Discrepancies;
-pub use filter::{Whitened, errors, filter, filter_first, responses, whitened};
-pub use filter_noise::unknown_noise;
-pub use gram::Gram;
-pub use likelihood::deviances;
+pub use columns::{
+    EffectCandidate, FilterColumns, NuisanceColumn, NuisanceKind, missing_term_name,
+};
+pub use discrepancies::AxisDiscrepancies;
+pub use filter::{
+    WhitenedRows, column_responses, filter_columns, filter_part, prediction_errors, whiten_part,
+};
+pub use filter_noise::unknown_noise_error;
+pub use gram::GramMatrix;
+pub use likelihood::part_deviances;
 pub use linearise::linearise;
-pub use linearised::{Detail, Linearised, RateResponse};
-pub use noise::{Instrument, Noise, floor, reading_interval, scatter, sparseness};
+pub use linearised::{LinearisationDetail, LinearisedPart, RateResponse};
+pub use noise::{
+    InstrumentNoise, NoiseLevel, noise_deviation, noise_floor, reading_interval, reading_stride,
+};
 pub use record::TrialReadings;
-pub use smoother::{Smoothed, smoothed};
+pub use smoother::{SmoothedDiscrepancies, smooth_discrepancies};
 pub use tapes::ResidualSystem;

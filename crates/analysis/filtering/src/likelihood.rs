@@ -5,28 +5,28 @@
 
 use rayon::prelude::*;
 use sistership_identification::refine::RefineError;
-use sistership_simulation::wide::{Wide, widest};
+use sistership_simulation::wide::{SimdKernel, dispatch_simd};
 
-use super::discrepancies::Discrepancies;
-use super::filter::errors;
+use super::discrepancies::AxisDiscrepancies;
+use super::filter::prediction_errors;
 use super::filter_value::{LANES, ValueLanes};
 use super::kalman_filter::KalmanFilter;
-use super::linearised::Linearised;
-use super::noise::Noise;
+use super::linearised::LinearisedPart;
+use super::noise::InstrumentNoise;
 
 /// Returns minus twice the logarithm of the likelihood of each part, less a constant; each part has
 /// one column that combines all others.
 ///
 /// # Errors
 /// Returns an error if the noise of a channel is unknown.
-pub fn deviances(
-    parts: &[&Linearised],
-    noise: &Noise,
-    discrepancies: &Discrepancies,
+pub fn part_deviances(
+    parts: &[&LinearisedPart],
+    noise: &InstrumentNoise,
+    discrepancies: &AxisDiscrepancies,
 ) -> Result<Vec<f64>, RefineError> {
     let mut order: Vec<usize> = (0..parts.len()).collect();
     // Parts of one shape are grouped, those of like length first.
-    let moves = |part: &Linearised| part.samples.len() > 1;
+    let moves = |part: &LinearisedPart| part.samples.len() > 1;
     let shape = |place: &usize| {
         let part = parts[*place];
         let channels: Vec<usize> = part.channels.iter().map(|(_, state)| *state).collect();
@@ -43,10 +43,10 @@ pub fn deviances(
     });
     let together: Vec<&[usize]> = alike.flat_map(|alike| alike.chunks(LANES)).collect();
     let of = |places: &&[usize]| {
-        let each: Vec<&Linearised> = places.iter().map(|place| parts[*place]).collect();
+        let each: Vec<&LinearisedPart> = places.iter().map(|place| parts[*place]).collect();
         let found = match each[..] {
-            [only] => vec![alone(only, noise, discrepancies)?],
-            _ => in_lanes(each, noise, discrepancies)?,
+            [only] => vec![single_deviance(only, noise, discrepancies)?],
+            _ => lockstep_deviances(each, noise, discrepancies)?,
         };
         Ok(places.iter().copied().zip(found).collect())
     };
@@ -58,24 +58,24 @@ pub fn deviances(
     Ok(all)
 }
 
-fn alone(
-    part: &Linearised,
-    noise: &Noise,
-    discrepancies: &Discrepancies,
+fn single_deviance(
+    part: &LinearisedPart,
+    noise: &InstrumentNoise,
+    discrepancies: &AxisDiscrepancies,
 ) -> Result<f64, RefineError> {
-    let (errors, log_variance) = errors(part, noise, discrepancies)?;
+    let (errors, log_variance) = prediction_errors(part, noise, discrepancies)?;
     Ok(errors.iter().map(|error| error * error).sum::<f64>() + log_variance)
 }
 
-fn in_lanes(
-    parts: Vec<&Linearised>,
-    noise: &Noise,
-    discrepancies: &Discrepancies,
+fn lockstep_deviances(
+    parts: Vec<&LinearisedPart>,
+    noise: &InstrumentNoise,
+    discrepancies: &AxisDiscrepancies,
 ) -> Result<Vec<f64>, RefineError> {
     let filter = KalmanFilter::new(parts.clone(), noise, discrepancies, 2)?;
     // Sums of floating-point numbers begin with -0.0, as `Iterator::sum` does.
     let (mut squares, mut log_variances) = ([-0.0; LANES], [0.0; LANES]);
-    widest(Deviance {
+    dispatch_simd(DevianceKernel {
         parts: &parts,
         filter,
         squares: &mut squares,
@@ -85,16 +85,16 @@ fn in_lanes(
 }
 
 /// Arguments of a pass that sums squared prediction errors and logarithms of variances.
-struct Deviance<'a> {
-    parts: &'a [&'a Linearised],
+struct DevianceKernel<'a> {
+    parts: &'a [&'a LinearisedPart],
     filter: KalmanFilter<'a, ValueLanes>,
     squares: &'a mut [f64; LANES],
     log_variances: &'a mut [f64; LANES],
 }
 
-impl Wide for Deviance<'_> {
+impl SimdKernel for DevianceKernel<'_> {
     #[inline(always)]
-    fn go(self) {
+    fn run(self) {
         let Self { parts, mut filter, squares, log_variances } = self;
         let longest = parts.iter().map(|part| part.samples.len()).max().unwrap_or(0);
         for k in 0..longest {

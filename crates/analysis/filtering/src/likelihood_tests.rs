@@ -2,8 +2,8 @@
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::Discrepancy;
 
-use super::super::linearised::Sizes;
-use super::super::noise::Instrument;
+use super::super::linearised::LinearisationSizes;
+use super::super::noise::NoiseLevel;
 use super::*;
 
 /// Numbers between -1 and 1 that look random (Knuth, The Art of Computer Programming 2, 3.3.4).
@@ -22,16 +22,21 @@ impl Numbers {
 }
 
 /// A part of so many samples, some intervals longer than others.
-fn part(samples: usize, every: usize, channels: &[(Channel, usize)], measured: bool) -> Linearised {
+fn part(
+    samples: usize,
+    every: usize,
+    channels: &[(Channel, usize)],
+    measured: bool,
+) -> LinearisedPart {
     let numbers = &mut Numbers(7 + samples as u64);
     let readings = samples * channels.len();
     let mut jacobian = numbers.some(16 * samples, 0.1);
     // Nothing depends on the last state.
     jacobian.iter_mut().skip(3).step_by(4).for_each(|value| *value = 0.0);
-    Linearised {
+    LinearisedPart {
         samples: (0..samples).collect(),
         t_s: (0..samples).map(|k| 0.5 * k as f64 + if k > 9 { 0.25 } else { 0.0 }).collect(),
-        sizes: Sizes { states: 4, axes: 3, columns: 1 },
+        sizes: LinearisationSizes { states: 4, axes: 3, columns: 1 },
         jacobian,
         accelerations: numbers.some(3 * samples, 0.01),
         defect: numbers.some(4 * samples, 0.01),
@@ -46,31 +51,31 @@ fn part(samples: usize, every: usize, channels: &[(Channel, usize)], measured: b
 }
 
 /// Each channel says a mixture of states; one state is in none of them.
-fn mixing(part: Linearised) -> Linearised {
+fn mixing(part: LinearisedPart) -> LinearisedPart {
     let mut by_state = Numbers(3).some(4 * part.reading.len(), 1.0);
     by_state.iter_mut().skip(3).step_by(4).for_each(|weight| *weight = 0.0);
-    Linearised { by_state: Some(by_state), ..part }
+    LinearisedPart { by_state: Some(by_state), ..part }
 }
 
 #[test]
 fn lanes_give_what_one_part_after_the_other_gives_to_the_last_bit() {
     let four = [(Channel::U, 0), (Channel::V, 1), (Channel::R, 2), (Channel::Psi, 3)];
-    let instrument = Instrument { deviation: 0.1, drift: 1e-3 };
-    let noise: Noise = four.iter().map(|(channel, _)| (*channel, instrument)).collect();
+    let instrument = NoiseLevel { deviation: 0.1, drift: 1e-3 };
+    let noise: InstrumentNoise = four.iter().map(|(channel, _)| (*channel, instrument)).collect();
     let discrepancy = |k: usize| Discrepancy {
         deviation: 0.01 * (1 + k) as f64,
         time_s: 20.0 + k as f64,
         white: 1e-3,
     };
-    let discrepancies: Discrepancies = (0..3).map(discrepancy).collect();
+    let discrepancies: AxisDiscrepancies = (0..3).map(discrepancy).collect();
     let lengths = [60, 12, 33, 33, 80, 7, 41, 55, 20, 61, 1];
-    let mut parts: Vec<Linearised> = lengths.map(|n| part(n, 1, &four, n % 2 == 0)).into();
+    let mut parts: Vec<LinearisedPart> = lengths.map(|n| part(n, 1, &four, n % 2 == 0)).into();
     parts.extend([30, 31, 32].map(|n| part(n, 3, &four[..3], false)));
     parts.extend([25, 40, 41, 26, 9].map(|n| mixing(part(n, 1, &four, n % 2 == 0))));
-    let each: Vec<&Linearised> = parts.iter().collect();
-    let together = deviances(&each, &noise, &discrepancies).unwrap();
+    let each: Vec<&LinearisedPart> = parts.iter().collect();
+    let together = part_deviances(&each, &noise, &discrepancies).unwrap();
     for (part, deviance) in parts.iter().zip(together) {
-        let alone = alone(part, &noise, &discrepancies).unwrap();
+        let alone = single_deviance(part, &noise, &discrepancies).unwrap();
         assert!(deviance.is_finite());
         assert_eq!(deviance.to_bits(), alone.to_bits(), "{deviance} not {alone}");
     }

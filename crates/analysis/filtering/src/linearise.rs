@@ -1,6 +1,6 @@
 //! Linearisation of a model along the path of a recorded trial.
 
-use super::linearised::{Detail, Linearised};
+use super::linearised::{LinearisationDetail, LinearisedPart};
 use super::lineariser::PathLineariser;
 use super::path::RecordedPath;
 use super::{ResidualSystem, TrialReadings};
@@ -13,12 +13,12 @@ use sistership_identification::refine::RefineError;
 pub fn linearise(
     system: &ResidualSystem,
     record: &TrialReadings<'_>,
-    detail: Detail,
-) -> Result<Vec<Linearised>, RefineError> {
+    detail: LinearisationDetail,
+) -> Result<Vec<LinearisedPart>, RefineError> {
     let path = RecordedPath::new(system, record)?;
     Ok(record
         .parts
         .iter()
-        .map(|part| PathLineariser::new(system, &path, detail).walk(part))
+        .map(|part| PathLineariser::new(system, &path, detail).linearise_part(part))
         .collect())
 }

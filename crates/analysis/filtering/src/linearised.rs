@@ -6,13 +6,13 @@ use sistership_model::trial::Channel;
 /// path from sample to sample, and their readings. All matrices are row by row, sample after
 /// sample.
 #[derive(Debug, Clone)]
-pub struct Linearised {
+pub struct LinearisedPart {
     /// Indices of the samples of the trial.
     pub samples: Vec<usize>,
     /// Time of each, s.
     pub t_s: Vec<f64>,
     /// Numbers of states, accelerations and columns.
-    pub sizes: Sizes,
+    pub sizes: LinearisationSizes,
     /// Jacobian of the states' rates: states by states, for each interval.
     pub jacobian: Vec<f64>,
     /// Derivatives of the accelerations with the columns: axes by columns, for each interval.
@@ -57,7 +57,7 @@ pub struct RateResponse {
 
 /// Extent of a linearisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Detail {
+pub enum LinearisationDetail {
     /// Everything.
     Whole,
     /// The path and the columns; transitions and readings of deviations come from another
@@ -67,7 +67,7 @@ pub enum Detail {
 
 /// Sizes of a linearisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sizes {
+pub struct LinearisationSizes {
     /// Number of states.
     pub states: usize,
     /// Number of accelerations.
@@ -76,23 +76,23 @@ pub struct Sizes {
     pub columns: usize,
 }
 
-impl Linearised {
+impl LinearisedPart {
     /// Combines the path and the columns of this linearisation with the filter (transitions and
     /// readings of deviations) of another.
-    pub fn by_filter_of(self, other: &Self) -> Self {
+    pub fn with_filter_from(self, other: &Self) -> Self {
         Self { jacobian: other.jacobian.clone(), by_state: other.by_state.clone(), ..self }
     }
 
     /// Sums all columns, weighted by given parameters, into one column, with rates as they are on
     /// the path.
-    pub fn along(&self, parameters: &[f64]) -> Self {
+    pub fn combine_columns(&self, parameters: &[f64]) -> Self {
         let weighted =
             |row: &[f64]| row.iter().zip(parameters).map(|(value, by)| value * by).sum::<f64>();
         let measured: Vec<f64> = self.measured.iter().map(|&column| parameters[column]).collect();
         let said =
             |row: &[f64]| row.iter().zip(&measured).map(|(value, by)| value * by).sum::<f64>();
         Self {
-            sizes: Sizes { columns: 1, ..self.sizes },
+            sizes: LinearisationSizes { columns: 1, ..self.sizes },
             accelerations: self
                 .accelerations
                 .chunks_exact(self.sizes.columns.max(1))
@@ -107,7 +107,7 @@ impl Linearised {
     /// Copy of the path and its filter, which are small in comparison with the columns.
     fn without_columns(&self) -> Self {
         Self {
-            sizes: Sizes { columns: 0, ..self.sizes },
+            sizes: LinearisationSizes { columns: 0, ..self.sizes },
             accelerations: Vec::new(),
             by_column: Vec::new(),
             measured: Vec::new(),
@@ -125,13 +125,19 @@ impl Linearised {
 
     /// Keeps some columns as they are and appends each column of `cut` once for every weight of a
     /// time, multiplied by that weight.
-    pub fn cut(&self, kept: &[usize], cut: &[usize], weights: &dyn Fn(f64) -> Vec<f64>) -> Self {
+    pub fn weight_columns(
+        &self,
+        kept: &[usize],
+        cut: &[usize],
+        weights: &dyn Fn(f64) -> Vec<f64>,
+    ) -> Self {
         let count = self.t_s.first().map_or(0, |t| weights(*t).len());
         let copies = cut.iter().flat_map(|&column| (0..count).map(move |k| (column, Some(k))));
         // Kept columns come first, then the pieces of each cut column in the order of the weights.
-        let pieces: Vec<Piece> = kept.iter().map(|&column| (column, None)).chain(copies).collect();
+        let pieces: Vec<WeightedColumn> =
+            kept.iter().map(|&column| (column, None)).chain(copies).collect();
         let place = |column: usize| self.measured.iter().position(|&known| known == column);
-        let seen: Vec<(usize, Piece)> = pieces
+        let seen: Vec<(usize, WeightedColumn)> = pieces
             .iter()
             .enumerate()
             .filter_map(|(own, &(column, copy))| Some((own, (place(column)?, copy))))
@@ -144,26 +150,27 @@ impl Linearised {
             for (t, rows) in self.t_s.iter().zip(self.by_column.chunks_exact(rows)) {
                 let by = weights(*t);
                 for row in rows.chunks_exact(self.measured.len()) {
-                    by_column.extend(seen.iter().map(|(_, piece)| of_piece(*piece, row, &by)));
+                    by_column
+                        .extend(seen.iter().map(|(_, piece)| weighted_value(*piece, row, &by)));
                 }
             }
         }
         Self {
-            sizes: Sizes { columns: pieces.len(), ..self.sizes },
-            accelerations: self.in_pieces(&pieces, weights),
+            sizes: LinearisationSizes { columns: pieces.len(), ..self.sizes },
+            accelerations: self.weighted_accelerations(&pieces, weights),
             by_column,
             measured: seen.into_iter().map(|(own, _)| own).collect(),
-            by_rate: self.rates_in_pieces(&pieces, weights),
+            by_rate: self.weighted_rate_responses(&pieces, weights),
             ..self.without_columns()
         }
     }
 
-    fn rates_in_pieces(
+    fn weighted_rate_responses(
         &self,
-        pieces: &[Piece],
+        pieces: &[WeightedColumn],
         weights: &dyn Fn(f64) -> Vec<f64>,
     ) -> Vec<RateResponse> {
-        let of = |(column, &(from, copy)): (usize, &Piece)| {
+        let of = |(column, &(from, copy)): (usize, &WeightedColumn)| {
             let weight = |t: &f64| copy.map_or(1.0, |copy| weights(*t)[copy]);
             let weighted = |response: &RateResponse| {
                 let by = response.by.iter().zip(&self.t_s).map(|(by, t)| by * weight(t)).collect();
@@ -177,15 +184,19 @@ impl Linearised {
         said.chain(pieces.iter().enumerate().flat_map(of)).collect()
     }
 
-    fn in_pieces(&self, pieces: &[Piece], weights: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
-        let Sizes { axes, columns, .. } = self.sizes;
+    fn weighted_accelerations(
+        &self,
+        pieces: &[WeightedColumn],
+        weights: &dyn Fn(f64) -> Vec<f64>,
+    ) -> Vec<f64> {
+        let LinearisationSizes { axes, columns, .. } = self.sizes;
         let steps = self.accelerations.chunks_exact((axes * columns).max(1));
         let mut all = Vec::with_capacity(steps.len() * axes * pieces.len());
         for (ends, rows) in self.t_s.windows(2).zip(steps) {
             // Accelerations are means over an interval, so their weight is that of its middle.
             let by = weights(0.5 * (ends[0] + ends[1]));
             for row in rows.chunks_exact(columns) {
-                all.extend(pieces.iter().map(|piece| of_piece(*piece, row, &by)));
+                all.extend(pieces.iter().map(|piece| weighted_value(*piece, row, &by)));
             }
         }
         all
@@ -193,9 +204,9 @@ impl Linearised {
 }
 
 /// A column, and the index of the weight by which it is multiplied.
-type Piece = (usize, Option<usize>);
+type WeightedColumn = (usize, Option<usize>);
 
-fn of_piece((column, copy): Piece, row: &[f64], by: &[f64]) -> f64 {
+fn weighted_value((column, copy): WeightedColumn, row: &[f64], by: &[f64]) -> f64 {
     row[column] * copy.map_or(1.0, |copy| by[copy])
 }
 
@@ -204,11 +215,11 @@ mod tests {
     use super::*;
 
     /// Two steps of one acceleration with two columns, the second of which acts on the instrument.
-    fn part() -> Linearised {
-        Linearised {
+    fn part() -> LinearisedPart {
+        LinearisedPart {
             samples: vec![0, 1, 2],
             t_s: vec![0.0, 1.0, 2.0],
-            sizes: Sizes { states: 1, axes: 1, columns: 2 },
+            sizes: LinearisationSizes { states: 1, axes: 1, columns: 2 },
             jacobian: vec![0.0; 2],
             accelerations: vec![1.0, 2.0, 3.0, 4.0],
             defect: vec![0.0; 2],
@@ -230,7 +241,7 @@ mod tests {
     #[test]
     fn a_column_is_cut_where_its_weights_say_so() {
         let halves = |t: f64| vec![f64::from(u8::from(t < 1.0)), f64::from(u8::from(t >= 1.0))];
-        let cut = part().cut(&[0], &[1], &halves);
+        let cut = part().weight_columns(&[0], &[1], &halves);
         assert_eq!(cut.sizes.columns, 3);
         assert_eq!(cut.accelerations, [1.0, 2.0, 0.0, 3.0, 0.0, 4.0]);
         assert_eq!(cut.measured, [1, 2]);
@@ -238,7 +249,8 @@ mod tests {
         let rates: Vec<_> = cut.by_rate.iter().map(|rate| (rate.column, &rate.by[..])).collect();
         assert_eq!(rates, [(Some(1), &[-1.0, 0.0, 0.0][..]), (Some(2), &[0.0, -1.0, -1.0][..])]);
         // Together they are what was cut.
-        let (whole, again) = (part().along(&[0.5, 2.0]), cut.along(&[0.5, 2.0, 2.0]));
+        let (whole, again) =
+            (part().combine_columns(&[0.5, 2.0]), cut.combine_columns(&[0.5, 2.0, 2.0]));
         assert_eq!(whole.accelerations, again.accelerations);
         assert_eq!(whole.by_column, again.by_column);
     }

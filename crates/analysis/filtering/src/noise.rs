@@ -9,7 +9,7 @@ use super::thresholds::RESIDUAL;
 
 /// Noise of an instrument.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Instrument {
+pub struct NoiseLevel {
     /// Standard deviation of the noise of its readings, SI.
     pub deviation: f64,
     /// Root of the density of the disagreement between its rate and the velocities, by the root of
@@ -17,15 +17,15 @@ pub struct Instrument {
     pub drift: f64,
 }
 
-impl Instrument {
+impl NoiseLevel {
     /// Creates an instrument of which only the noise is known, with the default drift.
-    pub fn of_scatter(deviation: f64) -> Self {
+    pub fn from_deviation(deviation: f64) -> Self {
         Self { deviation, drift: RESIDUAL.drift * deviation }
     }
 }
 
 /// Instruments by channel.
-pub type Noise = BTreeMap<Channel, Instrument>;
+pub type InstrumentNoise = BTreeMap<Channel, NoiseLevel>;
 
 /// Binomial coefficients of sixth differences; the variance of white noise grows by the sum of
 /// their squares.
@@ -35,18 +35,18 @@ const GAIN: f64 = 924.0;
 /// Standard deviation of a channel's noise by sixth differences, SI; none without seven consecutive
 /// readings. The remainder of a ship's motion in sixth differences is far below the noise of any
 /// instrument. `every` gives the stride among the samples of each trial.
-pub fn scatter(
+pub fn noise_deviation(
     records: &[TrialReadings<'_>],
     channel: Channel,
     every: &dyn Fn(&TrialReadings<'_>) -> usize,
 ) -> Option<f64> {
-    let of = |record| differences(record, channel, every(record));
-    deviation(records.iter().flat_map(of).collect())
+    let of = |record| used_differences(record, channel, every(record));
+    deviation_from_differences(records.iter().flat_map(of).collect())
 }
 
 /// Standard deviation of noise by magnitudes of its sixth differences. Their median is robust
 /// against the few samples at which a reading jumps.
-fn deviation(mut magnitudes: Vec<f64>) -> Option<f64> {
+fn deviation_from_differences(mut magnitudes: Vec<f64>) -> Option<f64> {
     if magnitudes.is_empty() {
         return None;
     }
@@ -65,9 +65,9 @@ fn deviation(mut magnitudes: Vec<f64>) -> Option<f64> {
 /// their spacing the same recorder would seem to smooth one set of trials and not another.
 pub fn reading_interval(records: &[TrialReadings<'_>]) -> Option<f64> {
     let ratio = |channel: Channel| {
-        let recorded = |record: &TrialReadings<'_>| differences_recorded(record, channel);
-        let close = deviation(records.iter().flat_map(recorded).collect())?;
-        let apart = scatter(records, channel, &|_| RESIDUAL.sparse)?;
+        let recorded = |record: &TrialReadings<'_>| recorded_differences(record, channel);
+        let close = deviation_from_differences(records.iter().flat_map(recorded).collect())?;
+        let apart = noise_deviation(records, channel, &|_| RESIDUAL.sparse)?;
         (close > 0.0).then(|| apart / close)
     };
     let is_smoothed = |channel: Channel| ratio(channel).is_some_and(|r| r > RESIDUAL.smoothed);
@@ -79,22 +79,22 @@ pub fn reading_interval(records: &[TrialReadings<'_>]) -> Option<f64> {
 
 /// Stride of readings with independent noise, as [`reading_interval`] but among the samples that
 /// are used, a count. Models without a stored interval read trials by it.
-pub fn sparseness(records: &[TrialReadings<'_>]) -> usize {
+pub fn reading_stride(records: &[TrialReadings<'_>]) -> usize {
     let grows = |channel: Channel| {
-        let of = |every: usize| scatter(records, channel, &|_| every);
+        let of = |every: usize| noise_deviation(records, channel, &|_| every);
         let pair = of(1).zip(of(RESIDUAL.sparse));
         pair.is_some_and(|(close, apart)| close > 0.0 && apart > RESIDUAL.grows * close)
     };
     if grows(Channel::U) && grows(Channel::V) { RESIDUAL.sparse } else { 1 }
 }
 
-fn differences(record: &TrialReadings<'_>, channel: Channel, every: usize) -> Vec<f64> {
+fn used_differences(record: &TrialReadings<'_>, channel: Channel, every: usize) -> Vec<f64> {
     let taken = |part: &Vec<usize>| part.iter().copied().step_by(every).collect();
     sixth_differences(record, channel, &taken)
 }
 
 /// Sixth differences of every recorded sample, also between those that are used.
-fn differences_recorded(record: &TrialReadings<'_>, channel: Channel) -> Vec<f64> {
+fn recorded_differences(record: &TrialReadings<'_>, channel: Channel) -> Vec<f64> {
     let between = |part: &Vec<usize>| (part[0]..=part[part.len() - 1]).collect();
     sixth_differences(record, channel, &between)
 }
@@ -113,7 +113,7 @@ fn sixth_differences(
 
 /// Least noise of an instrument, SI, by the ship's length and speed: noise-free simulations are
 /// trials too.
-pub fn floor(channel: Channel, lpp_m: f64, speed_m_s: f64) -> f64 {
+pub fn noise_floor(channel: Channel, lpp_m: f64, speed_m_s: f64) -> f64 {
     let rate = speed_m_s / lpp_m;
     match channel {
         Channel::X | Channel::Y => RESIDUAL.floor * lpp_m,
@@ -186,7 +186,7 @@ mod tests {
         near(0.1, 0.5);
         near(0.2, 1.0);
         near(0.4, 2.0);
-        let used = |step_s| sparseness(&[TrialReadings::new(&trial, step_s, 0.0)]);
+        let used = |step_s| reading_stride(&[TrialReadings::new(&trial, step_s, 0.0)]);
         assert_eq!([used(0.1), used(0.4)], [5, 1], "which the samples that are used do not say");
     }
 }

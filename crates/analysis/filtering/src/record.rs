@@ -1,9 +1,9 @@
 //! Readings of a trial as a filter uses them.
 
-use sistership_model::effect::{TIME, input_channel};
+use sistership_model::effect::{TIME_INPUT, input_channel};
 use sistership_model::trial::{Channel, Trial};
 
-use super::jumps::undisturbed;
+use super::jumps::undisturbed_ranges;
 use sistership_identification::refine::RefineError;
 
 /// A trial as a filter reads it: times, readings, a smooth path through them, and inputs.
@@ -23,7 +23,7 @@ impl<'a> TrialReadings<'a> {
     pub fn new(trial: &'a Trial, least_step_s: f64, settles_s: f64) -> Self {
         // The small shares keep exact multiples of the interval from being rounded down.
         let stride = (least_step_s / trial.interval_s().max(1e-9) + 1e-9).floor().max(1.0) as usize;
-        let parts = undisturbed(trial, settles_s)
+        let parts = undisturbed_ranges(trial, settles_s)
             .into_iter()
             .map(|range| range.step_by(stride).collect::<Vec<usize>>());
         Self { trial, parts: parts.filter(|part| part.len() > 2).collect(), every: 1 }
@@ -52,7 +52,7 @@ impl<'a> TrialReadings<'a> {
     }
 
     /// Returns true if a channel was recorded.
-    pub fn has(&self, channel: Channel) -> bool {
+    pub fn has_channel(&self, channel: Channel) -> bool {
         self.trial.channel(channel).is_some()
     }
 
@@ -60,7 +60,7 @@ impl<'a> TrialReadings<'a> {
     ///
     /// # Errors
     /// Returns an error that names the trial and the channel if it was not recorded.
-    pub fn need(&self, channel: Channel) -> Result<&'a [f64], RefineError> {
+    pub fn required_channel(&self, channel: Channel) -> Result<&'a [f64], RefineError> {
         self.trial
             .channel(channel)
             .ok_or_else(|| RefineError::Channel { trial: self.trial.name.clone(), channel })
@@ -73,7 +73,7 @@ impl<'a> TrialReadings<'a> {
     /// default.
     pub fn input(&self, name: &str, default: Option<f64>) -> Result<Vec<f64>, RefineError> {
         let trial = self.trial;
-        if name == TIME {
+        if name == TIME_INPUT {
             let start = trial.t_s.first().copied().unwrap_or_default();
             return Ok(trial.t_s.iter().map(|t| t - start).collect());
         }
@@ -98,7 +98,7 @@ impl<'a> TrialReadings<'a> {
 /// Smooths values by a parabola through each five samples, read in their middle: white noise loses
 /// half its variance, a motion of more than some ten samples nothing. The model is linearised along
 /// it.
-pub fn smoothed(values: &[f64]) -> Vec<f64> {
+pub fn smooth_parabolic(values: &[f64]) -> Vec<f64> {
     let fitted = |w: &[f64]| (17.0 * w[2] + 12.0 * (w[1] + w[3]) - 3.0 * (w[0] + w[4])) / 35.0;
     let mut out = values.to_vec();
     for (k, window) in values.windows(5).enumerate() {

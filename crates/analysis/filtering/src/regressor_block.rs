@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use sistership_simulation::tape::{Lanes, Slots, Tape};
+use sistership_simulation::tape::{LaneValues, Tape, TapeResults};
 
 use super::lanes::LANES;
 use super::{NuisanceKind, ResidualSystem};
@@ -14,7 +14,7 @@ pub(super) struct RegressorBlock {
     /// Runs of adjacent columns that act on one axis of the filter, with its index; masses and
     /// columns of another axis are excluded.
     alike: Vec<(Range<usize>, usize)>,
-    forces: Slots<LANES>,
+    forces: TapeResults<LANES>,
     /// N or N m per unit: sample by sample, column by column.
     by_sample: Vec<f64>,
 }
@@ -22,34 +22,34 @@ pub(super) struct RegressorBlock {
 impl RegressorBlock {
     pub fn new(system: &ResidualSystem) -> Self {
         let columns = system.columns.nuisance.len();
-        let (forces, by_sample) = (Slots::default(), Vec::new());
-        Self { columns, alike: alike(system), forces, by_sample }
+        let (forces, by_sample) = (TapeResults::default(), Vec::new());
+        Self { columns, alike: find_axis_runs(system), forces, by_sample }
     }
 
     /// Evaluates the regressors at the points of a block, given as inputs of the tape of motion.
-    pub fn run(&mut self, regressors: &Tape, inputs: &[Lanes<LANES>]) {
-        regressors.run(inputs, &mut self.forces);
+    pub fn run(&mut self, regressors: &Tape, inputs: &[LaneValues<LANES>]) {
+        regressors.evaluate(inputs, &mut self.forces);
         // Transposed from columns of lanes to samples, so that the forces of a sample are
         // contiguous.
         self.by_sample.resize(LANES * self.columns, 0.0);
         for column in 0..self.columns {
-            let forces = regressors.read(column, &self.forces);
+            let forces = regressors.output_lanes(column, &self.forces);
             (0..LANES).for_each(|k| self.by_sample[k * self.columns + column] = forces[k]);
         }
     }
 
     /// Runs of columns that act on one axis.
-    pub fn alike(&self) -> &[(Range<usize>, usize)] {
+    pub fn axis_runs(&self) -> &[(Range<usize>, usize)] {
         &self.alike
     }
 
     /// Forces at a sample, by column.
-    pub fn of_sample(&self, lane: usize) -> &[f64] {
+    pub fn sample_forces(&self, lane: usize) -> &[f64] {
         &self.by_sample[lane * self.columns..][..self.columns]
     }
 }
 
-fn alike(system: &ResidualSystem) -> Vec<(Range<usize>, usize)> {
+fn find_axis_runs(system: &ResidualSystem) -> Vec<(Range<usize>, usize)> {
     let mut alike: Vec<(Range<usize>, usize)> = Vec::new();
     for (column, nuisance) in system.columns.nuisance.iter().enumerate() {
         let place = system.axes.iter().position(|&known| known == nuisance.kind.axis());

@@ -4,14 +4,14 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 use sistership_identification::refine::RefineError;
 
-use super::discrepancies::Discrepancies;
+use super::discrepancies::AxisDiscrepancies;
 use super::kalman_filter::KalmanFilter;
-use super::linearised::Linearised;
-use super::noise::Noise;
+use super::linearised::LinearisedPart;
+use super::noise::InstrumentNoise;
 
 /// Discrepancy of each axis over the samples of a part, with its standard deviation.
 #[derive(Debug, Clone)]
-pub struct Smoothed {
+pub struct SmoothedDiscrepancies {
     /// Values by axis, then sample, m/s2 or rad/s2.
     pub values: Vec<Vec<f64>>,
     /// Standard deviations, in the same order.
@@ -37,18 +37,18 @@ struct FilterStep {
 /// # Errors
 /// Returns an error if the noise of a channel is unknown, or one that names the time at which a
 /// predicted covariance is not positive definite.
-pub fn smoothed(
-    linear: &Linearised,
-    noise: &Noise,
-    discrepancies: &Discrepancies,
-) -> Result<Smoothed, RefineError> {
+pub fn smooth_discrepancies(
+    linear: &LinearisedPart,
+    noise: &InstrumentNoise,
+    discrepancies: &AxisDiscrepancies,
+) -> Result<SmoothedDiscrepancies, RefineError> {
     let (states, axes) = (linear.sizes.states, linear.sizes.axes);
     let all = smoothed_states(linear, noise, discrepancies)?;
     let of_axis = |of: &dyn Fn(&GaussianState, usize) -> f64| {
         let one = |axis: usize| all.iter().map(|state| of(state, states + axis)).collect();
         (0..axes).map(one).collect()
     };
-    Ok(Smoothed {
+    Ok(SmoothedDiscrepancies {
         values: of_axis(&|state, at| state.mean[at]),
         deviations: of_axis(&|state, at| state.covariance[(at, at)].max(0.0).sqrt()),
     })
@@ -56,16 +56,16 @@ pub fn smoothed(
 
 /// States and discrepancies at each sample given all readings.
 fn smoothed_states(
-    linear: &Linearised,
-    noise: &Noise,
-    discrepancies: &Discrepancies,
+    linear: &LinearisedPart,
+    noise: &InstrumentNoise,
+    discrepancies: &AxisDiscrepancies,
 ) -> Result<Vec<GaussianState>, RefineError> {
-    let steps = forward(linear, noise, discrepancies)?;
+    let steps = filter_forward(linear, noise, discrepancies)?;
     let mut all: Vec<GaussianState> = Vec::with_capacity(steps.len());
     // Backwards in time: the last filtered state is already the smoothed one.
     for k in (0..steps.len()).rev() {
         let state = match all.last() {
-            Some(later) => backward(&steps[k].known, &steps[k + 1], later).ok_or_else(|| {
+            Some(later) => smooth_backward(&steps[k].known, &steps[k + 1], later).ok_or_else(|| {
                 RefineError::Data(format!(
                     "the covariance that the filter predicts for {} s is not positive definite: \
                      check noise and discrepancies of the model's calibration",
@@ -80,15 +80,15 @@ fn smoothed_states(
     Ok(all)
 }
 
-fn forward(
-    linear: &Linearised,
-    noise: &Noise,
-    discrepancies: &Discrepancies,
+fn filter_forward(
+    linear: &LinearisedPart,
+    noise: &InstrumentNoise,
+    discrepancies: &AxisDiscrepancies,
 ) -> Result<Vec<FilterStep>, RefineError> {
     let mut filter = KalmanFilter::<f64>::new(vec![linear], noise, discrepancies, 1)?;
     let belief = |filter: &KalmanFilter<'_, f64>| GaussianState {
-        mean: filter.mean(),
-        covariance: filter.covariance(),
+        mean: filter.state_mean(),
+        covariance: filter.state_covariance(),
     };
     let mut steps = Vec::with_capacity(linear.samples.len());
     for k in 0..linear.samples.len() {
@@ -100,7 +100,7 @@ fn forward(
             filter.update(k, |_, _| {});
         }
         // After the update, but still the transition by which this sample was predicted.
-        let transition = filter.transition();
+        let transition = filter.transition_matrix();
         steps.push(FilterStep { known: belief(&filter), expected, transition });
     }
     Ok(steps)
@@ -108,7 +108,7 @@ fn forward(
 
 /// Smoothed state at a sample, from that at the next; none where the covariance that is predicted
 /// for the next sample is not positive definite.
-fn backward(
+fn smooth_backward(
     known: &GaussianState,
     next: &FilterStep,
     later: &GaussianState,

@@ -6,7 +6,7 @@
 //! the same to the last bit.
 
 use nalgebra::DMatrix;
-use sistership_simulation::wide::{Wide, fused};
+use sistership_simulation::wide::{SimdKernel, dispatch_fused};
 
 /// Number of readings in a block: that of `matrixmultiply`, whose sums these are.
 const READINGS: usize = 256;
@@ -14,13 +14,13 @@ const READINGS: usize = 256;
 const STRIP: usize = 8;
 
 /// A strip of columns at one reading.
-type Lanes = [f64; STRIP];
+type StripValues = [f64; STRIP];
 
 /// Products of readings, `width` numbers each; none where the processor has no fused
 /// multiplication.
 pub(super) fn symmetric_products(readings: &[f64], width: usize) -> Option<DMatrix<f64>> {
     let mut products = DMatrix::zeros(width, width);
-    fused(SymmetricProducts { readings, width, products: &mut products }).then(|| {
+    dispatch_fused(SymmetricProducts { readings, width, products: &mut products }).then(|| {
         products.fill_upper_triangle_with_lower_triangle();
         products
     })
@@ -33,19 +33,19 @@ struct SymmetricProducts<'a> {
     products: &'a mut DMatrix<f64>,
 }
 
-impl Wide for SymmetricProducts<'_> {
+impl SimdKernel for SymmetricProducts<'_> {
     #[inline(always)]
-    fn go(self) {
+    fn run(self) {
         let Self { readings, width, products } = self;
         let mut strips = Vec::new();
         for block in readings.chunks(READINGS * width) {
             let count = block.len() / width;
-            pack(block, width, &mut strips);
+            pack_strips(block, width, &mut strips);
             // Strips on and below the diagonal alone: the upper triangle is a copy.
             for (row, left) in strips.chunks_exact(count).enumerate() {
                 for (column, right) in strips.chunks_exact(count).take(row + 1).enumerate() {
-                    let tile = tile(left, right);
-                    add(&tile, (row * STRIP, column * STRIP), products);
+                    let tile = strip_products(left, right);
+                    add_tile(&tile, (row * STRIP, column * STRIP), products);
                 }
             }
         }
@@ -54,7 +54,7 @@ impl Wide for SymmetricProducts<'_> {
 
 /// Packs a block of readings strip by strip; columns beyond the last are zero.
 #[inline(always)]
-fn pack(block: &[f64], width: usize, strips: &mut Vec<Lanes>) {
+fn pack_strips(block: &[f64], width: usize, strips: &mut Vec<StripValues>) {
     let count = block.len() / width;
     strips.clear();
     strips.resize(count * width.div_ceil(STRIP), [0.0; STRIP]);
@@ -67,7 +67,7 @@ fn pack(block: &[f64], width: usize, strips: &mut Vec<Lanes>) {
 
 /// Products of the columns of two strips, with a row for each column of the left one.
 #[inline(always)]
-fn tile(left: &[Lanes], right: &[Lanes]) -> [Lanes; STRIP] {
+fn strip_products(left: &[StripValues], right: &[StripValues]) -> [StripValues; STRIP] {
     let mut sums = [[0.0; STRIP]; STRIP];
     for (left, right) in left.iter().zip(right) {
         for (sums, factor) in sums.iter_mut().zip(left) {
@@ -80,7 +80,11 @@ fn tile(left: &[Lanes], right: &[Lanes]) -> [Lanes; STRIP] {
 }
 
 #[inline(always)]
-fn add(tile: &[Lanes; STRIP], (row, column): (usize, usize), products: &mut DMatrix<f64>) {
+fn add_tile(
+    tile: &[StripValues; STRIP],
+    (row, column): (usize, usize),
+    products: &mut DMatrix<f64>,
+) {
     let width = products.nrows();
     for j in column..width.min(column + STRIP) {
         for i in j.max(row)..width.min(row + STRIP) {

@@ -2,15 +2,15 @@
 
 use sistership_model::law::STATES;
 use sistership_simulation::state::at;
-use sistership_simulation::tape::Direction;
+use sistership_simulation::tape::InputDirection;
 
 use super::ResidualSystem;
 use super::lanes::LANES;
-use super::linearised::Detail;
+use super::linearised::LinearisationDetail;
 
 /// Target of a derivative.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Place {
+pub(super) enum DerivativeTarget {
     /// A state of the filter.
     State(usize),
     /// A column.
@@ -18,33 +18,37 @@ pub(super) enum Place {
 }
 
 /// A direction of differentiation, and the target of its derivative.
-pub(super) struct Tangent {
-    pub place: Place,
-    pub direction: Direction<LANES>,
+pub(super) struct TangentDirection {
+    pub place: DerivativeTarget,
+    pub direction: InputDirection<LANES>,
 }
 
 /// Directions of the states, for a whole linearisation, and of those parameters of candidates that
 /// have a derivative (`by_derivative`).
 pub(super) fn tangents(
     system: &ResidualSystem,
-    detail: Detail,
+    detail: LinearisationDetail,
     by_derivative: impl Fn(usize) -> bool,
-) -> Vec<Tangent> {
+) -> Vec<TangentDirection> {
     let states = STATES.iter().enumerate().filter_map(|(input, (name, _))| {
-        let place = place_of(name);
+        let place = state_index(name);
         let state = system.states.iter().position(|&state| state == place)?;
-        Some((Place::State(state), input))
+        Some((DerivativeTarget::State(state), input))
     });
     // The tape of motion takes states, inputs and then the parameters of the candidates.
     let first = STATES.len() + system.inputs.len();
-    let column = |j: usize| (Place::Column(system.columns.nuisance.len() + j), first + j);
+    let column =
+        |j: usize| (DerivativeTarget::Column(system.columns.nuisance.len() + j), first + j);
     let parameters = (0..system.followed.len()).filter(|&j| by_derivative(j)).map(column);
-    let tangent = |(place, input)| Tangent { place, direction: system.motion.tape.along(input) };
-    states.filter(|_| detail == Detail::Whole).chain(parameters).map(tangent).collect()
+    let tangent = |(place, input)| TangentDirection {
+        place,
+        direction: system.motion.tape.tangent_direction(input),
+    };
+    states.filter(|_| detail == LinearisationDetail::Whole).chain(parameters).map(tangent).collect()
 }
 
 /// Index in the state vector of a state that laws know by name.
-pub(super) fn place_of(name: &str) -> usize {
+pub(super) fn state_index(name: &str) -> usize {
     match name {
         "u" => at::U,
         "v" => at::V,

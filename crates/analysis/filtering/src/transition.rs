@@ -4,11 +4,11 @@ use nalgebra::DMatrix;
 
 use super::filter_noise::FilterNoise;
 use super::filter_value::FilterValue;
-use super::linearised::Linearised;
+use super::linearised::LinearisedPart;
 
 /// Transition matrix of an interval, to second order in its time: rows of states over states and
 /// discrepancies; a discrepancy depends on itself alone.
-pub(super) struct Transition<V> {
+pub(super) struct TransitionMatrix<V> {
     states: usize,
     axes: usize,
     /// States by states and discrepancies.
@@ -26,7 +26,7 @@ pub(super) struct Transition<V> {
     dt: V,
 }
 
-impl<V: FilterValue> Transition<V> {
+impl<V: FilterValue> TransitionMatrix<V> {
     pub fn new(states: usize, axes: usize) -> Self {
         let zeros = |count: usize| vec![V::splat(0.0); count];
         Self {
@@ -47,19 +47,22 @@ impl<V: FilterValue> Transition<V> {
     /// Sets the transition to that from sample `k` to the next; a part that has ended stays in its
     /// last interval.
     #[inline(always)]
-    pub fn take(&mut self, parts: &[&Linearised], k: usize, noise: &FilterNoise) {
-        self.take_times(parts, k, noise);
+    pub fn set_interval(&mut self, parts: &[&LinearisedPart], k: usize, noise: &FilterNoise) {
+        self.set_times(parts, k, noise);
         let Self { states, axes, rows, columns, caused, square, gathered, dt, .. } = self;
         let (n, axes, dt) = (*states, *axes, *dt);
         let order = n + axes;
-        let jacobian =
-            V::row(parts, |_, part| &part.jacobian[interval(part, k) * n * n..][..n * n], gathered);
+        let jacobian = V::lane_row(
+            parts,
+            |_, part| &part.jacobian[interval_index(part, k) * n * n..][..n * n],
+            gathered,
+        );
         // F = I + A dt + A^2 dt^2/2 for the states, and dt (I + A dt/2) for the accelerations,
         // which are the rates of the first states.
         let half = V::splat(0.5);
         for row in 0..n {
             let slopes = &jacobian[row * n..][..n];
-            V::combine(slopes, jacobian, n, square);
+            V::weighted_sum(slopes, jacobian, n, square);
             for column in 0..n {
                 let unit = V::splat(f64::from(u8::from(row == column)));
                 let mut value = unit;
@@ -81,9 +84,9 @@ impl<V: FilterValue> Transition<V> {
 
     /// Sets the times of the intervals, and the values that follow from them where they changed.
     #[inline(always)]
-    fn take_times(&mut self, parts: &[&Linearised], k: usize, noise: &FilterNoise) {
+    fn set_times(&mut self, parts: &[&LinearisedPart], k: usize, noise: &FilterNoise) {
         for (lane, part) in parts.iter().enumerate() {
-            let from = interval(part, k);
+            let from = interval_index(part, k);
             let dt = part.t_s[from + 1] - part.t_s[from];
             let known = self.dt.lane_mut(lane);
             // Bitwise comparison: intervals are usually equal, and exponentials are costly.
@@ -100,43 +103,43 @@ impl<V: FilterValue> Transition<V> {
 
     /// Row of a state over states and discrepancies.
     #[inline(always)]
-    pub fn row(&self, state: usize) -> &[V] {
+    pub fn state_row(&self, state: usize) -> &[V] {
         let order = self.states + self.axes;
         &self.rows[state * order..][..order]
     }
 
     /// Transposed matrix: for each state and discrepancy, its share in each state.
     #[inline(always)]
-    pub fn columns(&self) -> &[V] {
+    pub fn transposed_rows(&self) -> &[V] {
         &self.columns
     }
 
     /// Movement of a state by each acceleration.
     #[inline(always)]
-    pub fn caused(&self, state: usize) -> &[V] {
+    pub fn acceleration_weights(&self, state: usize) -> &[V] {
         &self.caused[state * self.axes..][..self.axes]
     }
 
     /// Share of each discrepancy that remains.
     #[inline(always)]
-    pub fn kept(&self) -> &[V] {
+    pub fn kept_shares(&self) -> &[V] {
         &self.kept
     }
 
     /// Share of the variance of each discrepancy that is renewed.
     #[inline(always)]
-    pub fn renewed(&self) -> &[V] {
+    pub fn renewed_shares(&self) -> &[V] {
         &self.renewed
     }
 
     /// Time of the interval, s.
     #[inline(always)]
-    pub fn dt(&self) -> V {
+    pub fn interval_s(&self) -> V {
         self.dt
     }
 }
 
-impl Transition<f64> {
+impl TransitionMatrix<f64> {
     /// Full transition matrix over states and discrepancies.
     pub fn matrix(&self) -> DMatrix<f64> {
         let (n, order) = (self.states, self.states + self.axes);
@@ -150,6 +153,6 @@ impl Transition<f64> {
 
 /// Index of the interval of a part that begins with sample `k`, or of its last.
 #[inline(always)]
-fn interval(part: &Linearised, k: usize) -> usize {
+fn interval_index(part: &LinearisedPart, k: usize) -> usize {
     k.min(part.samples.len().saturating_sub(2))
 }

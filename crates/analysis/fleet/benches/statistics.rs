@@ -6,10 +6,10 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use nalgebra::DMatrix;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
-use sistership_fleet::bulk::{AxisPrior, BulkSettings, Prior, solve};
-use sistership_fleet::statistics::{FORMAT, Regression, TrialStatistics};
+use sistership_fleet::bulk::{AxisPrior, BulkPrior, BulkSettings, solve_path};
+use sistership_fleet::statistics::{FORMAT, RegressionStatistics, TrialStatistics};
 use sistership_model::coefficient::Axis;
-use sistership_numerics::Moments;
+use sistership_numerics::RegressionMoments;
 
 const REGRESSORS: usize = 22;
 const SAMPLES: usize = 1000;
@@ -20,7 +20,7 @@ fn names(axis: Axis) -> Vec<String> {
     (0..REGRESSORS).map(|k| format!("{axis}_{k}")).collect()
 }
 
-fn regression(rng: &mut impl RngExt, axes: &[Axis]) -> Regression {
+fn regression(rng: &mut impl RngExt, axes: &[Axis]) -> RegressionStatistics {
     let mut columns: Vec<Vec<f64>> = (0..REGRESSORS + axes.len())
         .map(|_| (0..SAMPLES).map(|_| rng.random_range(-1.0..1.0)).collect())
         .collect();
@@ -30,12 +30,12 @@ fn regression(rng: &mut impl RngExt, axes: &[Axis]) -> Regression {
     }
     let unit =
         |row: usize| (0..axes.len()).map(|column| if row == column { 1.0 } else { 0.1 }).collect();
-    Regression {
+    RegressionStatistics {
         axes: axes.to_vec(),
         names: axes.iter().map(|axis| names(*axis)).collect(),
         shrinkage: vec![1.0; REGRESSORS],
         mixing: (0..axes.len()).map(unit).collect(),
-        moments: Moments::of_columns(&columns, REGRESSORS),
+        moments: RegressionMoments::from_columns(&columns, REGRESSORS),
     }
 }
 
@@ -67,11 +67,11 @@ fn bench(criterion: &mut Criterion) {
     let mut group =
         criterion.benchmark_group("refine 3 axes x 22 coefficients from 4 trials, 100 strengths");
     for (name, prior) in [
-        ("source", Prior::Source(&source)),
-        ("family", Prior::Family { axes: &family, design_effect: 1.0 }),
+        ("source", BulkPrior::Source(&source)),
+        ("family", BulkPrior::Family { axes: &family, design_effect: 1.0 }),
     ] {
         let one = |trials: &Vec<TrialStatistics>| {
-            solve(trials, prior, &settings).map(|solved| solved.coefficients(0).0)
+            solve_path(trials, prior, &settings).map(|solved| solved.coefficients_at(0).0)
         };
         group.throughput(Throughput::Elements(1));
         group

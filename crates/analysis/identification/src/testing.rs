@@ -6,19 +6,19 @@ use std::sync::Arc;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, zigzag};
-use sistership_simulation::state::{RECORDED, Trajectory, at};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_zigzag};
+use sistership_simulation::state::{RECORDED_CHANNELS, Trajectory, at};
 
 /// The Mariner and its law.
-pub fn mariner() -> (Model, Arc<Law>) {
-    let zoo = Zoo::embedded().unwrap();
-    let model = zoo.model("mariner").unwrap();
+pub fn mariner_model() -> (Model, Arc<Law>) {
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = zoo.find_model("mariner").unwrap();
     let law = zoo.law(&model.law).unwrap().clone();
     (model, law)
 }
 
 /// The model with each coefficient multiplied by `factor`, which takes the coefficient's name.
-pub fn with(model: &Model, factor: impl Fn(&str) -> f64) -> Model {
+pub fn with_scaled_coefficients(model: &Model, factor: impl Fn(&str) -> f64) -> Model {
     let mut model = model.clone();
     model.coefficients.iter_mut().for_each(|(name, quantity)| quantity.value *= factor(name));
     model
@@ -26,21 +26,21 @@ pub fn with(model: &Model, factor: impl Fn(&str) -> f64) -> Model {
 
 /// Simulated zigzags 10/10, 20/20 and 30/30 to both sides at 1 Hz. `noise` is the amplitude of the
 /// noise of each channel as a share of its value.
-pub fn trials(model: &Model, law: &Law, noise: f64) -> Vec<Trial> {
+pub fn simulated_trials(model: &Model, law: &Law, noise: f64) -> Vec<Trial> {
     let ship = Ship::new(model, law).unwrap();
     let settings = ManoeuvreSettings {
         step_s: Some(0.5),
         duration_s: Some(600.0),
         ..ManoeuvreSettings::default()
     };
-    let sailed = |angle: f64| zigzag(&ship, angle, angle.abs(), &settings).unwrap().track;
-    let recorded = |(index, angle): (usize, f64)| recorded(&sailed(angle), index, noise);
+    let sailed = |angle: f64| simulate_zigzag(&ship, angle, angle.abs(), &settings).unwrap().track;
+    let recorded = |(index, angle): (usize, f64)| record_trial(&sailed(angle), index, noise);
     [10.0, 20.0, -30.0, -20.0].into_iter().enumerate().map(recorded).collect()
 }
 
 /// A track sampled at every second step, with deterministic noise on every channel but the
 /// rudder's.
-fn recorded(track: &Trajectory, index: usize, noise: f64) -> Trial {
+fn record_trial(track: &Trajectory, index: usize, noise: f64) -> Trial {
     // The track has steps of 0.5 s; every second one gives samples at 1 Hz.
     let kept: Vec<usize> = (0..track.t_s.len()).step_by(2).collect();
     let column = |at: usize| {
@@ -54,7 +54,7 @@ fn recorded(track: &Trajectory, index: usize, noise: f64) -> Trial {
         kept.iter().map(shaken).collect::<Vec<f64>>()
     };
     let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> =
-        RECORDED.iter().map(|&(c, at)| (c, column(at))).collect();
+        RECORDED_CHANNELS.iter().map(|&(c, at)| (c, column(at))).collect();
     // The rudder stays exact: regressions take it as a known input.
     channels.insert(Channel::Delta, kept.iter().map(|&k| track.states[k][at::DELTA]).collect());
     Trial {

@@ -5,7 +5,7 @@ use sistership_model::Model;
 use sistership_simulation::recorded::ReplaySettings;
 
 use crate::held_out::HeldOutTrials;
-use crate::judge::{Judgement, judge_folds};
+use crate::judge::{CorrectionEvaluation, evaluate_folds};
 use crate::settings::{BranchKind, BranchSettings};
 use crate::train::TrainError;
 
@@ -13,7 +13,7 @@ use crate::train::TrainError;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BranchChoice {
     /// Every evaluated kind, in the order of evaluation.
-    pub tried: Vec<TriedKind>,
+    pub tried: Vec<KindEvaluation>,
     /// Kind of least error, if it is better than the foundation by more than one standard error of
     /// the difference; `None` if no correction should be used.
     pub taken: Option<BranchKind>,
@@ -39,7 +39,7 @@ pub struct BranchCheck {
 
 /// Error of one kind on held-out trials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct TriedKind {
+pub struct KindEvaluation {
     /// Kind of learner.
     pub kind: BranchKind,
     /// Standardised mean squared error of the foundation on held-out trials.
@@ -52,14 +52,14 @@ pub struct TriedKind {
 
 impl BranchChoice {
     /// Selection without any evaluation, for a reason.
-    pub fn untried(reason: String) -> Self {
+    pub fn without_evaluation(reason: String) -> Self {
         Self { tried: Vec::new(), taken: None, checks: Vec::new(), reason }
     }
 }
 
 /// Extent of the search over kinds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kinds {
+pub enum KindSearch {
     /// All kinds are evaluated.
     Every,
     /// Kinds are evaluated one after another, boosted trees first, which cost least, until one is
@@ -70,7 +70,7 @@ pub enum Kinds {
     },
 }
 
-impl Kinds {
+impl KindSearch {
     fn step_s(self) -> f64 {
         match self {
             Self::Every => ReplaySettings::default().step_s,
@@ -79,7 +79,7 @@ impl Kinds {
     }
 
     /// Kinds in the order of evaluation.
-    fn in_order(self) -> [BranchKind; 4] {
+    fn evaluation_order(self) -> [BranchKind; 4] {
         let [forest, boosted, kernels, perceptron] = BranchKind::ALL;
         match self {
             Self::Every => BranchKind::ALL,
@@ -93,40 +93,41 @@ impl Kinds {
 ///
 /// # Errors
 /// Returns the errors of training and simulation; `Ok(None)` if it was stopped.
-pub fn choose(
+pub fn select_kind(
     model: &Model,
     on: &HeldOutTrials<'_>,
-    (settings, kinds): (&BranchSettings, Kinds),
+    (settings, kinds): (&BranchSettings, KindSearch),
     told: &dyn Fn(BranchKind) -> bool,
 ) -> Result<Option<BranchChoice>, TrainError> {
-    let mut tried: Vec<(BranchKind, Judgement)> = Vec::new();
-    for kind in kinds.in_order() {
+    let mut tried: Vec<(BranchKind, CorrectionEvaluation)> = Vec::new();
+    for kind in kinds.evaluation_order() {
         if !told(kind) {
             return Ok(None);
         }
-        let training = settings.of(kind).training(model, on.law, on.trials)?;
-        let Some(judged) = judge_folds(on, &training, kinds.step_s())? else {
+        let training = settings.with_kind(kind).complete_training(model, on.law, on.trials)?;
+        let Some(judged) = evaluate_folds(on, &training, kinds.step_s())? else {
             let reason = "there is one trial only, and none is left to judge on".to_owned();
             // The number of trials is the same for all kinds, so the first kind decides this.
-            return Ok(Some(BranchChoice::untried(reason)));
+            return Ok(Some(BranchChoice::without_evaluation(reason)));
         };
         // A short search ends at the first kind that is significantly worse than the foundation.
-        let over = kinds != Kinds::Every && judged.loses();
+        let over = kinds != KindSearch::Every && judged.is_worse();
         tried.push((kind, judged));
         if over {
             break;
         }
     }
-    Ok(Some(decided(tried)))
+    Ok(Some(select_best(tried)))
 }
 
 /// Selection of the kind with the least error.
-fn decided(judged: Vec<(BranchKind, Judgement)>) -> BranchChoice {
+fn select_best(judged: Vec<(BranchKind, CorrectionEvaluation)>) -> BranchChoice {
     let best = judged.iter().min_by(|(_, a), (_, b)| a.branch.total_cmp(&b.branch));
-    let reason = best.map_or_else(String::new, |(kind, best)| because(*kind, best, judged.len()));
+    let reason =
+        best.map_or_else(String::new, |(kind, best)| reason_text(*kind, best, judged.len()));
     // The best kind is only used if it is significantly better than the foundation.
-    let taken = best.filter(|(_, judged)| judged.wins()).map(|(kind, _)| *kind);
-    let tried = |(kind, judged): &(BranchKind, Judgement)| TriedKind {
+    let taken = best.filter(|(_, judged)| judged.is_better()).map(|(kind, _)| *kind);
+    let tried = |(kind, judged): &(BranchKind, CorrectionEvaluation)| KindEvaluation {
         kind: *kind,
         foundation: judged.foundation,
         branch: judged.branch,
@@ -137,8 +138,8 @@ fn decided(judged: Vec<(BranchKind, Judgement)>) -> BranchChoice {
 
 /// Sentence of the reason: kind, number of held-out trials, both errors and the standard error of
 /// their difference.
-fn because(kind: BranchKind, judged: &Judgement, tried: usize) -> String {
-    let Judgement { foundation, branch, standard_error, trials, .. } = judged;
+fn reason_text(kind: BranchKind, judged: &CorrectionEvaluation, tried: usize) -> String {
+    let CorrectionEvaluation { foundation, branch, standard_error, trials, .. } = judged;
     let of = if tried > 1 { "is the best of the kinds" } else { "was tried" };
     let said = format!(
         "`{}` {of}: on {} trials left out, error {branch:.4} with it and \
@@ -146,7 +147,7 @@ fn because(kind: BranchKind, judged: &Judgement, tried: usize) -> String {
         kind.name(),
         trials.len()
     );
-    match judged.wins() {
+    match judged.is_better() {
         true => said,
         false if tried > 1 => {
             format!("{said}: it does not win by more than that, and no branch is taken")

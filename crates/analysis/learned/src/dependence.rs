@@ -5,9 +5,9 @@
 
 use sistership_model::branch::Learner;
 
-use crate::draws::Draws;
-use crate::regressor::Regressor;
-use crate::sample::{Sample, centre_and_scale};
+use crate::draws::RandomStream;
+use crate::regressor::OutputRegressor;
+use crate::sample::{TrainingSample, centre_and_scale};
 
 /// Dependence of a target on its inputs, evaluated on samples that were not used in training.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,10 +33,10 @@ pub struct InputDependence {
 /// Trains a regressor on `seen` and evaluates its dependence on the inputs on `unseen`, each input
 /// at `points` of its quantiles. Returns `None` if there are no samples or the equations are
 /// singular.
-pub fn dependence(
+pub fn learn_dependence(
     learner: &Learner,
-    seen: &Sample,
-    unseen: &Sample,
+    seen: &TrainingSample,
+    unseen: &TrainingSample,
     points: usize,
     seed: u64,
 ) -> Option<LearnedDependence> {
@@ -45,18 +45,20 @@ pub fn dependence(
     }
     let scales: Vec<(f64, f64)> = seen.columns.iter().map(|c| centre_and_scale(c)).collect();
     let of_target = centre_and_scale(&seen.targets);
-    let regressor = Regressor::train(learner, &scaled(seen, &scales, of_target), seed, 0)?;
+    let regressor =
+        OutputRegressor::train_output(learner, &scale_sample(seen, &scales, of_target), seed, 0)?;
     // Unseen samples are scaled by the seen ones, as the regressor expects.
-    let mut judged = scaled(unseen, &scales, of_target);
+    let mut judged = scale_sample(unseen, &scales, of_target);
     let (_, deviation) = centre_and_scale(&judged.targets);
-    let explained = 1.0 - error(&regressor, &judged) / deviation.powi(2);
-    let mut draws = Draws::new(seed, 1);
+    let explained = 1.0 - mean_squared_error(&regressor, &judged) / deviation.powi(2);
+    let mut draws = RandomStream::new(seed, 1);
     let inputs = (0..scales.len()).map(|place| {
         // Relative to the variance of the unseen targets, as the share explained is.
-        let rise = rise(&regressor, &mut judged, place, &mut draws) / deviation.powi(2);
-        let at = quantiles(&unseen.columns[place], points);
+        let rise =
+            shuffled_error_rise(&regressor, &mut judged, place, &mut draws) / deviation.powi(2);
+        let at = class_medians(&unseen.columns[place], points);
         let (centre, scale) = scales[place];
-        let held = |x: &f64| held(&regressor, &judged, place, (x - centre) / scale);
+        let held = |x: &f64| partial_dependence(&regressor, &judged, place, (x - centre) / scale);
         let answer = at.iter().map(|x| of_target.0 + of_target.1 * held(x)).collect();
         InputDependence { rise, at, answer }
     });
@@ -65,48 +67,57 @@ pub fn dependence(
 
 /// Rise of the mean squared error of a regressor where an input is shuffled among the samples. The
 /// sample is restored afterwards.
-pub(crate) fn rise(
-    regressor: &Regressor,
-    sample: &mut Sample,
+pub(crate) fn shuffled_error_rise(
+    regressor: &OutputRegressor,
+    sample: &mut TrainingSample,
     place: usize,
-    draws: &mut Draws,
+    draws: &mut RandomStream,
 ) -> f64 {
-    let before = error(regressor, sample);
-    let order = draws.some_of(sample.len(), sample.len());
+    let before = mean_squared_error(regressor, sample);
+    let order = draws.sample_indices(sample.len(), sample.len());
     let shuffled = order.iter().map(|k| sample.columns[place][*k as usize]).collect();
     let own = std::mem::replace(&mut sample.columns[place], shuffled);
-    let rise = error(regressor, sample) - before;
+    let rise = mean_squared_error(regressor, sample) - before;
     sample.columns[place] = own;
     rise
 }
 
 /// Mean squared error of a regressor.
-fn error(regressor: &Regressor, sample: &Sample) -> f64 {
-    let of = |k: usize| (regressor.answer(&sample.row(k)) - sample.targets[k]).powi(2);
+fn mean_squared_error(regressor: &OutputRegressor, sample: &TrainingSample) -> f64 {
+    let of = |k: usize| (regressor.predict(&sample.row_inputs(k)) - sample.targets[k]).powi(2);
     (0..sample.len()).map(of).sum::<f64>() / sample.len() as f64
 }
 
 /// Partial dependence: the mean prediction over the samples with an input fixed at a value.
-fn held(regressor: &Regressor, sample: &Sample, place: usize, value: f64) -> f64 {
+fn partial_dependence(
+    regressor: &OutputRegressor,
+    sample: &TrainingSample,
+    place: usize,
+    value: f64,
+) -> f64 {
     let of = |k: usize| {
-        let mut row = sample.row(k);
+        let mut row = sample.row_inputs(k);
         row[place] = value;
-        regressor.answer(&row)
+        regressor.predict(&row)
     };
     (0..sample.len()).map(of).sum::<f64>() / sample.len() as f64
 }
 
 /// Sample in standard deviations from given centres.
-fn scaled(sample: &Sample, scales: &[(f64, f64)], of_target: (f64, f64)) -> Sample {
+fn scale_sample(
+    sample: &TrainingSample,
+    scales: &[(f64, f64)],
+    of_target: (f64, f64),
+) -> TrainingSample {
     let by = |values: &[f64], (centre, scale): (f64, f64)| {
         values.iter().map(|x| (x - centre) / scale).collect::<Vec<f64>>()
     };
     let columns = sample.columns.iter().zip(scales).map(|(column, scale)| by(column, *scale));
-    Sample { columns: columns.collect(), targets: by(&sample.targets, of_target) }
+    TrainingSample { columns: columns.collect(), targets: by(&sample.targets, of_target) }
 }
 
 /// Medians of `points` classes of equal count, without repetition.
-fn quantiles(values: &[f64], points: usize) -> Vec<f64> {
+fn class_medians(values: &[f64], points: usize) -> Vec<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     let middle = |k: usize| sorted[(2 * k + 1) * sorted.len() / (2 * points)];
@@ -121,31 +132,31 @@ mod tests {
     use super::*;
 
     /// A target that is twice the square of the first input; the second has nothing to do with it.
-    fn samples(seed: u64) -> Sample {
-        let mut draws = Draws::new(seed, 0);
-        let mut column = || (0..400).map(|_| draws.signed()).collect::<Vec<f64>>();
+    fn samples(seed: u64) -> TrainingSample {
+        let mut draws = RandomStream::new(seed, 0);
+        let mut column = || (0..400).map(|_| draws.signed_unit()).collect::<Vec<f64>>();
         let columns = vec![column(), column()];
         let targets = columns[0].iter().map(|x| 10.0 + 2.0 * x * x).collect();
-        Sample { columns, targets }
+        TrainingSample { columns, targets }
     }
 
     #[test]
     fn the_input_that_matters_and_its_curve_are_told() {
         let learner = Learner::RandomForest { trees: 30, tried: 2, leaf: 5, depth: 6 };
-        let told = dependence(&learner, &samples(1), &samples(2), 9, 7).unwrap();
+        let told = learn_dependence(&learner, &samples(1), &samples(2), 9, 7).unwrap();
         assert!(told.explained > 0.9, "{}", told.explained);
         let [first, second] = &told.inputs[..] else { panic!("two inputs") };
         assert!(first.rise > 1.0 && second.rise.abs() < 0.05, "{told:?}");
         for (x, y) in first.at.iter().zip(&first.answer) {
             assert!((y - (10.0 + 2.0 * x * x)).abs() < 0.15, "{x}: {y}");
         }
-        assert_eq!(told, dependence(&learner, &samples(1), &samples(2), 9, 7).unwrap());
+        assert_eq!(told, learn_dependence(&learner, &samples(1), &samples(2), 9, 7).unwrap());
     }
 
     #[test]
     fn nothing_is_told_of_nothing() {
         let learner = Learner::RandomForest { trees: 3, tried: 1, leaf: 5, depth: 3 };
-        let none = Sample { columns: vec![Vec::new()], targets: Vec::new() };
-        assert_eq!(dependence(&learner, &none, &none, 3, 1), None);
+        let none = TrainingSample { columns: vec![Vec::new()], targets: Vec::new() };
+        assert_eq!(learn_dependence(&learner, &none, &none, 3, 1), None);
     }
 }

@@ -1,12 +1,12 @@
 //! Derivatives of the addition of a learned correction: those of its prediction by the chain rule
 //! through its scaled inputs, and those of its share.
 
-use sistership_model::branch::{BranchInput, BranchOutput, Signal};
-use sistership_simulation::branch::{AdditionGradient, Instant};
+use sistership_model::branch::{CorrectionInput, CorrectionOutput, Signal};
+use sistership_simulation::branch::{AdditionGradient, CorrectionInstant};
 
-use crate::answer::answer;
-use crate::regressor::Regressor;
-use crate::sample::scaled;
+use crate::answer::predict_output;
+use crate::regressor::OutputRegressor;
+use crate::sample::scale_input;
 
 /// Prediction of an output, less the rate that it replaces, and its derivatives with respect to
 /// everything that it may depend on: u, v, r, delta, n, and the law's rates of u, v, r.
@@ -21,24 +21,38 @@ const RATES: usize = 5;
 impl OutputGradient {
     /// Creates the gradient of a prediction. A prediction at a bound of its range has derivatives
     /// of zero.
-    pub fn new(output: &BranchOutput, regressor: &Regressor, instant: &Instant) -> Self {
-        let value = answer(output, regressor, instant);
+    pub fn new(
+        output: &CorrectionOutput,
+        regressor: &OutputRegressor,
+        instant: &CorrectionInstant,
+    ) -> Self {
+        let value = predict_output(output, regressor, instant);
         let mut slopes = [0.0; 8];
         let [low, high] = output.range;
         // At a limit of the range the prediction is constant, so its derivatives are zero.
         if value > low && value < high {
             let inputs: Vec<f64> =
-                output.inputs.iter().map(|input| scaled(input, instant)).collect();
-            for (input, slope) in output.inputs.iter().zip(regressor.gradient(&inputs)) {
+                output.inputs.iter().map(|input| scale_input(input, instant)).collect();
+            for (input, slope) in output.inputs.iter().zip(regressor.input_gradient(&inputs)) {
                 // d(output)/d(signal): the regressor works on scaled inputs and targets.
-                chain(input, output.scale * slope / input.scale, instant, &mut slopes);
+                add_signal_gradient(
+                    input,
+                    output.scale * slope / input.scale,
+                    instant,
+                    &mut slopes,
+                );
             }
         }
         Self { value, slopes }
     }
 
     /// Subtracts the law's own rate if the output replaces it.
-    pub fn joined(mut self, replaces: bool, instant: &Instant, place: usize) -> Self {
+    pub fn less_law_rate(
+        mut self,
+        replaces: bool,
+        instant: &CorrectionInstant,
+        place: usize,
+    ) -> Self {
         if replaces {
             self.value -= instant.accelerations[place];
             self.slopes[RATES + place] -= 1.0;
@@ -66,7 +80,12 @@ impl OutputGradient {
 }
 
 /// Adds the derivatives of an input's signal, multiplied by `by`.
-fn chain(input: &BranchInput, by: f64, instant: &Instant, slopes: &mut [f64; 8]) {
+fn add_signal_gradient(
+    input: &CorrectionInput,
+    by: f64,
+    instant: &CorrectionInstant,
+    slopes: &mut [f64; 8],
+) {
     match input.signal {
         Signal::U => slopes[0] += by,
         Signal::V => slopes[1] += by,

@@ -5,7 +5,7 @@ use sistership_model::trial::Trial;
 use sistership_model::{Law, Model};
 
 use crate::joined::{JoinError, attach};
-use crate::train::{TrainError, Training, train};
+use crate::train::{CorrectionTraining, TrainError, train_correction};
 use crate::version::with_branch;
 
 /// Largest number of parts in which the trials of one foundation are held out, each once.
@@ -24,11 +24,11 @@ pub struct HeldOutFold {
 impl HeldOutFold {
     /// Divides the trials into folds with one foundation for all, which may have been fitted to
     /// them: that is in favour of the foundation. Returns no fold if there is only one trial.
-    pub fn of_one(model: &Model, trials: usize) -> Vec<Self> {
+    pub fn with_one_foundation(model: &Model, trials: usize) -> Vec<Self> {
         let folds = FOLDS.min(trials);
         // Every n-th trial: adjacent trials fall into different folds.
         let held_out = |fold: usize| (0..trials).filter(|place| place % folds == fold).collect();
-        let one = |fold| Self { foundation: model.foundation(), held_out: held_out(fold) };
+        let one = |fold| Self { foundation: model.without_correction(), held_out: held_out(fold) };
         // A single fold would leave no trial to train on.
         if folds < 2 { Vec::new() } else { (0..folds).map(one).collect() }
     }
@@ -50,11 +50,15 @@ impl HeldOutTrials<'_> {
     ///
     /// # Errors
     /// Returns the errors of the training.
-    pub fn corrected(&self, fold: &HeldOutFold, training: &Training) -> Result<Model, TrainError> {
+    pub fn corrected_model(
+        &self,
+        fold: &HeldOutFold,
+        training: &CorrectionTraining,
+    ) -> Result<Model, TrainError> {
         let places = self.trials.iter().enumerate();
         let others = places.filter(|(place, _)| !fold.held_out.contains(place));
         let others: Vec<&Trial> = others.map(|(_, trial)| *trial).collect();
-        corrected(&fold.foundation, self.law, &others, training)
+        train_corrected_model(&fold.foundation, self.law, &others, training)
     }
 }
 
@@ -62,14 +66,14 @@ impl HeldOutTrials<'_> {
 ///
 /// # Errors
 /// Returns the errors of the training.
-pub fn corrected(
+pub fn train_corrected_model(
     foundation: &Model,
     law: &Law,
     trials: &[&Trial],
-    training: &Training,
+    training: &CorrectionTraining,
 ) -> Result<Model, TrainError> {
-    let (branch, weights) = train(foundation, law, trials, training)?;
+    let (branch, weights) = train_correction(foundation, law, trials, training)?;
     let mut both = with_branch(foundation, branch);
-    attach(&mut both, &weights.bytes()?).map_err(Box::<JoinError>::from)?;
+    attach(&mut both, &weights.to_bytes()?).map_err(Box::<JoinError>::from)?;
     Ok(both)
 }

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use sistership_model::branch::BranchError;
-use sistership_model::learned::Attached;
+use sistership_model::branch::CorrectionError;
+use sistership_model::learned::AttachedWeights;
 use sistership_model::{Law, Model};
-use sistership_simulation::{Envelope, PlantError, Ship};
+use sistership_simulation::{MotionEnvelope, PlantError, Ship};
 
-use crate::learned::Learned;
-use crate::weights::{Weights, WeightsError};
+use crate::learned::LearnedCorrection;
+use crate::weights::{CorrectionWeights, WeightsError};
 
 /// Error of attaching a learned correction to a model.
 #[derive(Debug, thiserror::Error)]
@@ -18,7 +18,7 @@ pub enum JoinError {
     None(String),
     /// The document of the correction is invalid.
     #[error("branch.{0}")]
-    Branch(#[from] BranchError),
+    Branch(#[from] CorrectionError),
     /// The weights are invalid.
     #[error(transparent)]
     Weights(#[from] WeightsError),
@@ -43,19 +43,19 @@ pub enum JoinError {
 /// Returns an error that names the faulty part of correction or weights; the model is then
 /// unchanged.
 pub fn attach(model: &mut Model, weights: &[u8]) -> Result<(), JoinError> {
-    let envelope = Envelope::of(model);
+    let envelope = MotionEnvelope::from_model(model);
     let Some(branch) = &mut model.branch else {
         return Err(JoinError::None(model.name.clone()));
     };
     // Everything that can fail comes before the model is changed.
-    branch.check()?;
-    let weights = Weights::read(weights, branch)?;
-    let learned = Learned::of(branch, weights).ok_or(JoinError::Channels)?;
+    branch.check_document()?;
+    let weights = CorrectionWeights::read(weights, branch)?;
+    let learned = LearnedCorrection::from_branch(branch, weights).ok_or(JoinError::Channels)?;
     // A model without length or speed has no envelope; it is refused when a ship is made of it.
-    if envelope.is_some_and(|envelope| !learned.domain().is_within(&envelope)) {
+    if envelope.is_some_and(|envelope| !learned.faded_domain().is_within(&envelope)) {
         return Err(JoinError::Reach { fade: branch.fade });
     }
-    branch.learned = Attached::new(Arc::new(learned));
+    branch.learned = AttachedWeights::new(Arc::new(learned));
     Ok(())
 }
 
@@ -65,7 +65,7 @@ pub fn attach(model: &mut Model, weights: &[u8]) -> Result<(), JoinError> {
 ///
 /// # Errors
 /// Returns an error that names the faulty part of correction, weights or foundation.
-pub fn ship(model: &Model, law: &Law, weights: &[u8]) -> Result<Ship, JoinError> {
+pub fn corrected_ship(model: &Model, law: &Law, weights: &[u8]) -> Result<Ship, JoinError> {
     let mut model = model.clone();
     attach(&mut model, weights)?;
     Ok(Ship::new(&model, law)?)

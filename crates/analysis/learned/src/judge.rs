@@ -9,11 +9,11 @@ use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model};
 use sistership_simulation::Ship;
 use sistership_simulation::error::{SquaredError, standard_deviations};
-use sistership_simulation::horizons::{HorizonErrors, combined};
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::horizons::{HorizonErrors, combine_horizons};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 
 use crate::held_out::{HeldOutFold, HeldOutTrials};
-use crate::train::{TrainError, Training};
+use crate::train::{CorrectionTraining, TrainError};
 
 /// Ship lengths between restarts of a simulation; each trial is also simulated as a whole, and the
 /// error is the geometric mean of both.
@@ -21,9 +21,9 @@ const RESTART_LENGTHS: f64 = 10.0;
 
 /// Evaluation of a correction on held-out trials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Judgement {
+pub struct CorrectionEvaluation {
     /// Each trial, by a correction that was trained without it.
-    pub trials: Vec<JudgedTrial>,
+    pub trials: Vec<TrialEvaluation>,
     /// Standardised mean squared error of the foundation, mean over the trials.
     pub foundation: f64,
     /// The same with the correction.
@@ -36,7 +36,7 @@ pub struct Judgement {
 
 /// Evaluation of one held-out trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct JudgedTrial {
+pub struct TrialEvaluation {
     /// Name of the trial.
     pub name: String,
     /// Error of the foundation.
@@ -62,14 +62,14 @@ pub struct TrialError {
     pub stopped: Option<String>,
 }
 
-impl Judgement {
+impl CorrectionEvaluation {
     /// True if the correction is better by more than one standard error.
-    pub fn wins(&self) -> bool {
+    pub fn is_better(&self) -> bool {
         self.foundation - self.branch > self.standard_error
     }
 
     /// True if the correction is worse by more than one standard error.
-    pub fn loses(&self) -> bool {
+    pub fn is_worse(&self) -> bool {
         self.branch - self.foundation > self.standard_error
     }
 }
@@ -80,15 +80,15 @@ impl Judgement {
 ///
 /// # Errors
 /// Returns the errors of the training and of the simulations.
-pub fn judge(
+pub fn evaluate_training(
     model: &Model,
     law: &Law,
     trials: &[&Trial],
-    training: &Training,
-) -> Result<Option<Judgement>, TrainError> {
-    let folds = HeldOutFold::of_one(model, trials.len());
+    training: &CorrectionTraining,
+) -> Result<Option<CorrectionEvaluation>, TrainError> {
+    let folds = HeldOutFold::with_one_foundation(model, trials.len());
     let held_out = HeldOutTrials { law, trials, folds: &folds };
-    judge_folds(&held_out, training, ReplaySettings::default().step_s)
+    evaluate_folds(&held_out, training, ReplaySettings::default().step_s)
 }
 
 /// Evaluates a training on held-out trials, by simulations with a largest step of `step_s`, s.
@@ -96,56 +96,56 @@ pub fn judge(
 ///
 /// # Errors
 /// Returns the errors of the training and of the simulations.
-pub fn judge_folds(
+pub fn evaluate_folds(
     on: &HeldOutTrials<'_>,
-    training: &Training,
+    training: &CorrectionTraining,
     step_s: f64,
-) -> Result<Option<Judgement>, TrainError> {
-    let scales = Scales { deviations: standard_deviations(on.trials), step_s };
-    let part = |fold: &HeldOutFold| judged(on, fold, training, &scales);
+) -> Result<Option<CorrectionEvaluation>, TrainError> {
+    let scales = ErrorScales { deviations: standard_deviations(on.trials), step_s };
+    let part = |fold: &HeldOutFold| evaluate_fold(on, fold, training, &scales);
     // Folds are trained in parallel, each with its own correction.
-    let parts: Vec<Vec<(usize, JudgedTrial)>> =
+    let parts: Vec<Vec<(usize, TrialEvaluation)>> =
         on.folds.par_iter().map(part).collect::<Result<_, TrainError>>()?;
-    let mut judged: Vec<(usize, JudgedTrial)> = parts.into_iter().flatten().collect();
+    let mut judged: Vec<(usize, TrialEvaluation)> = parts.into_iter().flatten().collect();
     // Folds hold out every n-th trial: restore the order of the trials.
     judged.sort_by_key(|(place, _)| *place);
-    let trials: Vec<JudgedTrial> = judged.into_iter().map(|(_, trial)| trial).collect();
-    Ok((!trials.is_empty()).then(|| summed(trials)))
+    let trials: Vec<TrialEvaluation> = judged.into_iter().map(|(_, trial)| trial).collect();
+    Ok((!trials.is_empty()).then(|| mean_evaluation(trials)))
 }
 
 /// Divisors of the errors, and the largest step of the simulations.
-struct Scales {
+struct ErrorScales {
     deviations: BTreeMap<Channel, f64>,
     step_s: f64,
 }
 
 /// Evaluates the held-out trials of a fold, by its foundation and by the correction trained on the
 /// other trials.
-fn judged(
+fn evaluate_fold(
     on: &HeldOutTrials<'_>,
     fold: &HeldOutFold,
-    training: &Training,
-    scales: &Scales,
-) -> Result<Vec<(usize, JudgedTrial)>, TrainError> {
-    let both = on.corrected(fold, training)?;
-    let of = |&place: &usize| -> Result<(usize, JudgedTrial), TrainError> {
+    training: &CorrectionTraining,
+    scales: &ErrorScales,
+) -> Result<Vec<(usize, TrialEvaluation)>, TrainError> {
+    let both = on.corrected_model(fold, training)?;
+    let of = |&place: &usize| -> Result<(usize, TrialEvaluation), TrainError> {
         let trial = on.trials[place];
         // The same simulations with and without the correction, so that only it differs.
-        let (foundation, _) = simulated(&fold.foundation, on.law, trial, scales)?;
-        let (branch, share) = simulated(&both, on.law, trial, scales)?;
+        let (foundation, _) = simulate_trial(&fold.foundation, on.law, trial, scales)?;
+        let (branch, share) = simulate_trial(&both, on.law, trial, scales)?;
         let share = share.unwrap_or(0.0);
-        Ok((place, JudgedTrial { name: trial.name.clone(), foundation, branch, share }))
+        Ok((place, TrialEvaluation { name: trial.name.clone(), foundation, branch, share }))
     };
     fold.held_out.iter().map(of).collect()
 }
 
 /// Simulates a trial, restarted every ten ship lengths and as a whole. Returns its errors, and the
 /// mean share of the correction.
-fn simulated(
+fn simulate_trial(
     model: &Model,
     law: &Law,
     trial: &Trial,
-    scales: &Scales,
+    scales: &ErrorScales,
 ) -> Result<(TrialError, Option<f64>), TrainError> {
     let mut ship = Ship::new(model, law)?;
     let speeds = trial.channel(Channel::U).into_iter().flatten();
@@ -154,27 +154,28 @@ fn simulated(
     let run = |restart_s: Option<f64>| {
         let settings =
             ReplaySettings { restart_s, step_s: scales.step_s, ..ReplaySettings::default() };
-        replay(&ship, trial, &settings).map_err(crate::rows::RowsError::from)
+        replay_trial(&ship, trial, &settings).map_err(crate::rows::RowsError::from)
     };
     let restarted = run(Some(RESTART_LENGTHS * ship.lpp_m() / ship.approach_speed_m_s()))?;
     // The share is taken along the restarted simulation, which stays close to the trial.
-    let (share, whole) = (ship.branch_share(&restarted.track), run(None)?);
-    let (rmse, stopped) = (SquaredError::of(trial, &restarted).rmse(), restarted.stopped.clone());
+    let (share, whole) = (ship.mean_correction_share(&restarted.track), run(None)?);
+    let (rmse, stopped) =
+        (SquaredError::from_trial(trial, &restarted).rmse_by_channel(), restarted.stopped.clone());
     let horizon = |run| HorizonErrors::with_stops(&[trial], &[run], &scales.deviations);
-    let (standardised_mse, _) = combined(&[horizon(restarted), horizon(whole)]);
+    let (standardised_mse, _) = combine_horizons(&[horizon(restarted), horizon(whole)]);
     let stopped = stopped.as_ref().map(ToString::to_string);
     Ok((TrialError { rmse, standardised_mse, stopped }, share))
 }
 
 /// Means over the trials, and the standard error of the mean gain.
-fn summed(trials: Vec<JudgedTrial>) -> Judgement {
+fn mean_evaluation(trials: Vec<TrialEvaluation>) -> CorrectionEvaluation {
     let count = trials.len() as f64;
-    let mean = |of: &dyn Fn(&JudgedTrial) -> f64| trials.iter().map(of).sum::<f64>() / count;
+    let mean = |of: &dyn Fn(&TrialEvaluation) -> f64| trials.iter().map(of).sum::<f64>() / count;
     let gain =
-        |trial: &JudgedTrial| trial.foundation.standardised_mse - trial.branch.standardised_mse;
+        |trial: &TrialEvaluation| trial.foundation.standardised_mse - trial.branch.standardised_mse;
     let mean_gain = mean(&gain);
     let squares: f64 = trials.iter().map(|trial| (gain(trial) - mean_gain).powi(2)).sum();
-    Judgement {
+    CorrectionEvaluation {
         foundation: mean(&|trial| trial.foundation.standardised_mse),
         branch: mean(&|trial| trial.branch.standardised_mse),
         // Of a mean over trials: sqrt(sum of squared deviations / (n (n - 1))).
@@ -188,13 +189,13 @@ fn summed(trials: Vec<JudgedTrial>) -> Judgement {
 mod tests {
     use super::*;
 
-    fn judged(foundation: f64, branch: f64) -> JudgedTrial {
+    fn judged(foundation: f64, branch: f64) -> TrialEvaluation {
         let error = |standardised_mse| TrialError {
             rmse: BTreeMap::new(),
             standardised_mse,
             stopped: None,
         };
-        JudgedTrial {
+        TrialEvaluation {
             name: "t".into(),
             foundation: error(foundation),
             branch: error(branch),
@@ -204,11 +205,11 @@ mod tests {
 
     #[test]
     fn a_branch_wins_by_more_than_the_scatter_of_its_gains() {
-        let even = summed(vec![judged(2.0, 1.0), judged(4.0, 2.8), judged(3.0, 2.1)]);
+        let even = mean_evaluation(vec![judged(2.0, 1.0), judged(4.0, 2.8), judged(3.0, 2.1)]);
         assert!((even.foundation - 3.0).abs() < 1e-12 && (even.branch - 5.9 / 3.0).abs() < 1e-12);
         // Gains of 1, 1.2 and 0.9 scatter by 0.153; by the root of 3 that is 0.088.
-        assert!((even.standard_error - 0.0882).abs() < 1e-4 && even.wins());
-        let uneven = summed(vec![judged(2.0, 1.0), judged(2.0, 3.0), judged(3.0, 2.9)]);
-        assert!(!uneven.wins());
+        assert!((even.standard_error - 0.0882).abs() < 1e-4 && even.is_better());
+        let uneven = mean_evaluation(vec![judged(2.0, 1.0), judged(2.0, 3.0), judged(3.0, 2.9)]);
+        assert!(!uneven.is_better());
     }
 }

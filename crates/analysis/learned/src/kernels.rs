@@ -6,13 +6,13 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::draws::Draws;
-use crate::sample::Sample;
+use crate::draws::RandomStream;
+use crate::sample::TrainingSample;
 
 /// Weighted sum of kernels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Kernels {
+pub struct KernelSum {
     /// Prediction far from every centre: the mean of the targets.
     pub mean: f64,
     /// Length scale, in standard deviations of the inputs.
@@ -30,23 +30,23 @@ const NUGGET: f64 = 1e-10;
 
 /// Solves `(K_mn K_nm + ridge K_mm) factors = K_mn targets`. Returns `None` if the matrix is
 /// singular.
-pub fn train(
-    sample: &Sample,
+pub fn train_kernels(
+    sample: &TrainingSample,
     centres: usize,
     length: f64,
     ridge: f64,
-    draws: &mut Draws,
-) -> Option<Kernels> {
-    let mut about = draws.some_of(centres, sample.len());
+    draws: &mut RandomStream,
+) -> Option<KernelSum> {
+    let mut about = draws.sample_indices(centres, sample.len());
     // In ascending order, the centres do not depend on the order of the draws.
     about.sort_unstable();
-    let rows = about.iter().flat_map(|row| sample.row(*row as usize)).collect();
+    let rows = about.iter().flat_map(|row| sample.row_inputs(*row as usize)).collect();
     // The process has a constant mean; the kernels explain the rest.
     let mean = sample.targets.iter().sum::<f64>() / sample.len() as f64;
-    let mut kernels = Kernels { mean, length, centres: rows, factors: vec![0.0; about.len()] };
+    let mut kernels = KernelSum { mean, length, centres: rows, factors: vec![0.0; about.len()] };
     let (mut matrix, mut right) = normal_equations(&kernels, sample);
     for (place, row) in about.iter().enumerate() {
-        let own = kernels.values(&sample.row(*row as usize));
+        let own = kernels.kernel_values(&sample.row_inputs(*row as usize));
         // The ridge times the kernel matrix of the centres among themselves.
         own.iter().enumerate().for_each(|(k, value)| matrix[(place, k)] += ridge * value);
     }
@@ -59,12 +59,12 @@ pub fn train(
 }
 
 /// Accumulates `K_mn K_nm` and `K_mn targets`.
-fn normal_equations(kernels: &Kernels, sample: &Sample) -> (DMatrix<f64>, DVector<f64>) {
+fn normal_equations(kernels: &KernelSum, sample: &TrainingSample) -> (DMatrix<f64>, DVector<f64>) {
     let count = kernels.factors.len();
     let mut matrix = DMatrix::zeros(count, count);
     let mut right = DVector::zeros(count);
     for k in 0..sample.len() {
-        let values = kernels.values(&sample.row(k));
+        let values = kernels.kernel_values(&sample.row_inputs(k));
         let target = sample.targets[k] - kernels.mean;
         for (column, value) in values.iter().enumerate() {
             right[column] += value * target;
@@ -77,23 +77,27 @@ fn normal_equations(kernels: &Kernels, sample: &Sample) -> (DMatrix<f64>, DVecto
     (matrix, right)
 }
 
-impl Kernels {
+impl KernelSum {
     /// Values of all kernels at the inputs.
-    fn values(&self, inputs: &[f64]) -> Vec<f64> {
-        self.centres.chunks_exact(inputs.len()).map(|centre| self.kernel(centre, inputs)).collect()
+    fn kernel_values(&self, inputs: &[f64]) -> Vec<f64> {
+        self.centres
+            .chunks_exact(inputs.len())
+            .map(|centre| self.kernel_value(centre, inputs))
+            .collect()
     }
 
     /// Value of the kernel about a centre.
     #[inline]
-    fn kernel(&self, centre: &[f64], inputs: &[f64]) -> f64 {
+    fn kernel_value(&self, centre: &[f64], inputs: &[f64]) -> f64 {
         let square: f64 = centre.iter().zip(inputs).map(|(c, x)| (c - x) * (c - x)).sum();
         1.0 / (1.0 + square / (2.0 * self.length * self.length))
     }
 
     /// Prediction: the weighted sum of the kernels.
-    pub fn answer(&self, inputs: &[f64]) -> f64 {
+    pub fn predict(&self, inputs: &[f64]) -> f64 {
         let centres = self.centres.chunks_exact(inputs.len());
-        let terms = centres.zip(&self.factors).map(|(c, factor)| factor * self.kernel(c, inputs));
+        let terms =
+            centres.zip(&self.factors).map(|(c, factor)| factor * self.kernel_value(c, inputs));
         self.mean + terms.sum::<f64>()
     }
 
@@ -102,7 +106,7 @@ impl Kernels {
     pub fn add_gradient(&self, inputs: &[f64], slopes: &mut [f64]) {
         let scale = 1.0 / (self.length * self.length);
         for (centre, factor) in self.centres.chunks_exact(inputs.len()).zip(&self.factors) {
-            let weight = factor * scale * self.kernel(centre, inputs).powi(2);
+            let weight = factor * scale * self.kernel_value(centre, inputs).powi(2);
             let offsets = centre.iter().zip(inputs).map(|(c, x)| c - x);
             slopes.iter_mut().zip(offsets).for_each(|(slope, offset)| *slope += weight * offset);
         }

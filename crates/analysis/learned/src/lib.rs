@@ -34,18 +34,20 @@ mod tree;
 mod version;
 mod weights;
 
-pub use choice::{BranchCheck, BranchChoice, Kinds, TriedKind, choose};
-pub use dependence::{InputDependence, LearnedDependence, dependence};
+pub use choice::{BranchCheck, BranchChoice, KindEvaluation, KindSearch, select_kind};
+pub use dependence::{InputDependence, LearnedDependence, learn_dependence};
 pub use domain::FadedDomain;
-pub use held_out::{HeldOutFold, HeldOutTrials, corrected};
-pub use importance::{Importance, importance};
-pub use joined::{JoinError, attach, ship};
-pub use judge::{JudgedTrial, Judgement, TrialError, judge, judge_folds};
-pub use learned::Learned;
-pub use regressor::Regressor;
-pub use rows::{Row, RowsError, rows};
-pub use sample::Sample;
+pub use held_out::{HeldOutFold, HeldOutTrials, train_corrected_model};
+pub use importance::{InputImportance, permutation_importance};
+pub use joined::{JoinError, attach, corrected_ship};
+pub use judge::{
+    CorrectionEvaluation, TrialError, TrialEvaluation, evaluate_folds, evaluate_training,
+};
+pub use learned::LearnedCorrection;
+pub use regressor::OutputRegressor;
+pub use rows::{RowsError, WindowRow, window_rows};
+pub use sample::TrainingSample;
 pub use settings::{BranchKind, BranchSettings};
-pub use train::{TrainError, Training, retrain, train};
+pub use train::{CorrectionTraining, TrainError, retrain_correction, train_correction};
 pub use version::with_branch;
-pub use weights::{Weights, WeightsError};
+pub use weights::{CorrectionWeights, WeightsError};

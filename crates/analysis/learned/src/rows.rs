@@ -8,14 +8,14 @@
 
 use sistership_model::trial::Trial;
 use sistership_simulation::Ship;
-use sistership_simulation::branch::Instant;
+use sistership_simulation::branch::CorrectionInstant;
 use sistership_simulation::recorded::{MissingChannel, instants_along};
 
 /// Means over one window.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub struct WindowRow {
     /// Inputs of a correction, with the foundation's accelerations.
-    pub instant: Instant,
+    pub instant: CorrectionInstant,
     /// Measured accelerations: m/s2, m/s2, rad/s2.
     pub measured: [f64; 3],
 }
@@ -40,9 +40,14 @@ pub enum RowsError {
 ///
 /// # Errors
 /// Returns an error that names the missing channel, or the sample that is not a finite number.
-pub fn rows(ship: &Ship, trial: &Trial, window_s: f64, hop_s: f64) -> Result<Vec<Row>, RowsError> {
+pub fn window_rows(
+    ship: &Ship,
+    trial: &Trial,
+    window_s: f64,
+    hop_s: f64,
+) -> Result<Vec<WindowRow>, RowsError> {
     let instants = instants_along(ship, trial)?;
-    if let Some(k) = instants.iter().position(|instant| !is_number(instant)) {
+    if let Some(k) = instants.iter().position(|instant| !is_finite_instant(instant)) {
         return Err(RowsError::NotANumber { trial: trial.name.clone(), t_s: trial.t_s[k] });
     }
     let interval_s = trial.interval_s();
@@ -53,22 +58,26 @@ pub fn rows(ship: &Ship, trial: &Trial, window_s: f64, hop_s: f64) -> Result<Vec
     let of_segment = |segment: std::ops::Range<usize>| {
         // A window lies completely within one segment.
         let last = segment.end.saturating_sub(window);
-        (segment.start..last).step_by(hop).map(move |k| row(trial, instants, k..=k + window))
+        (segment.start..last).step_by(hop).map(move |k| window_row(trial, instants, k..=k + window))
     };
     Ok(trial.segments().into_iter().flat_map(of_segment).collect())
 }
 
-fn is_number(instant: &Instant) -> bool {
+fn is_finite_instant(instant: &CorrectionInstant) -> bool {
     let numbers = instant.velocities.iter().chain(&instant.accelerations);
     numbers.chain([&instant.delta_rad, &instant.n_rps]).all(|number| number.is_finite())
 }
 
 /// Row of one window: means by the trapezoidal rule, and measured accelerations from the change of
 /// velocity.
-fn row(trial: &Trial, instants: &[Instant], window: std::ops::RangeInclusive<usize>) -> Row {
+fn window_row(
+    trial: &Trial,
+    instants: &[CorrectionInstant],
+    window: std::ops::RangeInclusive<usize>,
+) -> WindowRow {
     let (start, end) = (*window.start(), *window.end());
     let lasts_s = trial.t_s[end] - trial.t_s[start];
-    let mean = |of: &dyn Fn(&Instant) -> f64| {
+    let mean = |of: &dyn Fn(&CorrectionInstant) -> f64| {
         // Steps need not be equal, so each is weighted by its own duration.
         let part = |k: usize| {
             let step_s = trial.t_s[k + 1] - trial.t_s[k];
@@ -77,7 +86,7 @@ fn row(trial: &Trial, instants: &[Instant], window: std::ops::RangeInclusive<usi
         (start..end).map(part).sum::<f64>() / lasts_s
     };
     let change = |axis: usize| instants[end].velocities[axis] - instants[start].velocities[axis];
-    let instant = Instant {
+    let instant = CorrectionInstant {
         velocities: std::array::from_fn(|axis| mean(&|i| i.velocities[axis])),
         delta_rad: mean(&|i| i.delta_rad),
         n_rps: mean(&|i| i.n_rps),
@@ -85,5 +94,5 @@ fn row(trial: &Trial, instants: &[Instant], window: std::ops::RangeInclusive<usi
     };
     // The mean acceleration is the change of the velocity over the window; nothing is
     // differentiated.
-    Row { instant, measured: std::array::from_fn(|axis| change(axis) / lasts_s) }
+    WindowRow { instant, measured: std::array::from_fn(|axis| change(axis) / lasts_s) }
 }

@@ -1,18 +1,18 @@
 //! Samples of a regression: inputs and targets in standard deviations.
 
-use sistership_model::branch::{BranchInput, Signal};
-use sistership_simulation::branch::Instant;
+use sistership_model::branch::{CorrectionInput, Signal};
+use sistership_simulation::branch::CorrectionInstant;
 
 /// Inputs by column, and targets.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sample {
+pub struct TrainingSample {
     /// Values of each input.
     pub columns: Vec<Vec<f64>>,
     /// Target of each row.
     pub targets: Vec<f64>,
 }
 
-impl Sample {
+impl TrainingSample {
     /// True if there is no row.
     pub fn is_empty(&self) -> bool {
         self.targets.is_empty()
@@ -24,13 +24,13 @@ impl Sample {
     }
 
     /// Returns the inputs of a row.
-    pub fn row(&self, k: usize) -> Vec<f64> {
+    pub fn row_inputs(&self, k: usize) -> Vec<f64> {
         self.columns.iter().map(|column| column[k]).collect()
     }
 }
 
 /// Value of a signal at an instant, SI units and radians.
-pub fn value(signal: Signal, instant: &Instant) -> f64 {
+pub fn signal_value(signal: Signal, instant: &CorrectionInstant) -> f64 {
     let [u, v, r] = instant.velocities;
     match signal {
         Signal::U => u,
@@ -46,8 +46,8 @@ pub fn value(signal: Signal, instant: &Instant) -> f64 {
 }
 
 /// Value of an input at an instant, scaled as in training.
-pub fn scaled(input: &BranchInput, instant: &Instant) -> f64 {
-    (value(input.signal, instant) - input.centre) / input.scale
+pub fn scale_input(input: &CorrectionInput, instant: &CorrectionInstant) -> f64 {
+    (signal_value(input.signal, instant) - input.centre) / input.scale
 }
 
 /// Mean and standard deviation; the latter is 1 for constant values.

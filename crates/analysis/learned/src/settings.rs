@@ -2,13 +2,15 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use sistership_model::branch::{BranchError, BranchMode, BranchRecipe, Learner, MOST_FADE, Signal};
+use sistership_model::branch::{
+    CorrectionError, CorrectionMode, CorrectionRecipe, Learner, MAX_FADE, Signal,
+};
 use sistership_model::coefficient::Axis;
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Model};
 use sistership_simulation::{PlantError, Ship};
 
-use crate::train::Training;
+use crate::train::CorrectionTraining;
 
 /// Kind of learner, with default settings that suit small data sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -34,7 +36,7 @@ pub struct BranchSettings {
     pub kind: Option<BranchKind>,
     /// Way in which the correction is combined with the foundation; default `parallel`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub mode: Option<BranchMode>,
+    pub mode: Option<CorrectionMode>,
     /// All settings of the learner, in place of `kind`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub learner: Option<Learner>,
@@ -80,7 +82,7 @@ impl BranchKind {
     }
 
     /// Default settings of the learner: those that docs/evidence/branches.md was measured with.
-    pub fn learner(self) -> Learner {
+    pub fn default_learner(self) -> Learner {
         match self {
             Self::Forest => Learner::RandomForest { trees: 50, tried: 2, leaf: 20, depth: 12 },
             Self::Boosted => {
@@ -106,15 +108,15 @@ impl BranchSettings {
     pub fn check(&self) -> Result<(), (String, String)> {
         // The checks of a recipe apply here, too; settings that are still open get valid
         // placeholders.
-        let recipe = BranchRecipe {
-            learner: self.learner(),
-            seed: self.seed(),
+        let recipe = CorrectionRecipe {
+            learner: self.chosen_learner(),
+            seed: self.seed_or_default(),
             window_s: self.window_s.unwrap_or(1.0),
             hop_s: self.hop_s.unwrap_or(1.0),
             trials: Vec::new(),
         };
-        match recipe.check() {
-            Err(BranchError::Recipe { field, reason }) => {
+        match recipe.check_settings() {
+            Err(CorrectionError::Recipe { field, reason }) => {
                 return Err((field.to_owned(), reason.to_owned()));
             }
             other => other.map_err(|error| ("recipe".to_owned(), error.to_string()))?,
@@ -123,8 +125,8 @@ impl BranchSettings {
             return Err(("learner".to_owned(), "give it in place of `kind`".to_owned()));
         }
         match self.fade {
-            Some(fade) if !(fade > 0.0 && fade <= MOST_FADE) => {
-                Err(("fade".to_owned(), format!("should be above 0 and at most {MOST_FADE}")))
+            Some(fade) if !(fade > 0.0 && fade <= MAX_FADE) => {
+                Err(("fade".to_owned(), format!("should be above 0 and at most {MAX_FADE}")))
             }
             _ => Ok(()),
         }
@@ -136,17 +138,17 @@ impl BranchSettings {
     }
 
     /// Returns the same settings with this kind.
-    pub fn of(&self, kind: BranchKind) -> Self {
+    pub fn with_kind(&self, kind: BranchKind) -> Self {
         Self { kind: Some(kind), ..self.clone() }
     }
 
     /// Learner; kernel ridge, the baseline for small data sets, by default.
-    fn learner(&self) -> Learner {
+    fn chosen_learner(&self) -> Learner {
         let kind = self.kind.unwrap_or(BranchKind::Kernels);
-        self.learner.clone().unwrap_or_else(|| kind.learner())
+        self.learner.clone().unwrap_or_else(|| kind.default_learner())
     }
 
-    fn seed(&self) -> u64 {
+    fn seed_or_default(&self) -> u64 {
         self.seed.unwrap_or(1)
     }
 
@@ -154,24 +156,24 @@ impl BranchSettings {
     ///
     /// # Errors
     /// Returns an error if the foundation cannot be simulated.
-    pub fn training(
+    pub fn complete_training(
         &self,
         model: &Model,
         law: &Law,
         trials: &[&Trial],
-    ) -> Result<Training, PlantError> {
-        let ship = Ship::new(&model.foundation(), law)?;
-        let mode = self.mode.unwrap_or(BranchMode::Parallel);
+    ) -> Result<CorrectionTraining, PlantError> {
+        let ship = Ship::new(&model.without_correction(), law)?;
+        let mode = self.mode.unwrap_or(CorrectionMode::Parallel);
         // The window must hold several samples of the coarsest trial.
         let coarsest_s = trials.iter().map(|trial| trial.interval_s()).fold(0.0, f64::max);
         let length_s = ship.lpp_m() / ship.approach_speed_m_s();
         let window_s =
             self.window_s.unwrap_or_else(|| (WINDOW * length_s).max(INTERVALS * coarsest_s));
-        Ok(Training {
+        Ok(CorrectionTraining {
             mode,
-            inputs: inputs(&ship, mode),
-            learner: self.learner(),
-            seed: self.seed(),
+            inputs: available_inputs(&ship, mode),
+            learner: self.chosen_learner(),
+            seed: self.seed_or_default(),
             window_s,
             hop_s: self.hop_s.unwrap_or(window_s / HOPS),
             fade: self.fade.unwrap_or(1.0),
@@ -180,12 +182,12 @@ impl BranchSettings {
 }
 
 /// All signals that a correction can use, for each of the three accelerations.
-fn inputs(ship: &Ship, mode: BranchMode) -> Vec<(Axis, Vec<Signal>)> {
+fn available_inputs(ship: &Ship, mode: CorrectionMode) -> Vec<(Axis, Vec<Signal>)> {
     let mut signals = vec![Signal::U, Signal::V, Signal::R];
     signals.extend(ship.has_rudder().then_some(Signal::Delta));
     signals.extend(ship.has_propeller().then_some(Signal::N));
     // Only a serial correction uses the law's accelerations as inputs.
-    if mode == BranchMode::Serial {
+    if mode == CorrectionMode::Serial {
         signals.extend([Signal::UDot, Signal::VDot, Signal::RDot]);
     }
     [Axis::X, Axis::Y, Axis::N].map(|axis| (axis, signals.clone())).to_vec()
@@ -199,11 +201,11 @@ mod tests {
 
     #[test]
     fn what_is_not_asked_is_settled_by_ship_and_trials() {
-        let zoo = Zoo::embedded().unwrap();
-        let model = zoo.model("mariner").unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let model = zoo.find_model("mariner").unwrap();
         let trial = Trial { t_s: vec![0.0, 5.0, 10.0], ..Trial::default() };
         let of = |settings: BranchSettings, trials: &[&Trial]| {
-            settings.training(&model, zoo.law("abkowitz").unwrap(), trials).unwrap()
+            settings.complete_training(&model, zoo.law("abkowitz").unwrap(), trials).unwrap()
         };
         let settled = of(BranchSettings::default(), &[]);
         // 160.93 m at 7.72 m/s.
@@ -211,7 +213,7 @@ mod tests {
         assert_eq!(settled.window_s / settled.hop_s, 8.0);
         assert_eq!(settled.inputs[2].1, [Signal::U, Signal::V, Signal::R, Signal::Delta]);
         assert_eq!(of(BranchSettings::default(), &[&trial]).window_s, 20.0);
-        let serial = BranchSettings { mode: Some(BranchMode::Serial), ..Default::default() };
+        let serial = BranchSettings { mode: Some(CorrectionMode::Serial), ..Default::default() };
         assert!(of(serial, &[]).inputs[0].1.contains(&Signal::RDot));
     }
 
@@ -225,7 +227,7 @@ mod tests {
         let learner = Some(Learner::KernelRidge { centres: 0, length: 1.0, ridge: 1.0 });
         assert_eq!(field(BranchSettings { learner, ..default() }), "learner.centres");
         for kind in BranchKind::ALL {
-            assert_eq!(default().of(kind).check(), Ok(()));
+            assert_eq!(default().with_kind(kind).check(), Ok(()));
         }
     }
 }

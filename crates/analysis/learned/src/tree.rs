@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::draws::Draws;
+use crate::draws::RandomStream;
 
 /// Mark of a leaf in place of an input.
 const LEAF: u8 = u8::MAX;
@@ -12,12 +12,12 @@ const LEAF: u8 = u8::MAX;
 /// The left child directly follows its parent; a leaf has its prediction in place of the bound.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct Tree(Vec<(u8, u32, f64)>);
+pub struct RegressionTree(Vec<(u8, u32, f64)>);
 
-impl Tree {
+impl RegressionTree {
     /// Prediction for inputs in standard deviations.
     #[inline]
-    pub fn answer(&self, inputs: &[f64]) -> f64 {
+    pub fn predict(&self, inputs: &[f64]) -> f64 {
         let mut at = 0;
         loop {
             let (input, right, value) = self.0[at];
@@ -31,7 +31,7 @@ impl Tree {
 
     /// Node at an index: the input of a split (`None` for a leaf), the index of the right child,
     /// and the bound of the split or the leaf's prediction.
-    pub fn node(&self, at: usize) -> (Option<usize>, usize, f64) {
+    pub fn node_at(&self, at: usize) -> (Option<usize>, usize, f64) {
         let (input, right, value) = self.0[at];
         ((input != LEAF).then_some(usize::from(input)), right as usize, value)
     }
@@ -51,14 +51,14 @@ impl Tree {
     }
 
     /// Returns the tree with its predictions multiplied by a factor.
-    pub fn times(mut self, factor: f64) -> Self {
+    pub fn scaled_by(mut self, factor: f64) -> Self {
         self.0.iter_mut().filter(|node| node.0 == LEAF).for_each(|node| node.2 *= factor);
         self
     }
 }
 
 /// Inputs sorted into bins by their quantiles.
-pub struct Bins {
+pub struct InputBins {
     /// Bin of each row, by input.
     codes: Vec<Vec<u8>>,
     /// Upper bound of each bin but the last, by input.
@@ -66,13 +66,13 @@ pub struct Bins {
 }
 
 /// Largest number of bins: the values of a byte.
-const BINS: usize = 256;
+const MAX_BINS: usize = 256;
 
-impl Bins {
+impl InputBins {
     /// Sorts the values of each column into bins.
-    pub fn of(columns: &[Vec<f64>]) -> Self {
+    pub fn from_columns(columns: &[Vec<f64>]) -> Self {
         // Codes are bytes: a byte has as many values as there are bins.
-        let edges: Vec<Vec<f64>> = columns.iter().map(|column| edges(column)).collect();
+        let edges: Vec<Vec<f64>> = columns.iter().map(|column| bin_edges(column)).collect();
         let code = |edges: &Vec<f64>, x: f64| edges.partition_point(|edge| *edge < x) as u8;
         let codes = columns.iter().zip(&edges);
         let codes = codes.map(|(column, edges)| column.iter().map(|x| code(edges, *x)).collect());
@@ -81,12 +81,12 @@ impl Bins {
 }
 
 /// Bounds halfway between neighbours at even steps through the sorted column.
-fn edges(column: &[f64]) -> Vec<f64> {
+fn bin_edges(column: &[f64]) -> Vec<f64> {
     let mut sorted = column.to_vec();
     sorted.sort_by(f64::total_cmp);
     let last = sorted.len().saturating_sub(1);
-    let mut edges: Vec<f64> = (1..BINS)
-        .map(|k| k * last / BINS)
+    let mut edges: Vec<f64> = (1..MAX_BINS)
+        .map(|k| k * last / MAX_BINS)
         // Equal neighbours share a bin.
         .filter(|&k| k < last && sorted[k] < sorted[k + 1])
         .map(|k| 0.5 * (sorted[k] + sorted[k + 1]))
@@ -97,7 +97,7 @@ fn edges(column: &[f64]) -> Vec<f64> {
 
 /// Limits of the growth of a tree.
 #[derive(Debug, Clone, Copy)]
-pub struct Growth {
+pub struct GrowthSettings {
     /// Smallest number of samples in a leaf.
     pub leaf: usize,
     /// Largest number of splits from root to leaf.
@@ -107,43 +107,43 @@ pub struct Growth {
 }
 
 /// Grows a tree on the given rows; a row may occur more than once.
-pub fn grow(
-    bins: &Bins,
+pub fn grow_tree(
+    bins: &InputBins,
     targets: &[f64],
     rows: Vec<u32>,
-    growth: Growth,
-    draws: &mut Draws,
-) -> Tree {
-    let mut grower = Grower { bins, targets, growth, draws, tree: Tree::default() };
-    grower.node(rows, growth.depth);
+    growth: GrowthSettings,
+    draws: &mut RandomStream,
+) -> RegressionTree {
+    let mut grower = TreeBuilder { bins, targets, growth, draws, tree: RegressionTree::default() };
+    grower.grow_node(rows, growth.depth);
     grower.tree
 }
 
 /// State of a tree under construction.
-struct Grower<'a> {
-    bins: &'a Bins,
+struct TreeBuilder<'a> {
+    bins: &'a InputBins,
     targets: &'a [f64],
-    growth: Growth,
-    draws: &'a mut Draws,
-    tree: Tree,
+    growth: GrowthSettings,
+    draws: &'a mut RandomStream,
+    tree: RegressionTree,
 }
 
 /// Split of the rows of a node.
-struct Split {
+struct NodeSplit {
     input: usize,
     /// Last bin on the left.
     bin: usize,
     gain: f64,
 }
 
-impl Grower<'_> {
+impl TreeBuilder<'_> {
     /// Adds the node of some rows, and its subtree, in depth-first order.
-    fn node(&mut self, rows: Vec<u32>, depth: usize) {
+    fn grow_node(&mut self, rows: Vec<u32>, depth: usize) {
         let sum: f64 = rows.iter().map(|row| self.targets[*row as usize]).sum();
         // Both children of a split need the smallest number of samples.
         let may_split = depth > 0 && rows.len() >= 2 * self.growth.leaf;
-        let split = if may_split { self.best(&rows, sum) } else { None };
-        let Some(Split { input, bin, .. }) = split else {
+        let split = if may_split { self.best_split(&rows, sum) } else { None };
+        let Some(NodeSplit { input, bin, .. }) = split else {
             let mean = if rows.is_empty() { 0.0 } else { sum / rows.len() as f64 };
             return self.tree.0.push((LEAF, 0, mean));
         };
@@ -152,24 +152,24 @@ impl Grower<'_> {
             rows.into_iter().partition(|row| usize::from(codes[*row as usize]) <= bin);
         let at = self.tree.0.len();
         self.tree.0.push((input as u8, 0, self.bins.edges[input][bin]));
-        self.node(left, depth - 1);
+        self.grow_node(left, depth - 1);
         // The index of the right child is known once the left subtree is complete.
         self.tree.0[at].1 = self.tree.0.len() as u32;
-        self.node(right, depth - 1);
+        self.grow_node(right, depth - 1);
     }
 
     /// Returns the split of least remaining variance, if one reduces it.
-    fn best(&mut self, rows: &[u32], sum: f64) -> Option<Split> {
+    fn best_split(&mut self, rows: &[u32], sum: f64) -> Option<NodeSplit> {
         let inputs = self.bins.codes.len();
-        let mut tried = self.draws.some_of(self.growth.tried, inputs);
+        let mut tried = self.draws.sample_indices(self.growth.tried, inputs);
         // Equal gains are decided by the order of inputs, not by the order of the draws.
         tried.sort_unstable();
         // The variance that remains is the sum of squares less sum^2/count of each side. The sum of
         // squares is common to all splits, so the largest gain has the least variance.
         let whole = sum * sum / rows.len() as f64;
-        let mut best: Option<Split> = None;
+        let mut best: Option<NodeSplit> = None;
         for input in tried {
-            let Some(split) = self.best_of(input as usize, rows, sum) else { continue };
+            let Some(split) = self.best_input_split(input as usize, rows, sum) else { continue };
             // The first split must exceed the gain of no split by more than rounding.
             let least = best.as_ref().map_or(whole * (1.0 + 1e-12), |best| best.gain);
             if split.gain > least {
@@ -180,16 +180,16 @@ impl Grower<'_> {
     }
 
     /// Returns the best split by one input.
-    fn best_of(&self, input: usize, rows: &[u32], sum: f64) -> Option<Split> {
+    fn best_input_split(&self, input: usize, rows: &[u32], sum: f64) -> Option<NodeSplit> {
         // Count and sum of the targets in each bin; one pass over them then gives every split.
-        let mut bins = [(0_usize, 0.0_f64); BINS];
+        let mut bins = [(0_usize, 0.0_f64); MAX_BINS];
         let codes = &self.bins.codes[input];
         for row in rows {
             let bin = &mut bins[usize::from(codes[*row as usize])];
             *bin = (bin.0 + 1, bin.1 + self.targets[*row as usize]);
         }
         let (mut count, mut left) = (0, 0.0);
-        let mut best: Option<Split> = None;
+        let mut best: Option<NodeSplit> = None;
         for (bin, (own_count, own_sum)) in
             bins.iter().enumerate().take(self.bins.edges[input].len())
         {
@@ -201,7 +201,7 @@ impl Grower<'_> {
             let right: f64 = sum - left;
             let gain = left * left / count as f64 + right * right / beyond as f64;
             if best.as_ref().is_none_or(|best| gain > best.gain) {
-                best = Some(Split { input, bin, gain });
+                best = Some(NodeSplit { input, bin, gain });
             }
         }
         best
@@ -219,18 +219,24 @@ mod tests {
         (vec![noise, x], y)
     }
 
-    fn grown(leaf: usize) -> Tree {
+    fn grown(leaf: usize) -> RegressionTree {
         let (columns, targets) = step();
-        let growth = Growth { leaf, depth: 6, tried: 2 };
+        let growth = GrowthSettings { leaf, depth: 6, tried: 2 };
         let rows = (0..200).collect();
-        grow(&Bins::of(&columns), &targets, rows, growth, &mut Draws::new(1, 0))
+        grow_tree(
+            &InputBins::from_columns(&columns),
+            &targets,
+            rows,
+            growth,
+            &mut RandomStream::new(1, 0),
+        )
     }
 
     #[test]
     fn a_step_is_found_by_one_split() {
         let tree = grown(5);
         assert_eq!(tree.0.len(), 3, "{tree:?}");
-        assert_eq!((tree.answer(&[0.0, 0.29]), tree.answer(&[0.0, 0.31])), (-1.0, 2.0));
+        assert_eq!((tree.predict(&[0.0, 0.29]), tree.predict(&[0.0, 0.31])), (-1.0, 2.0));
         assert!(tree.is_sound(2) && !tree.is_sound(1));
     }
 
@@ -241,8 +247,10 @@ mod tests {
 
     #[test]
     fn a_circle_is_not_sound() {
-        assert!(!Tree(vec![(0, 1, 0.0), (LEAF, 0, 1.0)]).is_sound(1));
-        assert!(!Tree(vec![(0, 2, f64::NAN), (LEAF, 0, 1.0), (LEAF, 0, 1.0)]).is_sound(1));
-        assert!(!Tree::default().is_sound(1));
+        assert!(!RegressionTree(vec![(0, 1, 0.0), (LEAF, 0, 1.0)]).is_sound(1));
+        assert!(
+            !RegressionTree(vec![(0, 2, f64::NAN), (LEAF, 0, 1.0), (LEAF, 0, 1.0)]).is_sound(1)
+        );
+        assert!(!RegressionTree::default().is_sound(1));
     }
 }

@@ -8,35 +8,38 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
 use sistership_learned::attach;
 use sistership_model::Model;
-use sistership_model::branch::{BranchMode, Learner};
-use sistership_simulation::branch::{Instant, LAW_RATES, LearnedBranch, attached};
+use sistership_model::branch::{CorrectionMode, Learner};
+use sistership_simulation::branch::{
+    CorrectionInstant, CorrectionModel, LAW_RATES, attached_correction,
+};
 
-const MODES: [BranchMode; 3] = [BranchMode::Parallel, BranchMode::Serial, BranchMode::Convert];
+const MODES: [CorrectionMode; 3] =
+    [CorrectionMode::Parallel, CorrectionMode::Serial, CorrectionMode::Convert];
 
 /// A correction of the Mariner with its weights.
 fn learned(
     foundation: &Foundation,
     learner: &Learner,
-    mode: BranchMode,
-) -> (Model, Arc<dyn LearnedBranch>) {
+    mode: CorrectionMode,
+) -> (Model, Arc<dyn CorrectionModel>) {
     let (mut model, weights) = foundation.trained(&training(learner.clone(), mode));
     attach(&mut model, &weights).unwrap();
-    let learned = attached(&model).unwrap().unwrap();
+    let learned = attached_correction(&model).unwrap().unwrap();
     (model, learned)
 }
 
 /// u, v, r, delta, n and the law's rates, as one list.
-fn listed(at: &Instant) -> [f64; 8] {
+fn listed(at: &CorrectionInstant) -> [f64; 8] {
     let ([u, v, r], [a, b, c]) = (at.velocities, at.accelerations);
     [u, v, r, at.delta_rad, at.n_rps, a, b, c]
 }
 
-fn instant([u, v, r, delta_rad, n_rps, a, b, c]: [f64; 8]) -> Instant {
-    Instant { velocities: [u, v, r], delta_rad, n_rps, accelerations: [a, b, c] }
+fn instant([u, v, r, delta_rad, n_rps, a, b, c]: [f64; 8]) -> CorrectionInstant {
+    CorrectionInstant { velocities: [u, v, r], delta_rad, n_rps, accelerations: [a, b, c] }
 }
 
 /// Motions within the domain and as far beyond as the correction reaches.
-fn instants(model: &Model, count: usize) -> Vec<Instant> {
+fn instants(model: &Model, count: usize) -> Vec<CorrectionInstant> {
     let mut rng = ChaCha12Rng::seed_from_u64(3);
     let ranges = &model.branch.as_ref().unwrap().domain.ranges;
     let mut one = |name: &str| {
@@ -54,8 +57,8 @@ fn instants(model: &Model, count: usize) -> Vec<Instant> {
 }
 
 /// Derivatives of the rates added, by what they are told from.
-fn gradient(learned: &dyn LearnedBranch, at: &Instant) -> [[f64; 8]; 3] {
-    let all = learned.gradient(at);
+fn gradient(learned: &dyn CorrectionModel, at: &CorrectionInstant) -> [[f64; 8]; 3] {
+    let all = learned.addition_gradient(at);
     std::array::from_fn(|row| {
         let ([u, v, r], [a, b, c]) = (all.by_velocity[row], all.by_acceleration[row]);
         [u, v, r, all.by_delta[row], all.by_n[row], a, b, c]
@@ -63,13 +66,17 @@ fn gradient(learned: &dyn LearnedBranch, at: &Instant) -> [[f64; 8]; 3] {
 }
 
 /// Central differences over so much of each.
-fn differences(learned: &dyn LearnedBranch, at: &Instant, steps: [f64; 8]) -> [[f64; 8]; 3] {
+fn differences(
+    learned: &dyn CorrectionModel,
+    at: &CorrectionInstant,
+    steps: [f64; 8],
+) -> [[f64; 8]; 3] {
     let mut slopes = [[0.0; 8]; 3];
     for (place, step) in steps.into_iter().enumerate().filter(|(_, step)| *step > 0.0) {
         let [above, below] = [step, -step].map(|moved| {
             let mut all = listed(at);
             all[place] += moved;
-            learned.addition(&instant(all))
+            learned.rate_additions(&instant(all))
         });
         (0..3).for_each(|row| slopes[row][place] = (above[row] - below[row]) / (2.0 * step));
     }
@@ -105,7 +112,7 @@ fn smooth_corrections_have_the_derivatives_of_what_they_add() {
                     );
                 }
             }
-            faded += usize::from((0.01..0.99).contains(&learned.share(&at)));
+            faded += usize::from((0.01..0.99).contains(&learned.active_share(&at)));
         }
         assert!(seen > 1200 && faded > 3, "{seen} derivatives, {faded} where it fades");
     }
@@ -116,7 +123,7 @@ fn trees_have_the_secants_over_half_a_deviation_to_either_side() {
     let foundation = Foundation::of("mariner");
     let [forest, boosted, ..] = learners();
     for learner in [forest, boosted] {
-        let (model, learned) = learned(&foundation, &learner, BranchMode::Parallel);
+        let (model, learned) = learned(&foundation, &learner, CorrectionMode::Parallel);
         let inputs = &model.branch.as_ref().unwrap().outputs[2].inputs;
         let mut seen = 0;
         for at in instants(&model, 60) {
@@ -126,7 +133,7 @@ fn trees_have_the_secants_over_half_a_deviation_to_either_side() {
                 let whole = [-1.0, 0.0, 1.0].iter().all(|side| {
                     let mut all = listed(&at);
                     all[place] += side * steps[place];
-                    learned.share(&instant(all)) == 1.0
+                    learned.active_share(&instant(all)) == 1.0
                 });
                 if whole {
                     seen += 1;
@@ -148,7 +155,7 @@ fn formulas_say_what_is_added() {
     let foundation = Foundation::of("mariner");
     for (learner, mode) in learners().iter().flat_map(|l| MODES.map(|mode| (l, mode))) {
         let (model, learned) = learned(&foundation, learner, mode);
-        let formulas = learned.formulas();
+        let formulas = learned.addition_formulas();
         for at in instants(&model, 20) {
             let names = ["u", "v", "r", "delta", "n"].into_iter().chain(LAW_RATES);
             let mut known: HashMap<String, f64> =
@@ -157,7 +164,7 @@ fn formulas_say_what_is_added() {
                 let value = expr.value(&|name| known.get(name).copied()).unwrap();
                 known.insert(name.clone(), value);
             }
-            for (expr, added) in formulas.added.iter().zip(learned.addition(&at)) {
+            for (expr, added) in formulas.added.iter().zip(learned.rate_additions(&at)) {
                 let value =
                     expr.as_ref().map_or(0.0, |e| e.value(&|n| known.get(n).copied()).unwrap());
                 assert!((value - added).abs() < 1e-12 * added.abs().max(1e-3), "{value} {added}");

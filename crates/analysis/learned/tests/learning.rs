@@ -2,21 +2,22 @@
 
 use crate::ships::{Foundation, learners, training};
 use sistership_learned::{
-    JoinError, TrainError, Training, WeightsError, importance, retrain, rows, ship, train,
+    CorrectionTraining, JoinError, TrainError, WeightsError, corrected_ship,
+    permutation_importance, retrain_correction, train_correction, window_rows,
 };
-use sistership_model::branch::{BranchMode, Learner, Signal};
+use sistership_model::branch::{CorrectionMode, Learner, Signal};
 use sistership_model::coefficient::Axis;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model};
 use sistership_simulation::error::SquaredError;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 use sistership_simulation::{Plant, PlantError, Ship};
 
 fn errors(ship: &Ship, trial: &Trial) -> [f64; 3] {
-    let run = replay(ship, trial, &ReplaySettings::default()).unwrap();
+    let run = replay_trial(ship, trial, &ReplaySettings::default()).unwrap();
     assert_eq!(run.stopped, None);
-    let error = SquaredError::of(trial, &run);
+    let error = SquaredError::from_trial(trial, &run);
     [Channel::U, Channel::V, Channel::R].map(|channel| error.channel_rmse(channel).unwrap())
 }
 
@@ -29,15 +30,15 @@ fn every_kind_comes_nearer_to_the_truth_than_what_it_is_made_of() {
     for learner in learners() {
         let of = |mode| {
             let (model, weights) = foundation.trained(&training(learner.clone(), mode));
-            errors(&ship(&model, &foundation.law, &weights).unwrap(), &unseen)
+            errors(&corrected_ship(&model, &foundation.law, &weights).unwrap(), &unseen)
         };
-        let data = of(BranchMode::Convert);
-        for mode in [BranchMode::Parallel, BranchMode::Serial] {
+        let data = of(CorrectionMode::Convert);
+        for mode in [CorrectionMode::Parallel, CorrectionMode::Serial] {
             let both = of(mode);
             println!("{mode:?} {learner:?}: {alone:?}, data alone {data:?} -> {both:?}");
             // What is added beats the data alone, too; what is given whole need not.
             let limit = |channel: usize| match mode {
-                BranchMode::Parallel => alone[channel].min(data[channel]),
+                CorrectionMode::Parallel => alone[channel].min(data[channel]),
                 _ => alone[channel],
             };
             for (channel, error) in both.iter().enumerate() {
@@ -54,19 +55,21 @@ fn training_again_gives_the_same_bytes() {
     let trials = foundation.trials(&[10.0, 20.0]);
     let trials: Vec<&Trial> = trials.iter().collect();
     for learner in learners() {
-        let wanted = training(learner, BranchMode::Parallel);
+        let wanted = training(learner, CorrectionMode::Parallel);
         let (branch, weights) =
-            train(&foundation.model, &foundation.law, &trials, &wanted).unwrap();
+            train_correction(&foundation.model, &foundation.law, &trials, &wanted).unwrap();
         let text = serde_json::to_string(&branch).unwrap();
         let read = serde_json::from_str(&text).unwrap();
         assert_eq!(branch, read);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-        let again = || retrain(&foundation.model, &read, &foundation.law, &trials).unwrap();
+        let again =
+            || retrain_correction(&foundation.model, &read, &foundation.law, &trials).unwrap();
         let (branch_again, weights_again) = pool.install(again);
         assert_eq!(serde_json::to_string(&branch_again).unwrap(), text);
-        assert_eq!(weights_again.bytes().unwrap(), weights.bytes().unwrap());
-        let other = Training { seed: 2, ..wanted };
-        let (other, _) = train(&foundation.model, &foundation.law, &trials, &other).unwrap();
+        assert_eq!(weights_again.to_bytes().unwrap(), weights.to_bytes().unwrap());
+        let other = CorrectionTraining { seed: 2, ..wanted };
+        let (other, _) =
+            train_correction(&foundation.model, &foundation.law, &trials, &other).unwrap();
         assert_ne!(other.weights_sha256, branch.weights_sha256, "the seed changes nothing");
     }
 }
@@ -74,13 +77,13 @@ fn training_again_gives_the_same_bytes() {
 #[test]
 fn runs_say_that_they_left_the_domain() {
     let (Foundation { law, .. }, model, weights) = forest();
-    let joined = ship(&model, &law, &weights).unwrap();
+    let joined = corrected_ship(&model, &law, &weights).unwrap();
     let settings = ManoeuvreSettings::default();
-    let hard = turn(&joined, 35.0, &settings).unwrap().track;
-    let gentle = zigzag(&joined, 5.0, 5.0, &settings).unwrap().track;
-    let outside = joined.leaves(&hard).unwrap();
+    let hard = simulate_turn(&joined, 35.0, &settings).unwrap().track;
+    let gentle = simulate_zigzag(&joined, 5.0, 5.0, &settings).unwrap().track;
+    let outside = joined.find_excursion(&hard).unwrap();
     assert!(outside.share > 0.5 && outside.beyond > 0.5, "{outside:?}");
-    assert_eq!(joined.leaves(&gentle), None);
+    assert_eq!(joined.find_excursion(&gentle), None);
 }
 
 /// The truth's rudder is weaker than the foundation's, and nothing else differs.
@@ -90,18 +93,18 @@ fn importance_names_what_the_remainder_depends_on() {
     let mut truth = foundation.model.clone();
     truth.coefficients.get_mut("N_delta").unwrap().value *= 0.7;
     let truth = Ship::new(&truth, &foundation.law).unwrap();
-    let track = zigzag(&truth, 20.0, 20.0, &ManoeuvreSettings::default()).unwrap().track;
+    let track = simulate_zigzag(&truth, 20.0, 20.0, &ManoeuvreSettings::default()).unwrap().track;
     let trial = crate::ships::recorded("zigzag", &track);
     for learner in learners() {
-        let wanted = Training {
+        let wanted = CorrectionTraining {
             inputs: vec![(Axis::N, vec![Signal::U, Signal::V, Signal::R, Signal::Delta])],
-            ..training(learner, BranchMode::Parallel)
+            ..training(learner, CorrectionMode::Parallel)
         };
         let (branch, weights) =
-            train(&foundation.model, &foundation.law, &[&trial], &wanted).unwrap();
+            train_correction(&foundation.model, &foundation.law, &[&trial], &wanted).unwrap();
         let alone = Ship::new(&foundation.model, &foundation.law).unwrap();
-        let rows = rows(&alone, &trial, 2.0, 1.0).unwrap();
-        let found = importance(&branch, &weights, &rows, 1);
+        let rows = window_rows(&alone, &trial, 2.0, 1.0).unwrap();
+        let found = permutation_importance(&branch, &weights, &rows, 1);
         let (rudder, others) = found.split_last().unwrap();
         assert_eq!(rudder.signal, Signal::Delta);
         assert!(others.iter().all(|other| rudder.rise > other.rise), "{found:?}");
@@ -117,20 +120,20 @@ fn a_model_without_a_branch_keeps_its_bytes() {
 fn forest() -> (Foundation, Model, Vec<u8>) {
     let foundation = Foundation::of("mariner");
     let [learner, ..] = learners();
-    let (model, weights) = foundation.trained(&training(learner, BranchMode::Parallel));
+    let (model, weights) = foundation.trained(&training(learner, CorrectionMode::Parallel));
     (foundation, model, weights)
 }
 
 fn joined(model: &Model, law: &Law, weights: &[u8]) -> String {
-    ship(model, law, weights).unwrap_err().to_string()
+    corrected_ship(model, law, weights).unwrap_err().to_string()
 }
 
 #[test]
 fn what_does_not_belong_together_is_refused_by_name() {
     let (Foundation { law, model: bare }, model, weights) = forest();
-    assert!(matches!(ship(&bare, &law, &weights), Err(JoinError::None(_))));
+    assert!(matches!(corrected_ship(&bare, &law, &weights), Err(JoinError::None(_))));
     assert!(matches!(Ship::new(&model, &law), Err(PlantError::Weights { .. })));
-    assert!(matches!(Ship::sisters(&model, &law), Err(PlantError::Weights { .. })));
+    assert!(matches!(Ship::with_open_coefficients(&model, &law), Err(PlantError::Weights { .. })));
     assert_eq!(
         Plant::new(&model, &law).err(),
         Some(PlantError::Branch(model.name.clone())),
@@ -138,9 +141,9 @@ fn what_does_not_belong_together_is_refused_by_name() {
     );
     let mut other = weights.clone();
     *other.last_mut().unwrap() = b' ';
-    let refused = ship(&model, &law, &other);
+    let refused = corrected_ship(&model, &law, &other);
     assert!(matches!(refused, Err(JoinError::Weights(WeightsError::Hash { .. }))));
-    let with = |change: &dyn Fn(&mut sistership_model::branch::Branch)| {
+    let with = |change: &dyn Fn(&mut sistership_model::branch::CorrectionDocument)| {
         let mut model = model.clone();
         model.branch.iter_mut().for_each(change);
         joined(&model, &law, &weights)
@@ -153,7 +156,7 @@ fn what_does_not_belong_together_is_refused_by_name() {
     assert!(with(&|b| b.outputs[0].axis = Axis::N).contains("X, Y and N at most once"));
     assert!(with(&|b| b.outputs[0].range = [1.0, f64::NAN]).contains("range"));
     assert!(with(&|b| b.fade = 0.0).contains("fade"));
-    assert!(with(&|b| b.mode = BranchMode::Serial).contains("of the foundation"));
+    assert!(with(&|b| b.mode = CorrectionMode::Serial).contains("of the foundation"));
     assert!(
         with(&|b| {
             b.domain.ranges.insert("u".into(), [-20.0, 40.0]);
@@ -168,19 +171,19 @@ fn training_on_what_is_no_number_is_refused_with_the_place() {
     let mut trials = foundation.trials(&[10.0]);
     trials[0].channels.get_mut(&Channel::V).unwrap()[40] = f64::NAN;
     let [learner, ..] = learners();
-    let wanted = training(learner.clone(), BranchMode::Parallel);
-    let refused = |trials: &[Trial], wanted: &Training| -> TrainError {
+    let wanted = training(learner.clone(), CorrectionMode::Parallel);
+    let refused = |trials: &[Trial], wanted: &CorrectionTraining| -> TrainError {
         let trials: Vec<&Trial> = trials.iter().collect();
-        train(&foundation.model, &foundation.law, &trials, wanted).unwrap_err()
+        train_correction(&foundation.model, &foundation.law, &trials, wanted).unwrap_err()
     };
     let said = refused(&trials, &wanted).to_string();
     assert!(said.contains("trial `zigzag 10`, 20 s"), "{said}");
     trials[0].channels.remove(&Channel::R);
     assert!(refused(&trials, &wanted).to_string().contains("no channel `r`"));
     assert!(refused(&[], &wanted).to_string().contains("too few"));
-    let convert = Training {
+    let convert = CorrectionTraining {
         inputs: vec![(Axis::X, vec![Signal::UDot])],
-        mode: BranchMode::Convert,
+        mode: CorrectionMode::Convert,
         ..wanted
     };
     let good = foundation.trials(&[10.0]);

@@ -7,14 +7,14 @@
 //! the trials of the largest and smallest rudder angles and speeds are held out
 //! ([`crate::correction`]).
 
-use sistership_identification::refine::{Progress, RefineError, ReplayedTrials, Thinning};
+use sistership_identification::refine::{Progress, RefineError, ReplayedTrials, ThinningSettings};
 use sistership_learned::{
-    BranchChoice, BranchKind, BranchSettings, HeldOutTrials, Kinds, TrainError, choose,
+    BranchChoice, BranchKind, BranchSettings, HeldOutTrials, KindSearch, TrainError, select_kind,
 };
 use sistership_model::trial::Trial;
 
 use crate::correction::Correction;
-use crate::foundation::Foundation;
+use crate::foundation::CorrectionBase;
 use crate::thresholds::SEARCH;
 
 /// Tries kinds of corrections for a model, with as many samples as simulations need; none if there
@@ -22,23 +22,23 @@ use crate::thresholds::SEARCH;
 ///
 /// # Errors
 /// Returns an error if it was cancelled.
-pub(super) fn branch(
-    foundation: &Foundation<'_>,
+pub(super) fn choose_correction(
+    foundation: &CorrectionBase<'_>,
     progress: Progress<'_>,
 ) -> Result<BranchChoice, RefineError> {
     let (request, trials) = (&foundation.request, foundation.trials);
     if trials.len() < SEARCH.branch_trials {
-        return Ok(BranchChoice::untried(few(trials.len())));
+        return Ok(BranchChoice::without_evaluation(too_few_trials(trials.len())));
     }
     // Without folds there is no base model that has not seen a trial.
-    let folds = foundation.held_out();
+    let folds = foundation.held_out_folds();
     if folds.is_empty() {
-        return Ok(BranchChoice::untried(IN_PARTS.to_owned()));
+        return Ok(BranchChoice::without_evaluation(IN_PARTS.to_owned()));
     }
-    let by = Thinning { economical: true, smoothing_s: None };
+    let by = ThinningSettings { economical: true, smoothing_s: None };
     let lpp_m = request.target.particular("lpp_m");
     let replayed = ReplayedTrials::new(request.law, lpp_m, trials, by);
-    let kinds = Kinds::WhilePromising { step_s: replayed.step_s };
+    let kinds = KindSearch::WhilePromising { step_s: replayed.step_s };
     let thinned: Vec<&Trial> = replayed.trials.iter().collect();
     let on = HeldOutTrials { law: request.law, trials: &thinned, folds: &folds };
     let model = &foundation.refinement.model;
@@ -46,24 +46,26 @@ pub(super) fn branch(
     let told = |kind: BranchKind| {
         progress(0.99, &format!("fitting a learned correction: {}", kind.name()))
     };
-    let choice = match choose(model, &on, (&settings, kinds), &told) {
+    let choice = match select_kind(model, &on, (&settings, kinds), &told) {
         // `None` is a cancelled training; a correction that cannot be trained is no error of the
         // search.
         Ok(choice) => choice.ok_or(RefineError::Cancelled)?,
-        Err(error) => return Ok(BranchChoice::untried(untrained(&error))),
+        Err(error) => return Ok(BranchChoice::without_evaluation(training_failure(&error))),
     };
     let Some(kind) = choice.taken else { return Ok(choice) };
     if !progress(0.99, &format!("checking the learned correction: {}", kind.name())) {
         return Err(RefineError::Cancelled);
     }
     let correction = Correction { foundation, on, kind, step_s: replayed.step_s };
-    Ok(correction.checked(choice).unwrap_or_else(|error| BranchChoice::untried(untrained(&error))))
+    Ok(correction
+        .run_checks(choice)
+        .unwrap_or_else(|error| BranchChoice::without_evaluation(training_failure(&error))))
 }
 
 const IN_PARTS: &str = "none was tried: the trials were held out in parts, not whole, so that every \
                         model has seen all";
 
-fn few(trials: usize) -> String {
+fn too_few_trials(trials: usize) -> String {
     format!(
         "none was tried: of {trials} trials too few can be left out of its training, {} are \
         asked",
@@ -71,6 +73,6 @@ fn few(trials: usize) -> String {
     )
 }
 
-fn untrained(error: &TrainError) -> String {
+fn training_failure(error: &TrainError) -> String {
     format!("none can be trained: {error}")
 }

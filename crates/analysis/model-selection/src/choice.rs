@@ -6,13 +6,13 @@
 
 use std::collections::BTreeMap;
 
-use sistership_identification::refine::Weighed;
+use sistership_identification::refine::CandidateEvaluation;
 
 use crate::thresholds::SEARCH;
-use sistership_assessment::uncertainty::student;
+use sistership_assessment::uncertainty::student_quantile;
 
 /// Smallest error; the logarithm of a smaller one would decide alone.
-const LEAST: f64 = 1e-9;
+const MIN_ERROR: f64 = 1e-9;
 
 /// Logarithm of a mean error, and the same without each trial.
 struct LogError {
@@ -21,10 +21,13 @@ struct LogError {
 }
 
 impl LogError {
-    fn of(each: &BTreeMap<String, f64>) -> Self {
+    fn from_errors(each: &BTreeMap<String, f64>) -> Self {
         let (sum, count) = (each.values().sum::<f64>(), each.len() as f64);
-        let without = |error: &f64| ((sum - error).max(0.0) / (count - 1.0)).max(LEAST).ln();
-        Self { all: (sum / count).max(LEAST).ln(), without: each.values().map(without).collect() }
+        let without = |error: &f64| ((sum - error).max(0.0) / (count - 1.0)).max(MIN_ERROR).ln();
+        Self {
+            all: (sum / count).max(MIN_ERROR).ln(),
+            without: each.values().map(without).collect(),
+        }
     }
 
     /// Standard error of the difference to another; `None` for a single trial, which has no
@@ -40,9 +43,9 @@ impl LogError {
 }
 
 /// Standard error of a mean error over its trials; `None` for fewer than two.
-pub fn standard_error(weighed: &Weighed) -> Option<f64> {
+pub fn standard_error(weighed: &CandidateEvaluation) -> Option<f64> {
     let zeros = vec![0.0; weighed.each.len()];
-    let relative = LogError::of(&weighed.each).standard_error(&zeros)?;
+    let relative = LogError::from_errors(&weighed.each).standard_error(&zeros)?;
     // The error of a logarithm is relative.
     Some(relative * weighed.error?)
 }
@@ -60,19 +63,20 @@ pub fn standard_error(weighed: &Weighed) -> Option<f64> {
 /// error is significantly less (95 %): where trials are statistically tied, other ships decide
 /// (docs/evidence/population.md). A candidate that is tied only because its own error scatters is
 /// replaced by one that is less in both error and sum.
-pub fn chosen(all: &[(&Weighed, bool)]) -> Option<usize> {
-    let (tried, held): (Vec<&Weighed>, Vec<bool>) = all.iter().copied().unzip();
+pub fn choose_candidate(all: &[(&CandidateEvaluation, bool)]) -> Option<usize> {
+    let (tried, held): (Vec<&CandidateEvaluation>, Vec<bool>) = all.iter().copied().unzip();
     let sails = |place: &usize| tried[*place].error.is_some_and(f64::is_finite);
     let sailed: Vec<usize> = (0..tried.len()).filter(sails).collect();
     // Errors are compared on the same trials, so that differences of jackknife values cancel what
     // trials have in common.
-    let logs: Vec<LogError> = tried.iter().map(|one| LogError::of(&one.each)).collect();
+    let logs: Vec<LogError> = tried.iter().map(|one| LogError::from_errors(&one.each)).collect();
     let least = |a: &usize, b: &usize| logs[*a].all.total_cmp(&logs[*b].all);
     let best = sailed.iter().copied().min_by(least)?;
     let alike = |place: &usize| {
         // One standard error for most candidates; a population is tied up to the 95 % quantile of
         // Student's distribution.
-        let within = if held[*place] { student(logs[best].without.len().max(2) - 1) } else { 1.0 };
+        let within =
+            if held[*place] { student_quantile(logs[best].without.len().max(2) - 1) } else { 1.0 };
         let scatter = logs[*place].standard_error(&logs[best].without);
         let apart = logs[*place].all - logs[best].all;
         *place == best || scatter.is_some_and(|scatter| apart < within * scatter)
@@ -98,11 +102,11 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    fn entry(coefficients: usize, errors: &[f64]) -> Weighed {
+    fn entry(coefficients: usize, errors: &[f64]) -> CandidateEvaluation {
         let each = errors.iter().enumerate().map(|(k, error)| (k.to_string(), *error)).collect();
         let error = Some(errors.iter().sum::<f64>() / errors.len() as f64);
         let variance = Some(0.01 * coefficients as f64);
-        Weighed {
+        CandidateEvaluation {
             step: String::new(),
             error,
             shortest: error,
@@ -115,8 +119,8 @@ mod tests {
         }
     }
 
-    fn choice(tried: &[Weighed]) -> Option<usize> {
-        chosen(&tried.iter().map(|one| (one, false)).collect::<Vec<_>>())
+    fn choice(tried: &[CandidateEvaluation]) -> Option<usize> {
+        choose_candidate(&tried.iter().map(|one| (one, false)).collect::<Vec<_>>())
     }
 
     #[test]
@@ -124,22 +128,23 @@ mod tests {
         let steady = entry(0, &[1.0, 1.2, 0.9, 1.1]);
         let alike = entry(20, &[0.5, 1.5, 0.6, 1.4]);
         let better = entry(0, &[0.5, 0.7, 0.4, 0.6]);
-        assert_eq!(chosen(&[(&steady, false), (&alike, true)]), Some(1));
-        assert_eq!(chosen(&[(&better, false), (&steady, true)]), Some(0));
+        assert_eq!(choose_candidate(&[(&steady, false), (&alike, true)]), Some(1));
+        assert_eq!(choose_candidate(&[(&better, false), (&steady, true)]), Some(0));
     }
 
     #[test]
     fn a_population_is_told_apart_by_more_than_one_standard_error() {
         let best = entry(0, &[1.0, 1.2, 0.9, 1.1]);
         let apart = entry(0, &[1.3, 1.2, 0.8, 1.5]);
-        let differ = LogError::of(&apart.each).all - LogError::of(&best.each).all;
-        let scatter = LogError::of(&apart.each).standard_error(&LogError::of(&best.each).without);
+        let differ = LogError::from_errors(&apart.each).all - LogError::from_errors(&best.each).all;
+        let scatter = LogError::from_errors(&apart.each)
+            .standard_error(&LogError::from_errors(&best.each).without);
         let times = differ / scatter.unwrap();
-        assert!(times > 1.0 && times < student(3), "{times}");
-        assert_eq!(chosen(&[(&best, false), (&apart, false)]), Some(0));
-        assert_eq!(chosen(&[(&best, false), (&apart, true)]), Some(1));
+        assert!(times > 1.0 && times < student_quantile(3), "{times}");
+        assert_eq!(choose_candidate(&[(&best, false), (&apart, false)]), Some(0));
+        assert_eq!(choose_candidate(&[(&best, false), (&apart, true)]), Some(1));
         let far = entry(0, &[2.2, 2.4, 1.8, 2.1]);
-        assert_eq!(chosen(&[(&best, false), (&far, true)]), Some(0));
+        assert_eq!(choose_candidate(&[(&best, false), (&far, true)]), Some(0));
     }
 
     #[test]
@@ -149,12 +154,12 @@ mod tests {
         let better = entry(20, &[0.5, 0.7, 0.4, 0.6]);
         assert_eq!(choice(&[simple.clone(), alike]), Some(0));
         assert_eq!(choice(&[simple, better]), Some(1));
-        assert_eq!(choice(&[Weighed { error: None, ..entry(0, &[1.0]) }]), None);
+        assert_eq!(choice(&[CandidateEvaluation { error: None, ..entry(0, &[1.0]) }]), None);
     }
 
     #[test]
     fn what_scatters_is_not_taken_before_what_is_less_in_error_and_variance() {
-        let least = Weighed { variance: None, ..entry(0, &[0.018, 0.021, 0.02]) };
+        let least = CandidateEvaluation { variance: None, ..entry(0, &[0.018, 0.021, 0.02]) };
         let scattered = entry(200, &[0.9, 0.001, 0.014]);
         let steady = entry(1, &[0.03, 0.033, 0.031]);
         assert_eq!(choice(&[least.clone(), scattered.clone()]), Some(1));

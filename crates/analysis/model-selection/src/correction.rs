@@ -1,26 +1,28 @@
 //! Checks of a learned correction besides trials held out at random.
 
 use rayon::prelude::*;
-use sistership_assessment::uncertainty::student;
-use sistership_identification::refine::{Request, Settings, fit_model};
+use sistership_assessment::uncertainty::student_quantile;
+use sistership_identification::refine::{RefinementSettings, RefinementSpec, fit_model};
 use sistership_learned::{
-    BranchCheck, BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, TrainError,
-    Training, TriedKind, corrected, judge_folds,
+    BranchCheck, BranchChoice, BranchKind, BranchSettings, CorrectionTraining, HeldOutFold,
+    HeldOutTrials, KindEvaluation, TrainError, evaluate_folds, train_corrected_model,
 };
 use sistership_model::Model;
 use sistership_model::trial::Trial;
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
+use sistership_simulation::manoeuvre::{
+    ManoeuvreSettings, StandardManoeuvres, simulate_standard_manoeuvres,
+};
 
-use crate::extremes::extremes;
-use crate::foundation::Foundation;
-use crate::sailed::unsailed_rudder;
+use crate::extremes::extreme_trials;
+use crate::foundation::CorrectionBase;
+use crate::sailed::simulation_fault;
 use crate::scatter::scatter_ratio;
 
 /// A kind of correction that was best on held-out trials.
 pub(super) struct Correction<'a> {
     /// Base model and trials of the correction.
-    pub foundation: &'a Foundation<'a>,
+    pub foundation: &'a CorrectionBase<'a>,
     /// Held-out trials on which it was best.
     pub on: HeldOutTrials<'a>,
     /// The kind.
@@ -35,24 +37,24 @@ impl Correction<'_> {
     ///
     /// # Errors
     /// Returns an error if the correction cannot be trained.
-    pub fn checked(&self, mut choice: BranchChoice) -> Result<BranchChoice, TrainError> {
+    pub fn run_checks(&self, mut choice: BranchChoice) -> Result<BranchChoice, TrainError> {
         let model = &self.foundation.refinement.model;
-        let training = BranchSettings::default().of(self.kind);
+        let training = BranchSettings::default().with_kind(self.kind);
         // Trained on the thinned trials of the choice; the check of simulations trains on all
         // samples.
-        let training = training.training(model, self.on.law, self.on.trials)?;
+        let training = training.complete_training(model, self.on.law, self.on.trials)?;
         type Check<'b> = &'b dyn Fn() -> Result<BranchCheck, TrainError>;
         let tried = choice.tried.iter().find(|tried| tried.kind == self.kind).cloned();
-        let level = || Ok(level(tried.as_ref(), self.on.trials.len()));
-        let sails = || self.sails();
-        let certainty = || self.certainty(&training);
-        let elsewhere = || self.elsewhere(&training);
+        let level = || Ok(check_significance(tried.as_ref(), self.on.trials.len()));
+        let sails = || self.check_simulations();
+        let certainty = || self.check_certainty(&training);
+        let elsewhere = || self.check_extremes(&training);
         // Checks are closures, so that an expensive one runs only if all before it are passed.
         let checks: [Check<'_>; 4] = [&level, &sails, &certainty, &elsewhere];
         for check in checks {
             let check = check()?;
             let passed = check.passed;
-            choice.reason += &words(&check);
+            choice.reason += &describe_check(&check);
             choice.checks.push(check);
             if !passed {
                 choice.taken = None;
@@ -64,85 +66,90 @@ impl Correction<'_> {
 
     /// Checks that the correction, trained on all trials, completes the records that every model
     /// must complete.
-    fn sails(&self) -> Result<BranchCheck, TrainError> {
-        let Foundation { refinement, trials, .. } = *self.foundation;
-        let settings = BranchSettings::default().of(self.kind);
-        let training = settings.training(&refinement.model, self.on.law, trials)?;
-        let model = corrected(&refinement.model.foundation(), self.on.law, trials, &training)?;
-        let of = |model: &Model| unsailed_rudder(model, self.on.law, trials).is_some();
+    fn check_simulations(&self) -> Result<BranchCheck, TrainError> {
+        let CorrectionBase { refinement, trials, .. } = *self.foundation;
+        let settings = BranchSettings::default().with_kind(self.kind);
+        let training = settings.complete_training(&refinement.model, self.on.law, trials)?;
+        let model = train_corrected_model(
+            &refinement.model.without_correction(),
+            self.on.law,
+            trials,
+            &training,
+        )?;
+        let of = |model: &Model| simulation_fault(model, self.on.law, trials).is_some();
         let count = |fails: bool| if fails { 1.0 } else { 0.0 };
         let (own, both) = (count(of(&refinement.model)), count(of(&model)));
-        Ok(check("rudders and motions that no trial had, as failures", own, both))
+        Ok(compare_values("rudders and motions that no trial had, as failures", own, both))
     }
 
     /// Checks that the models of folds scatter no more in the standard manoeuvres with the
     /// correction.
-    fn certainty(&self, training: &Training) -> Result<BranchCheck, TrainError> {
+    fn check_certainty(&self, training: &CorrectionTraining) -> Result<BranchCheck, TrainError> {
         let pair = |fold: &HeldOutFold| {
-            let both = self.on.corrected(fold, training)?;
-            Ok((self.standard(&fold.foundation)?, self.standard(&both)?))
+            let both = self.on.corrected_model(fold, training)?;
+            Ok((self.standard_manoeuvres(&fold.foundation)?, self.standard_manoeuvres(&both)?))
         };
         let pairs: Vec<(StandardManoeuvres, StandardManoeuvres)> =
             self.on.folds.par_iter().map(pair).collect::<Result<_, TrainError>>()?;
         let (own, both): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
         let ratio = scatter_ratio(&own, &both);
-        Ok(check("variance of the standard manoeuvres over folds, relative", 1.0, ratio))
+        Ok(compare_values("variance of the standard manoeuvres over folds, relative", 1.0, ratio))
     }
 
-    fn standard(&self, model: &Model) -> Result<StandardManoeuvres, TrainError> {
+    fn standard_manoeuvres(&self, model: &Model) -> Result<StandardManoeuvres, TrainError> {
         let mut ship = Ship::new(model, self.on.law)?;
-        ship.forget_validity();
+        ship.disable_excursions();
         let settings = ManoeuvreSettings { figures_only: true, ..ManoeuvreSettings::default() };
-        Ok(standard(&ship, &settings))
+        Ok(simulate_standard_manoeuvres(&ship, &settings))
     }
 
     /// Checks that the correction is no worse on the trials of the largest and smallest rudder
     /// angles and speeds, held out of both base model and correction.
-    fn elsewhere(&self, training: &Training) -> Result<BranchCheck, TrainError> {
+    fn check_extremes(&self, training: &CorrectionTraining) -> Result<BranchCheck, TrainError> {
         let what = "trials of the largest and least rudder angles and speeds, held out";
-        let held_out = extremes(self.foundation.trials);
+        let held_out = extreme_trials(self.foundation.trials);
         let folds: Vec<HeldOutFold> =
-            held_out.into_par_iter().filter_map(|places| self.refitted(places)).collect();
+            held_out.into_par_iter().filter_map(|places| self.refit_without(places)).collect();
         let on = HeldOutTrials { folds: &folds, ..self.on };
-        Ok(judge_folds(&on, training, self.step_s)?.map_or_else(
-            || check("trials of other rudder angles and speeds: there are none", 0.0, 0.0),
-            |judged| check(what, judged.foundation, judged.branch),
+        Ok(evaluate_folds(&on, training, self.step_s)?.map_or_else(
+            || compare_values("trials of other rudder angles and speeds: there are none", 0.0, 0.0),
+            |judged| compare_values(what, judged.foundation, judged.branch),
         ))
     }
 
     /// The base model refined without some trials; `None` if the others give no model.
-    fn refitted(&self, held_out: Vec<usize>) -> Option<HeldOutFold> {
-        let Foundation { request, trials, .. } = *self.foundation;
+    fn refit_without(&self, held_out: Vec<usize>) -> Option<HeldOutFold> {
+        let CorrectionBase { request, trials, .. } = *self.foundation;
         // The others are fitted by the same request, with nothing held out.
         let others = trials.iter().enumerate().filter(|(place, _)| !held_out.contains(place));
         let others: Vec<&Trial> = others.map(|(_, trial)| *trial).collect();
-        let settings = Settings { held_out: Vec::new(), ..request.settings.clone() };
-        let request = Request { trials: &others, settings: &settings, ..request };
-        let foundation = fit_model(&request).ok()?.foundation();
+        let settings = RefinementSettings { held_out: Vec::new(), ..request.settings.clone() };
+        let request = RefinementSpec { trials: &others, settings: &settings, ..request };
+        let foundation = fit_model(&request).ok()?.without_correction();
         Some(HeldOutFold { foundation, held_out })
     }
 }
 
 /// Checks that the gain on trials held out at random is significant (95 %).
-fn level(tried: Option<&TriedKind>, trials: usize) -> BranchCheck {
+fn check_significance(tried: Option<&KindEvaluation>, trials: usize) -> BranchCheck {
     let what = "trials held out, sure to 95 %";
     tried.map_or_else(
-        || check(what, 0.0, f64::MAX),
+        || compare_values(what, 0.0, f64::MAX),
         |tried| {
-            let sure = student(trials.max(2) - 1) * tried.standard_error;
-            check(what, tried.foundation, tried.branch + sure)
+            let sure = student_quantile(trials.max(2) - 1) * tried.standard_error;
+            compare_values(what, tried.foundation, tried.branch + sure)
         },
     )
 }
 
 /// The check that an error or count with the correction is not above the one without it.
-fn check(what: &str, foundation: f64, branch: f64) -> BranchCheck {
+fn compare_values(what: &str, foundation: f64, branch: f64) -> BranchCheck {
     let passed = branch <= foundation;
     BranchCheck { what: what.to_owned(), foundation, branch, passed }
 }
 
 /// A check as part of a sentence.
-fn words(check: &BranchCheck) -> String {
+fn describe_check(check: &BranchCheck) -> String {
     let BranchCheck { what, foundation, branch, passed } = check;
     let end = if *passed { "" } else { ": it is not taken" };
     format!("; {what}: {branch:.3e} with it and {foundation:.3e} without{end}")

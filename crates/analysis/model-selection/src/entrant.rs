@@ -5,8 +5,8 @@ use std::sync::Arc;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Vessel, Zoo};
 
-use sistership_identification::refine::{Prior, Settings};
-use sistership_priors::transfer::{approach_of, blank};
+use sistership_identification::refine::{Prior, RefinementSettings};
+use sistership_priors::transfer::{blank_model, trial_approach};
 
 /// General laws, which belong to no ship.
 const GENERAL: [&str; 3] = ["low-speed", "abkowitz", "abkowitz-roll"];
@@ -17,7 +17,7 @@ pub(super) const POPULATION_LAW: &str = "low-speed";
 
 /// A candidate: a source, or none, with the law to be fitted.
 #[derive(Debug, Clone)]
-pub struct Entrant {
+pub struct SelectionCandidate {
     /// Starting point of the fit; without coefficients if there is no source.
     pub source: Model,
     /// Law of the source; none if there is no source.
@@ -25,12 +25,12 @@ pub struct Entrant {
     /// The law to be fitted.
     pub law: Arc<Law>,
     /// Prior of the coefficients.
-    pub held_by: HeldBy,
+    pub held_by: CandidatePrior,
 }
 
 /// Prior of a candidate's coefficients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum HeldBy {
+pub enum CandidatePrior {
     /// The source.
     Source,
     /// The estimate from the ship's particulars in place of the source ([`Prior::Mixture`] at its
@@ -40,7 +40,7 @@ pub enum HeldBy {
     Population,
 }
 
-impl Entrant {
+impl SelectionCandidate {
     /// Returns the name for reports.
     pub fn name(&self) -> String {
         let source = self.source_name().unwrap_or("no source");
@@ -50,28 +50,32 @@ impl Entrant {
     /// Returns the source's name; `None` if only the trials determine the model.
     pub fn source_name(&self) -> Option<&str> {
         let name = match self.held_by {
-            HeldBy::Source => &self.source.name,
-            HeldBy::Estimate => "estimate",
-            HeldBy::Population => "population",
+            CandidatePrior::Source => &self.source.name,
+            CandidatePrior::Estimate => "estimate",
+            CandidatePrior::Population => "population",
         };
         self.source_law.as_ref().map(|_| name)
     }
 
     /// Returns the settings by which it is fitted.
-    pub fn settings(&self, settings: &Settings) -> Settings {
+    pub fn candidate_settings(&self, settings: &RefinementSettings) -> RefinementSettings {
         match self.held_by {
-            HeldBy::Source => settings.clone(),
-            HeldBy::Estimate => {
-                Settings { prior: Prior::Mixture, mixture_positions: vec![1.0], ..settings.clone() }
+            CandidatePrior::Source => settings.clone(),
+            CandidatePrior::Estimate => RefinementSettings {
+                prior: Prior::Mixture,
+                mixture_positions: vec![1.0],
+                ..settings.clone()
+            },
+            CandidatePrior::Population => {
+                RefinementSettings { prior: Prior::Population, ..settings.clone() }
             }
-            HeldBy::Population => Settings { prior: Prior::Population, ..settings.clone() },
         }
     }
 }
 
 /// Additional priors besides those of the sources.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Beside<'a> {
+pub struct AdditionalPriors<'a> {
     /// True to add the estimate from the ship's particulars.
     pub estimate: bool,
     /// Model at the states of whose manoeuvres a population is evaluated; none without a
@@ -81,50 +85,60 @@ pub struct Beside<'a> {
 
 /// Returns the candidates: each source with its own law and the general ones, estimate and
 /// population with the general laws if they are requested, and each general law without a source.
-pub fn entrants(
+pub fn list_candidates(
     zoo: &Zoo,
     target: &Vessel,
-    (sources, beside): (&[Model], Beside<'_>),
+    (sources, beside): (&[Model], AdditionalPriors<'_>),
     trials: &[&Trial],
-) -> Vec<Entrant> {
+) -> Vec<SelectionCandidate> {
     let general: Vec<Arc<Law>> = GENERAL
         .iter()
         .filter_map(|name| zoo.law(name).cloned())
         .filter(|law| is_measured(law, trials))
         .collect();
-    let with_source = sources.iter().flat_map(|source| of_source(zoo, source, &general, trials));
-    let approach = approach_of(trials);
+    let with_source =
+        sources.iter().flat_map(|source| source_candidates(zoo, source, &general, trials));
+    let approach = trial_approach(trials);
     // Without a source the trials alone determine the coefficients, from a model without any.
     let alone = general.iter().filter_map(|law| {
-        let source = blank(law, target, approach).ok()?;
-        let held_by = HeldBy::Source;
-        Some(Entrant { source, source_law: None, law: law.clone(), held_by })
+        let source = blank_model(law, target, approach).ok()?;
+        let held_by = CandidatePrior::Source;
+        Some(SelectionCandidate { source, source_law: None, law: law.clone(), held_by })
     });
     // The estimate alone is the end of a mixture, which requires a source of another ship.
     let others = || sources.iter().filter(|source| source.ship != target.name());
     let estimated = others().take(usize::from(beside.estimate)).flat_map(|source| {
-        let entrants = of_source(zoo, source, &general, trials).into_iter();
-        let is_general = |one: &Entrant| GENERAL.contains(&one.law.name.as_str());
-        entrants.filter(is_general).map(|one| Entrant { held_by: HeldBy::Estimate, ..one })
+        let entrants = source_candidates(zoo, source, &general, trials).into_iter();
+        let is_general = |one: &SelectionCandidate| GENERAL.contains(&one.law.name.as_str());
+        entrants
+            .filter(is_general)
+            .map(|one| SelectionCandidate { held_by: CandidatePrior::Estimate, ..one })
     });
     let population = beside.population.into_iter().flat_map(|source| {
-        let entrants = of_source(zoo, source, &general, trials).into_iter();
-        let is_theirs = |one: &Entrant| one.law.name == POPULATION_LAW;
-        entrants.filter(is_theirs).map(|one| Entrant { held_by: HeldBy::Population, ..one })
+        let entrants = source_candidates(zoo, source, &general, trials).into_iter();
+        let is_theirs = |one: &SelectionCandidate| one.law.name == POPULATION_LAW;
+        entrants
+            .filter(is_theirs)
+            .map(|one| SelectionCandidate { held_by: CandidatePrior::Population, ..one })
     });
     with_source.chain(estimated).chain(population).chain(alone).collect()
 }
 
 /// Candidates of one source: its own law and the general ones, as far as they are measured.
-fn of_source(zoo: &Zoo, source: &Model, general: &[Arc<Law>], trials: &[&Trial]) -> Vec<Entrant> {
+fn source_candidates(
+    zoo: &Zoo,
+    source: &Model,
+    general: &[Arc<Law>],
+    trials: &[&Trial],
+) -> Vec<SelectionCandidate> {
     let Some(own) = zoo.law(&source.law) else { return Vec::new() };
     let others = general.iter().filter(|law| law.name != own.name);
     let laws = std::iter::once(own).filter(|law| is_measured(law, trials)).chain(others);
-    let one = |law: &Arc<Law>| Entrant {
+    let one = |law: &Arc<Law>| SelectionCandidate {
         source: source.clone(),
         source_law: Some(own.clone()),
         law: law.clone(),
-        held_by: HeldBy::Source,
+        held_by: CandidatePrior::Source,
     };
     laws.map(one).collect()
 }
@@ -141,26 +155,29 @@ mod tests {
 
     #[test]
     fn estimate_and_population_enter_beside_a_source_of_another_ship() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let target = zoo.vessel("kcs").unwrap();
-        let models = ["kcs", "mariner"].map(|name| zoo.model(name).unwrap());
-        let beside = Beside { estimate: true, population: Some(&models[1]) };
+        let models = ["kcs", "mariner"].map(|name| zoo.find_model(name).unwrap());
+        let beside = AdditionalPriors { estimate: true, population: Some(&models[1]) };
         let held = |sources: &[Model], beside, by| {
-            let all = entrants(&zoo, target, (sources, beside), &[]);
+            let all = list_candidates(&zoo, target, (sources, beside), &[]);
             all.into_iter().filter(|one| one.held_by == by).collect::<Vec<_>>()
         };
-        for by in [HeldBy::Estimate, HeldBy::Population] {
-            assert!(held(&models, Beside::default(), by).is_empty());
+        for by in [CandidatePrior::Estimate, CandidatePrior::Population] {
+            assert!(held(&models, AdditionalPriors::default(), by).is_empty());
             let found = held(&models, beside, by);
             assert!(!found.is_empty() && found.iter().all(|one| one.source.ship == "mariner"));
         }
-        assert!(held(&models[..1], beside, HeldBy::Estimate).is_empty());
-        let estimate = &held(&models, beside, HeldBy::Estimate)[0];
+        assert!(held(&models[..1], beside, CandidatePrior::Estimate).is_empty());
+        let estimate = &held(&models, beside, CandidatePrior::Estimate)[0];
         assert!(estimate.name().starts_with("estimate, "), "{}", estimate.name());
-        let settings = estimate.settings(&Settings::default());
+        let settings = estimate.candidate_settings(&RefinementSettings::default());
         assert_eq!((settings.prior, settings.mixture_positions), (Prior::Mixture, vec![1.0]));
-        let population = held(&models, beside, HeldBy::Population);
+        let population = held(&models, beside, CandidatePrior::Population);
         assert_eq!(population.iter().map(|one| &*one.law.name).collect::<Vec<_>>(), ["low-speed"]);
-        assert_eq!(population[0].settings(&Settings::default()).prior, Prior::Population);
+        assert_eq!(
+            population[0].candidate_settings(&RefinementSettings::default()).prior,
+            Prior::Population
+        );
     }
 }

@@ -10,21 +10,24 @@ const NEAR: f64 = 0.9;
 /// Returns sets of trials that are held out together: those of the largest rudder angles, of the
 /// smallest, of the highest approach speeds and of the lowest. A set that would leave less than
 /// half of the trials is omitted: these trials are then of one kind.
-pub(super) fn extremes(trials: &[&Trial]) -> Vec<Vec<usize>> {
+pub(super) fn extreme_trials(trials: &[&Trial]) -> Vec<Vec<usize>> {
     // Both lists have a value for every trial, or the quantity is not compared at all.
     let rudder: Option<Vec<f64>> = trials.iter().map(|trial| largest_rudder(trial)).collect();
-    let speed: Option<Vec<f64>> = trials.iter().map(|trial| approach(trial)).collect();
+    let speed: Option<Vec<f64>> = trials.iter().map(|trial| approach_speed(trial)).collect();
     let sets = [rudder, speed].into_iter().flatten().flat_map(|values| {
         let most = values.iter().copied().fold(0.0, f64::max);
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-        [at(&values, |value| value > NEAR * most), at(&values, |value| value * NEAR < least)]
+        [
+            extreme_places(&values, |value| value > NEAR * most),
+            extreme_places(&values, |value| value * NEAR < least),
+        ]
     });
     // At least half of the trials remain for the fit.
     sets.filter(|set| !set.is_empty() && 2 * set.len() <= trials.len()).collect()
 }
 
 /// Places of the values that are extreme.
-fn at(values: &[f64], is_extreme: impl Fn(f64) -> bool) -> Vec<usize> {
+fn extreme_places(values: &[f64], is_extreme: impl Fn(f64) -> bool) -> Vec<usize> {
     (0..values.len()).filter(|place| is_extreme(values[*place])).collect()
 }
 
@@ -35,7 +38,7 @@ fn largest_rudder(trial: &Trial) -> Option<f64> {
 }
 
 /// Speed at the beginning of a trial, m/s.
-fn approach(trial: &Trial) -> Option<f64> {
+fn approach_speed(trial: &Trial) -> Option<f64> {
     trial.channel(Channel::U)?.first().map(|speed| speed.abs())
 }
 
@@ -56,7 +59,7 @@ mod tests {
                 .into();
         let all: Vec<&Trial> = all.iter().collect();
         let expected: [&[usize]; 3] = [&[3, 4], &[0], &[5]];
-        assert_eq!(extremes(&all), expected, "most trials have the lowest speed");
-        assert_eq!(extremes(&all[1..3]), Vec::<Vec<usize>>::new());
+        assert_eq!(extreme_trials(&all), expected, "most trials have the lowest speed");
+        assert_eq!(extreme_trials(&all[1..3]), Vec::<Vec<usize>>::new());
     }
 }

@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-use sistership_identification::refine::Method;
+use sistership_identification::refine::EstimationMethod;
 use sistership_learned::BranchChoice;
 
 /// Stage of the selection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Rung {
+pub enum SelectionStage {
     /// The transferred source.
     CarriedOver,
     /// The weak form.
@@ -17,25 +17,25 @@ pub enum Rung {
     Trajectory,
 }
 
-impl Rung {
+impl SelectionStage {
     /// Returns the estimator by which candidates are evaluated at the stage.
-    pub fn method(self) -> Method {
+    pub fn method(self) -> EstimationMethod {
         match self {
-            Self::CarriedOver | Self::Weak => Method::Weak,
-            Self::Trajectory => Method::Trajectory,
+            Self::CarriedOver | Self::Weak => EstimationMethod::Weak,
+            Self::Trajectory => EstimationMethod::Trajectory,
         }
     }
 }
 
 /// One candidate at one stage.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Line {
+pub struct ReportLine {
     /// Source; none if only the trials determine the model.
     pub source: Option<String>,
     /// The law.
     pub law: String,
     /// Stage.
-    pub rung: Rung,
+    pub rung: SelectionStage,
     /// Coefficients fitted.
     pub coefficients: usize,
     /// Standardised mean squared error on held-out manoeuvres, the geometric mean over restart
@@ -60,17 +60,17 @@ pub struct Line {
 
 /// All evaluated candidates, in the order of the stages.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Ladder {
+pub struct SelectionReport {
     /// Evaluated candidates.
-    pub lines: Vec<Line>,
+    pub lines: Vec<ReportLine>,
     /// Choice of a learned correction for the chosen model; none if it was not requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub branch: Option<BranchChoice>,
 }
 
-impl Ladder {
+impl SelectionReport {
     /// Returns a sentence that compares the reference's error with that of the chosen candidate.
-    pub fn reference(&self) -> String {
+    pub fn reference_summary(&self) -> String {
         let Some(line) = self.lines.iter().find(|line| line.reference) else {
             return "Reference: no ship is eligible as a source.".to_owned();
         };

@@ -8,25 +8,32 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::entrant::{Entrant, HeldBy};
-use crate::ladder::Rung;
-use crate::taken::{Winner, taken};
+use crate::entrant::{CandidatePrior, SelectionCandidate};
+use crate::ladder::SelectionStage;
+use crate::taken::{SelectedCandidate, select_candidate};
 use crate::thresholds::SEARCH;
-use crate::tried::{Search, Tried, chosen_of, on_rung, request, ridge_of, settings_on, weighed_on};
+use crate::tried::{
+    CandidateSearch, EvaluatedCandidate, candidate_request, chosen_place, evaluate_candidate,
+    last_ridge, stage_evaluation, stage_settings,
+};
 use sistership_assessment::uncertainty::Sampling;
 use sistership_identification::refine::{
-    MonotoneProgress, Progress, RefineError, Settings, SourceEnvelopes, Weighed, refine_wanted,
+    CandidateEvaluation, MonotoneProgress, Progress, RefineError, RefinementSettings,
+    SourceEnvelopes, refine_if_wanted,
 };
-use sistership_priors::transfer::approach_of;
+use sistership_priors::transfer::trial_approach;
 
 /// Returns the best candidate and estimator with its refinement.
 ///
 /// # Errors
 /// Returns an error if it was cancelled, a setting is refused, or nothing could be simulated to its
 /// end.
-pub fn search(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
-    let settings = searched_by(search);
-    climbed(&Search { settings: &settings, ..*search }, progress)
+pub fn search_candidates(
+    search: &CandidateSearch<'_>,
+    progress: Progress<'_>,
+) -> Result<SelectedCandidate, RefineError> {
+    let settings = search_settings(search);
+    run_stages(&CandidateSearch { settings: &settings, ..*search }, progress)
 }
 
 /// Default number of samples on which a search learns the noise model.
@@ -35,12 +42,12 @@ pub fn calibration_samples() -> usize {
 }
 
 /// The settings of the search: the requested ones with the defaults of the search.
-fn searched_by(search: &Search<'_>) -> Settings {
-    let (settings, fitted) = (search.settings, search.fitted());
-    let length_s = search.target.particular("lpp_m").zip(approach_of(&fitted));
+fn search_settings(search: &CandidateSearch<'_>) -> RefinementSettings {
+    let (settings, fitted) = (search.settings, search.fitted_trials());
+    let length_s = search.target.particular("lpp_m").zip(trial_approach(&fitted));
     let few = fitted.len() < SEARCH.few;
     let lengths_s = |lengths: f64| length_s.map(|(l, approach)| lengths * l / approach.speed_m_s);
-    Settings {
+    RefinementSettings {
         restart_s: settings.restart_s.or(lengths_s(SEARCH.restart)),
         longer_restarts_s: longer_restarts_s(search, &lengths_s),
         smoothing_s: settings.smoothing_s.or(lengths_s(SEARCH.smoothing)),
@@ -66,8 +73,11 @@ fn searched_by(search: &Search<'_>) -> Settings {
 /// The longer restart interval, at which a bias shows: longer than every trial, so that each is
 /// simulated as a whole; or the length of parts if some laws have trials held out in parts, so that
 /// all candidates have the same interval.
-fn longer_restarts_s(search: &Search<'_>, lengths_s: &dyn Fn(f64) -> Option<f64>) -> Vec<f64> {
-    let (settings, fitted) = (search.settings, search.fitted());
+fn longer_restarts_s(
+    search: &CandidateSearch<'_>,
+    lengths_s: &dyn Fn(f64) -> Option<f64>,
+) -> Vec<f64> {
+    let (settings, fitted) = (search.settings, search.fitted_trials());
     if !settings.longer_restarts_s.is_empty() || settings.in_parts || fitted.len() < SEARCH.few {
         return settings.longer_restarts_s.clone();
     }
@@ -81,16 +91,19 @@ fn longer_restarts_s(search: &Search<'_>, lengths_s: &dyn Fn(f64) -> Option<f64>
 }
 
 /// Passes the candidates through the stages and selects one.
-fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, RefineError> {
+fn run_stages(
+    search: &CandidateSearch<'_>,
+    progress: Progress<'_>,
+) -> Result<SelectedCandidate, RefineError> {
     let progress = MonotoneProgress::new(progress);
-    let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
+    let progress: Progress<'_> = &|fraction, what| progress.report_fraction(fraction, what);
     let (mut tried, known) = (Vec::new(), SourceEnvelopes::default());
-    let which = |is: &dyn Fn(&Entrant) -> bool| -> Vec<usize> {
+    let which = |is: &dyn Fn(&SelectionCandidate) -> bool| -> Vec<usize> {
         (0..search.entrants.len()).filter(|entrant| is(&search.entrants[*entrant])).collect()
     };
     let mut alone = which(&|entrant| entrant.source_law.is_none());
-    let population = which(&|entrant| entrant.held_by == HeldBy::Population);
-    carried_over((search, &known), &mut tried, progress)?;
+    let population = which(&|entrant| entrant.held_by == CandidatePrior::Population);
+    evaluate_transferred((search, &known), &mut tried, progress)?;
     let mut next = leading_by_law(search, &tried);
     // Parts of one manoeuvre have no information on other manoeuvres, and without a source there is
     // no other information.
@@ -102,22 +115,29 @@ fn climbed(search: &Search<'_>, progress: Progress<'_>) -> Result<Winner, Refine
     // its scatter describes well how far a ship may differ.
     next.extend(population);
     // The reference is always evaluated, for the report.
-    next.extend(search.reference().filter(|reference| !next.contains(reference)));
-    climb((search, &known), Rung::Weak, &next, (0.1, 0.4), &mut tried, progress)?;
-    let next = leading(search, &tried);
-    descend((search, &known), &next, (0.5, 0.4), &mut tried, progress)?;
-    taken(search, tried, progress)
+    next.extend(search.reference_candidate().filter(|reference| !next.contains(reference)));
+    evaluate_at_stage(
+        (search, &known),
+        SelectionStage::Weak,
+        &next,
+        (0.1, 0.4),
+        &mut tried,
+        progress,
+    )?;
+    let next = leading_candidates(search, &tried);
+    fit_trajectories((search, &known), &next, (0.5, 0.4), &mut tried, progress)?;
+    select_candidate(search, tried, progress)
 }
 
 /// Evaluates each source as transferred, by its own law if that is among the fitted ones; by
 /// another law, which only approximates it, if its own one cannot be simulated.
-fn carried_over(
-    (search, known): (&Search<'_>, &SourceEnvelopes),
-    tried: &mut Vec<Tried>,
+fn evaluate_transferred(
+    (search, known): (&CandidateSearch<'_>, &SourceEnvelopes),
+    tried: &mut Vec<EvaluatedCandidate>,
     progress: Progress<'_>,
 ) -> Result<(), RefineError> {
     let mut by_source: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-    let as_it_is = |entrant: &&Entrant| entrant.held_by != HeldBy::Population;
+    let as_it_is = |entrant: &&SelectionCandidate| entrant.held_by != CandidatePrior::Population;
     for (place, entrant) in search.entrants.iter().enumerate().filter(|(_, e)| as_it_is(e)) {
         entrant.source_name().into_iter().for_each(|source| {
             by_source.entry(source).or_default().push(place);
@@ -128,7 +148,14 @@ fn carried_over(
         let (begin, each) = (share * k as f64, share / entrants.len() as f64);
         for (j, entrant) in entrants.into_iter().enumerate() {
             let span = (begin + each * j as f64, each);
-            climb((search, known), Rung::CarriedOver, &[entrant], span, tried, progress)?;
+            evaluate_at_stage(
+                (search, known),
+                SelectionStage::CarriedOver,
+                &[entrant],
+                span,
+                tried,
+                progress,
+            )?;
             if tried.last().is_some_and(|one| one.weighed.error.is_some()) {
                 break;
             }
@@ -139,12 +166,12 @@ fn carried_over(
 
 /// Evaluates candidates at a stage in parallel; progress begins at a fraction of the whole and
 /// takes a span of it.
-fn climb(
-    (search, known): (&Search<'_>, &SourceEnvelopes),
-    rung: Rung,
+fn evaluate_at_stage(
+    (search, known): (&CandidateSearch<'_>, &SourceEnvelopes),
+    rung: SelectionStage,
     entrants: &[usize],
     (begin, span): (f64, f64),
-    tried: &mut Vec<Tried>,
+    tried: &mut Vec<EvaluatedCandidate>,
     progress: Progress<'_>,
 ) -> Result<(), RefineError> {
     // Only a counter for progress: no other data depend on it, so that relaxed ordering suffices.
@@ -155,12 +182,12 @@ fn climb(
             let share = done.load(Ordering::Relaxed) as f64 / entrants.len() as f64;
             progress(begin + span * share, &format!("{named}: {what}"))
         };
-        let settings = search.entrants[entrant].settings(search.settings);
-        let tried = weighed_on((search, known), (entrant, rung), &settings, &told)?;
+        let settings = search.entrants[entrant].candidate_settings(search.settings);
+        let tried = evaluate_candidate((search, known), (entrant, rung), &settings, &told)?;
         done.fetch_add(1, Ordering::Relaxed);
         Ok(tried)
     };
-    let weighed: Result<Vec<Tried>, RefineError> =
+    let weighed: Result<Vec<EvaluatedCandidate>, RefineError> =
         // One task a candidate; results keep the candidates' order.
         entrants.par_iter().with_max_len(1).map(one).collect();
     tried.extend(weighed?);
@@ -170,11 +197,11 @@ fn climb(
 /// Fits trajectories, each candidate within the callback of the one before: the data that a
 /// candidate has prepared are kept until all have been evaluated, and become its refinement if it
 /// is the chosen one.
-fn descend(
-    (search, known): (&Search<'_>, &SourceEnvelopes),
+fn fit_trajectories(
+    (search, known): (&CandidateSearch<'_>, &SourceEnvelopes),
     entrants: &[usize],
     (begin, span): (f64, f64),
-    tried: &mut Vec<Tried>,
+    tried: &mut Vec<EvaluatedCandidate>,
     progress: Progress<'_>,
 ) -> Result<(), RefineError> {
     let Some((&entrant, others)) = entrants.split_first() else { return Ok(()) };
@@ -183,28 +210,36 @@ fn descend(
     let named = search.entrants[entrant].name();
     let told =
         |fraction: f64, what: &str| progress(begin + share * fraction, &format!("{named}: {what}"));
-    let own = search.entrants[entrant].settings(search.settings);
-    let settings = settings_on(&own, Rung::Trajectory, ridge_of(tried, entrant));
+    let own = search.entrants[entrant].candidate_settings(search.settings);
+    let settings = stage_settings(&own, SelectionStage::Trajectory, last_ridge(tried, entrant));
     // The candidate's place among all, by which it recognises itself as the chosen one.
     let (begun, place) = (Instant::now(), tried.len());
-    let note = |tried: &mut Vec<Tried>, weighed: Weighed| {
-        let (cost_s, rung) = (begun.elapsed().as_secs_f64(), Rung::Trajectory);
+    let note = |tried: &mut Vec<EvaluatedCandidate>, weighed: CandidateEvaluation| {
+        let (cost_s, rung) = (begun.elapsed().as_secs_f64(), SelectionStage::Trajectory);
         let (refinement, roll_strength, refusal) = (None, None, None);
-        tried.push(Tried { entrant, rung, weighed, refinement, cost_s, roll_strength, refusal });
-        descend((search, known), others, rest, tried, progress)
+        tried.push(EvaluatedCandidate {
+            entrant,
+            rung,
+            weighed,
+            refinement,
+            cost_s,
+            roll_strength,
+            refusal,
+        });
+        fit_trajectories((search, known), others, rest, tried, progress)
     };
     // `note` evaluates the other candidates by recursion before this one learns whether it is
     // chosen.
-    let is_taken = |all: &[Weighed]| {
-        note(tried, on_rung(Rung::Trajectory, Ok(all.to_vec()))?)?;
-        Ok(chosen_of(search, tried) == Some(place))
+    let is_taken = |all: &[CandidateEvaluation]| {
+        note(tried, stage_evaluation(SelectionStage::Trajectory, Ok(all.to_vec()))?)?;
+        Ok(chosen_place(search, tried) == Some(place))
     };
-    let request = request(search, entrant, &settings);
-    let made = refine_wanted((&request, known), is_taken, &told);
+    let request = candidate_request(search, entrant, &settings);
+    let made = refine_if_wanted((&request, known), is_taken, &told);
     match made {
         Ok((_, refinement)) => tried[place].refinement = refinement,
         Err(error) => {
-            let refused = on_rung(Rung::Trajectory, Err(error))?;
+            let refused = stage_evaluation(SelectionStage::Trajectory, Err(error))?;
             // The fit may have failed before or after its evaluation was stored.
             match tried.get_mut(place) {
                 Some(weighed) => weighed.weighed = refused,
@@ -218,7 +253,7 @@ fn descend(
 /// Candidates with their errors at the shortest restart interval, the least first; those that
 /// diverged are omitted. Errors in whole trials are not used here, since the next stage may correct
 /// them.
-fn ordered<'a>(tried: impl Iterator<Item = &'a Tried>) -> Vec<(usize, f64)> {
+fn order_by_error<'a>(tried: impl Iterator<Item = &'a EvaluatedCandidate>) -> Vec<(usize, f64)> {
     let sailed = tried.filter(|one| one.weighed.error.is_some());
     let mut order: Vec<(usize, f64)> =
         sailed.filter_map(|one| Some((one.entrant, one.weighed.shortest?))).collect();
@@ -228,8 +263,8 @@ fn ordered<'a>(tried: impl Iterator<Item = &'a Tried>) -> Vec<(usize, f64)> {
 
 /// The leading transferred sources of each law, one in [`SEARCH`]`.share`: the error of a
 /// transferred source shows which source suits a law best, but not how well a law can be fitted.
-fn leading_by_law(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
-    let order = ordered(tried.iter());
+fn leading_by_law(search: &CandidateSearch<'_>, tried: &[EvaluatedCandidate]) -> Vec<usize> {
+    let order = order_by_error(tried.iter());
     let sources = order.iter().filter_map(|(entrant, _)| search.entrants[*entrant].source_name());
     let mut by_law: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for source in sources {
@@ -249,11 +284,12 @@ fn leading_by_law(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
 /// The leading candidates in weak form: trajectories seldom gain more than
 /// [`SEARCH`]`.trajectory_gain`. A population, which is near the least error wherever other ships
 /// determine the law, does not displace any of the others.
-fn leading(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
-    let order = ordered(tried.iter().filter(|one| one.rung == Rung::Weak));
+fn leading_candidates(search: &CandidateSearch<'_>, tried: &[EvaluatedCandidate]) -> Vec<usize> {
+    let order = order_by_error(tried.iter().filter(|one| one.rung == SelectionStage::Weak));
     let least = order.first().map_or(0.0, |(_, error)| *error);
     let near = order.into_iter().filter(|(_, error)| *error <= SEARCH.trajectory_gain * least);
-    let is_population = |entrant: &usize| search.entrants[*entrant].held_by == HeldBy::Population;
+    let is_population =
+        |entrant: &usize| search.entrants[*entrant].held_by == CandidatePrior::Population;
     let (population, others): (Vec<usize>, Vec<usize>) =
         near.map(|(entrant, _)| entrant).partition(is_population);
     others.into_iter().take(SEARCH.trajectories).chain(population).collect()
@@ -263,21 +299,26 @@ fn leading(search: &Search<'_>, tried: &[Tried]) -> Vec<usize> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use sistership_identification::testing::{mariner, trials};
+    use sistership_identification::testing::{mariner_model, simulated_trials};
     use sistership_model::Zoo;
     use sistership_model::trial::Trial;
 
     #[test]
     fn whole_trials_are_simulated_where_they_are_held_out_whole() {
-        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
-        let sailed = trials(&model, &law, 0.0);
+        let (zoo, (model, law)) = (Zoo::load_embedded().unwrap(), mariner_model());
+        let sailed = simulated_trials(&model, &law, 0.0);
         let target = zoo.vessel("mariner").unwrap();
         let intervals = |count: usize| {
             let trials: Vec<&Trial> = sailed.iter().take(count).collect();
-            let settings = &Settings::default();
-            let search =
-                Search { target, entrants: &[], trials: &trials, population: &[], settings };
-            let searched = searched_by(&search);
+            let settings = &RefinementSettings::default();
+            let search = CandidateSearch {
+                target,
+                entrants: &[],
+                trials: &trials,
+                population: &[],
+                settings,
+            };
+            let searched = search_settings(&search);
             (searched.restart_s.unwrap(), searched.longer_restarts_s)
         };
         let (shortest_s, longer_s) = intervals(4);

@@ -5,20 +5,22 @@ use std::collections::BTreeMap;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel, Zoo};
 
-use crate::branch::branch;
-use crate::entrant::{Beside, Entrant, HeldBy, entrants};
-use crate::foundation::Foundation;
-use crate::ladder::Ladder;
-use crate::population::{asked_at, population};
-use crate::search::search;
+use crate::branch::choose_correction;
+use crate::entrant::{AdditionalPriors, CandidatePrior, SelectionCandidate, list_candidates};
+use crate::foundation::CorrectionBase;
+use crate::ladder::SelectionReport;
+use crate::population::{envelope_source, similar_population};
+use crate::search::search_candidates;
 use crate::thresholds::SEARCH;
-use crate::tried::{Search, request};
-use sistership_identification::refine::{Member, Progress, RefineError, Refinement, Settings};
-use sistership_priors::source::{Similarity, similar_with};
+use crate::tried::{CandidateSearch, candidate_request};
+use sistership_identification::refine::{
+    PopulationShip, Progress, RefineError, Refinement, RefinementSettings,
+};
+use sistership_priors::source::{SimilarityRanking, rank_similar_with};
 
 /// Request of a default refinement.
 #[derive(Debug, Clone, Copy)]
-pub struct Asked<'a> {
+pub struct StartRequest<'a> {
     /// Ships and laws.
     pub zoo: &'a Zoo,
     /// The ship.
@@ -28,22 +30,22 @@ pub struct Asked<'a> {
     /// All trials.
     pub trials: &'a [&'a Trial],
     /// Settings except the method; trials that they hold out are not used.
-    pub settings: &'a Settings,
+    pub settings: &'a RefinementSettings,
 }
 
 /// The selected source, law and method, with the evidence for them.
 #[derive(Debug, Clone)]
-pub struct Start {
+pub struct StartSelection {
     /// The source and the law to fit.
-    pub entrant: Entrant,
+    pub entrant: SelectionCandidate,
     /// Ships of the population that is its prior; empty for other priors.
-    pub population: Vec<Member>,
+    pub population: Vec<PopulationShip>,
     /// Settings that name the method.
-    pub settings: Settings,
+    pub settings: RefinementSettings,
     /// Ranking of the ships by similarity.
-    pub similarity: Similarity,
+    pub similarity: SimilarityRanking,
     /// Selection report.
-    pub ladder: Ladder,
+    pub ladder: SelectionReport,
     /// The refinement itself.
     pub refinement: Refinement,
 }
@@ -53,44 +55,57 @@ pub struct Start {
 /// # Errors
 /// Returns an error if it was cancelled, a setting is refused, or no candidate could be simulated
 /// to its end.
-pub fn best_start(asked: &Asked<'_>, progress: Progress<'_>) -> Result<Start, RefineError> {
-    let Asked { zoo, target, champions, trials, settings } = *asked;
+pub fn best_start(
+    asked: &StartRequest<'_>,
+    progress: Progress<'_>,
+) -> Result<StartSelection, RefineError> {
+    let StartRequest { zoo, target, champions, trials, settings } = *asked;
     let held_out = &settings.held_out;
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
-    let similarity = similar_with(zoo, target, None, &fitted, champions);
-    let population = population(zoo, target);
+    let similarity = rank_similar_with(zoo, target, None, &fitted, champions);
+    let population = similar_population(zoo, target);
     // With few trials the estimate from particulars is a candidate as well.
-    let beside = Beside {
+    let beside = AdditionalPriors {
         estimate: fitted.len() < SEARCH.few,
-        population: asked_at(&population, &similarity),
+        population: envelope_source(&population, &similarity),
     };
-    let entrants = entrants(zoo, target, (&sources(asked, &similarity), beside), &fitted);
-    let all = Search { target, entrants: &entrants, trials, population: &population, settings };
-    let winner = search(&all, progress)?;
-    let foundation = Foundation {
-        request: request(&all, winner.entrant, &winner.settings),
+    let entrants =
+        list_candidates(zoo, target, (&source_models(asked, &similarity), beside), &fitted);
+    let all =
+        CandidateSearch { target, entrants: &entrants, trials, population: &population, settings };
+    let winner = search_candidates(&all, progress)?;
+    let foundation = CorrectionBase {
+        request: candidate_request(&all, winner.entrant, &winner.settings),
         refinement: &winner.refinement,
         folds: &winner.folds,
         trials: &fitted,
     };
-    let branch = Some(branch(&foundation, progress)?);
+    let branch = Some(choose_correction(&foundation, progress)?);
     let (entrant, refinement) = (entrants[winner.entrant].clone(), winner.refinement);
-    let ladder = Ladder { branch, ..winner.ladder };
+    let ladder = SelectionReport { branch, ..winner.ladder };
     // The population is part of the recipe only if the chosen candidate depends on it.
-    let is_held = entrant.held_by == HeldBy::Population;
+    let is_held = entrant.held_by == CandidatePrior::Population;
     let population = if is_held { population } else { Vec::new() };
-    Ok(Start { entrant, population, settings: winner.settings, similarity, ladder, refinement })
+    Ok(StartSelection {
+        entrant,
+        population,
+        settings: winner.settings,
+        similarity,
+        ladder,
+        refinement,
+    })
 }
 
 /// Models of the first eligible ships: the version in use of a ship, else the published model. A
 /// file that cannot be read is skipped.
-fn sources(asked: &Asked<'_>, similarity: &Similarity) -> Vec<Model> {
+fn source_models(asked: &StartRequest<'_>, similarity: &SimilarityRanking) -> Vec<Model> {
     let model = |ship: &str, name: &str| match asked.champions.get(ship) {
         Some(champion) => Some(champion.clone()),
-        None => asked.zoo.model(name).ok(),
+        None => asked.zoo.find_model(name).ok(),
     };
-    let named =
-        similarity.eligible().filter_map(|ranked| Some((&ranked.ship, ranked.model.as_ref()?)));
+    let named = similarity
+        .eligible_sources()
+        .filter_map(|ranked| Some((&ranked.ship, ranked.model.as_ref()?)));
     named.filter_map(|(ship, name)| model(ship, name)).take(SEARCH.sources).collect()
 }

@@ -3,27 +3,28 @@
 use sistership_model::Law;
 
 use sistership_identification::refine::{
-    FoldModel, Progress, RefineError, Refinement, Settings, SourceEnvelopes, refine,
+    FoldModel, Progress, RefineError, Refinement, RefinementSettings, SourceEnvelopes, refine,
 };
 
 use crate::choice::standard_error;
-use crate::entrant::HeldBy;
-use crate::ladder::{Ladder, Line, Rung};
-use crate::sailed::unsailed_rudder;
+use crate::entrant::CandidatePrior;
+use crate::ladder::{ReportLine, SelectionReport, SelectionStage};
+use crate::sailed::simulation_fault;
 use crate::thresholds::SEARCH;
 use crate::tried::{
-    Search, Tried, chosen_of, request, ridge_of, settings_of, settings_on, weighed_on,
+    CandidateSearch, EvaluatedCandidate, candidate_request, chosen_place, evaluate_candidate,
+    last_ridge, ridge_settings, stage_settings,
 };
 
 /// The selected candidate, with the settings that give its refinement explicitly.
 #[derive(Debug, Clone)]
-pub struct Winner {
+pub struct SelectedCandidate {
     /// Place among the candidates.
     pub entrant: usize,
     /// Settings that name its method.
-    pub settings: Settings,
+    pub settings: RefinementSettings,
     /// Selection report.
-    pub ladder: Ladder,
+    pub ladder: SelectionReport,
     /// Refinement that these settings give.
     pub refinement: Refinement,
     /// The models of its folds.
@@ -38,30 +39,30 @@ pub struct Winner {
 ///
 /// # Errors
 /// Returns an error if it was cancelled, a setting is refused, or no candidate is left.
-pub(super) fn taken(
-    search: &Search<'_>,
-    mut tried: Vec<Tried>,
+pub(super) fn select_candidate(
+    search: &CandidateSearch<'_>,
+    mut tried: Vec<EvaluatedCandidate>,
     progress: Progress<'_>,
-) -> Result<Winner, RefineError> {
+) -> Result<SelectedCandidate, RefineError> {
     let mut spare = None;
     loop {
-        let Some(best) = chosen_of(search, &tried) else {
+        let Some(best) = chosen_place(search, &tried) else {
             return spare.ok_or_else(|| nothing_left(&tried));
         };
-        let settings = settings_that_give(search, &tried, best);
+        let settings = explicit_settings(search, &tried, best);
         let entrant = tried[best].entrant;
         let made = match tried[best].refinement.take() {
             Some(made) => Ok(made),
-            None => refined(search, (entrant, &settings), progress),
+            None => refine_candidate(search, (entrant, &settings), progress),
         };
-        let reason = match fitted(made, tried[best].rung)? {
+        let reason = match require_fitted(made, tried[best].rung)? {
             Err(reason) => reason,
             Ok(refinement) => {
                 let law = &search.entrants[entrant].law;
-                let unsailed = unsailed_rudder(&refinement.model, law, &search.fitted());
-                let ladder = ladder(search, &tried, best);
+                let unsailed = simulation_fault(&refinement.model, law, &search.fitted_trials());
+                let ladder = build_report(search, &tried, best);
                 let folds = tried[best].weighed.folds.clone();
-                let winner = Winner { entrant, settings, ladder, refinement, folds };
+                let winner = SelectedCandidate { entrant, settings, ladder, refinement, folds };
                 let Some(reason) = unsailed else { return Ok(winner) };
                 // The first model that only fails the additional records is used if no other one
                 // passes.
@@ -72,18 +73,18 @@ pub(super) fn taken(
         tried[best].refusal = Some(reason);
         // A refused weak form gets a successor with a stronger prior. Strengths only grow, so that
         // the loop ends.
-        tried.extend(held_more(search, &tried[best], progress)?);
+        tried.extend(refit_stronger(search, &tried[best], progress)?);
     }
 }
 
 /// The weak form of a refused candidate with a stronger prior, nearer to the prior's mean. `None`
 /// for another stage, or if no stronger prior is left.
-fn held_more(
-    search: &Search<'_>,
-    refused: &Tried,
+fn refit_stronger(
+    search: &CandidateSearch<'_>,
+    refused: &EvaluatedCandidate,
     progress: Progress<'_>,
-) -> Result<Option<Tried>, RefineError> {
-    let is_weak = refused.rung == Rung::Weak && search.settings.strengths.is_empty();
+) -> Result<Option<EvaluatedCandidate>, RefineError> {
+    let is_weak = refused.rung == SelectionStage::Weak && search.settings.strengths.is_empty();
     let Some((family, lambda)) = refused.weighed.ridge.filter(|_| is_weak) else {
         return Ok(None);
     };
@@ -93,13 +94,14 @@ fn held_more(
         return Ok(None);
     }
     let entrant = refused.entrant;
-    let own = search.entrants[entrant].settings(search.settings);
+    let own = search.entrants[entrant].candidate_settings(search.settings);
     let roll_strength = stronger_roll(&search.entrants[entrant].law, refused.roll_strength);
-    let settings = Settings { families: vec![family], strengths, roll_strength, ..own };
+    let settings = RefinementSettings { families: vec![family], strengths, roll_strength, ..own };
     let named = search.entrants[entrant].name();
     let told = |_: f64, what: &str| progress(0.9, &format!("{named}, held more: {what}"));
     let known = SourceEnvelopes::default();
-    weighed_on((search, &known), (entrant, Rung::Weak), &settings, &told).map(Some)
+    evaluate_candidate((search, &known), (entrant, SelectionStage::Weak), &settings, &told)
+        .map(Some)
 }
 
 /// Strength of roll's own prior after a refusal. It is relative to the likeliest by the trials,
@@ -110,47 +112,54 @@ fn stronger_roll(law: &Law, before: Option<f64>) -> Option<f64> {
 }
 
 /// The error that no candidate is left, with the reasons.
-fn nothing_left(tried: &[Tried]) -> RefineError {
-    let reason = |one: &'_ Tried| one.refusal.clone().or_else(|| one.weighed.reason.clone());
+fn nothing_left(tried: &[EvaluatedCandidate]) -> RefineError {
+    let reason =
+        |one: &'_ EvaluatedCandidate| one.refusal.clone().or_else(|| one.weighed.reason.clone());
     let reasons: Vec<String> = tried.iter().filter_map(reason).collect();
-    RefineError::diverged(reasons.iter().map(String::as_str))
+    RefineError::all_diverged(reasons.iter().map(String::as_str))
 }
 
 /// Settings that give an evaluated candidate explicitly: the method of its stage, and the strength
 /// of its weak form or of the one from which its trajectories start.
-fn settings_that_give(search: &Search<'_>, tried: &[Tried], place: usize) -> Settings {
+fn explicit_settings(
+    search: &CandidateSearch<'_>,
+    tried: &[EvaluatedCandidate],
+    place: usize,
+) -> RefinementSettings {
     let (entrant, rung) = (tried[place].entrant, tried[place].rung);
-    let own = search.entrants[entrant].settings(search.settings);
-    if rung == Rung::Weak {
-        let own = Settings { roll_strength: tried[place].roll_strength, ..own };
-        return settings_of(&own, tried[place].weighed.ridge);
+    let own = search.entrants[entrant].candidate_settings(search.settings);
+    if rung == SelectionStage::Weak {
+        let own = RefinementSettings { roll_strength: tried[place].roll_strength, ..own };
+        return ridge_settings(&own, tried[place].weighed.ridge);
     }
     // Only evaluations before the first trajectory: later ones may be weak forms with a stronger
     // prior.
     let below = tried.iter().position(|one| one.rung == rung).unwrap_or(0);
-    settings_on(&own, rung, ridge_of(&tried[..below], entrant))
+    stage_settings(&own, rung, last_ridge(&tried[..below], entrant))
 }
 
 /// The refinement of a candidate by some settings.
-fn refined(
-    search: &Search<'_>,
-    (entrant, settings): (usize, &Settings),
+fn refine_candidate(
+    search: &CandidateSearch<'_>,
+    (entrant, settings): (usize, &RefinementSettings),
     progress: Progress<'_>,
 ) -> Result<Refinement, RefineError> {
     let named = search.entrants[entrant].name();
     let told =
         |fraction: f64, what: &str| progress(0.9 + 0.1 * fraction, &format!("{named}: {what}"));
-    refine(&request(search, entrant, settings), &told)
+    refine(&candidate_request(search, entrant, settings), &told)
 }
 
 /// Returns a refinement in which something was fitted, or the reason (inner error) why there is
 /// none; a transferred source need not be fitted.
-fn fitted(
+fn require_fitted(
     made: Result<Refinement, RefineError>,
-    rung: Rung,
+    rung: SelectionStage,
 ) -> Result<Result<Refinement, String>, RefineError> {
     match made {
-        Ok(made) if rung != Rung::CarriedOver && made.is_source_kept() => Ok(Err(made.refusals())),
+        Ok(made) if rung != SelectionStage::CarriedOver && made.is_source_kept() => {
+            Ok(Err(made.refusal_reasons()))
+        }
         Ok(made) => Ok(Ok(made)),
         Err(error @ (RefineError::Cancelled | RefineError::Setting { .. })) => Err(error),
         Err(error) => Ok(Err(error.to_string())),
@@ -158,36 +167,47 @@ fn fitted(
 }
 
 /// The selection report with the place of the chosen candidate.
-fn ladder(search: &Search<'_>, tried: &[Tried], best: usize) -> Ladder {
+fn build_report(
+    search: &CandidateSearch<'_>,
+    tried: &[EvaluatedCandidate],
+    best: usize,
+) -> SelectionReport {
     let left = tried.iter().filter(|one| one.refusal.is_none());
     let least = left.filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
-    let reference = reference(search, tried);
+    let reference = reference_place(search, tried);
     let lines = tried.iter().enumerate();
-    let line =
-        |(k, one)| Line { reference: reference == Some(k), ..line(search, one, least, k == best) };
-    Ladder { lines: lines.map(line).collect(), branch: None }
+    let line = |(k, one)| ReportLine {
+        reference: reference == Some(k),
+        ..report_line(search, one, least, k == best)
+    };
+    SelectionReport { lines: lines.map(line).collect(), branch: None }
 }
 
 /// Place of the first fit of the reference.
-fn reference(search: &Search<'_>, tried: &[Tried]) -> Option<usize> {
-    let entrant = search.reference()?;
-    tried.iter().position(|one| one.entrant == entrant && one.rung == Rung::Weak)
+fn reference_place(search: &CandidateSearch<'_>, tried: &[EvaluatedCandidate]) -> Option<usize> {
+    let entrant = search.reference_candidate()?;
+    tried.iter().position(|one| one.entrant == entrant && one.rung == SelectionStage::Weak)
 }
 
 /// Line of the report for one evaluated candidate; `least` is the least error of all that were not
 /// refused.
-fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
+fn report_line(
+    search: &CandidateSearch<'_>,
+    tried: &EvaluatedCandidate,
+    least: f64,
+    chosen: bool,
+) -> ReportLine {
     let entrant = &search.entrants[tried.entrant];
     let ratio = tried.weighed.error.unwrap_or(f64::INFINITY) / least;
     let outcome = match chosen {
-        true if entrant.held_by == HeldBy::Population => {
+        true if entrant.held_by == CandidatePrior::Population => {
             "of what is alike, what other ships hold".to_owned()
         }
         true => "of what is alike, the least with five times its variance elsewhere".to_owned(),
         false => format!("{ratio:.2} times the least error"),
     };
     let reason = tried.refusal.clone().or_else(|| tried.weighed.reason.clone());
-    Line {
+    ReportLine {
         source: entrant.source_name().map(str::to_owned),
         law: entrant.law.name.clone(),
         rung: tried.rung,
@@ -206,18 +226,23 @@ fn line(search: &Search<'_>, tried: &Tried, least: f64, chosen: bool) -> Line {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::entrant::Entrant;
-    use sistership_identification::refine::{Family, Method, Request, Weighed};
-    use sistership_identification::testing::{mariner, trials, with};
+    use crate::entrant::SelectionCandidate;
+    use sistership_identification::refine::{
+        CandidateEvaluation, EstimationMethod, RefinementSpec, TermFamily,
+    };
+    use sistership_identification::testing::{
+        mariner_model, simulated_trials, with_scaled_coefficients,
+    };
     use sistership_model::Zoo;
 
     #[test]
     fn a_source_that_is_kept_is_not_what_was_chosen() {
-        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
-        let trials = trials(&model, &law, 0.0);
+        let (zoo, (model, law)) = (Zoo::load_embedded().unwrap(), mariner_model());
+        let trials = simulated_trials(&model, &law, 0.0);
         let trials: Vec<_> = trials.iter().collect();
-        let settings = Settings { method: Method::Weak, ..Settings::default() };
-        let request = Request {
+        let settings =
+            RefinementSettings { method: EstimationMethod::Weak, ..RefinementSettings::default() };
+        let request = RefinementSpec {
             target: zoo.vessel("mariner").unwrap(),
             source: &model,
             source_law: None,
@@ -228,36 +253,40 @@ mod tests {
         };
         let made = refine(&request, &|_, _| true).unwrap();
         assert!(made.is_source_kept(), "the trials are the source's own");
-        assert!(fitted(Ok(made.clone()), Rung::Weak).unwrap().is_err());
-        assert_eq!(fitted(Ok(made.clone()), Rung::CarriedOver).unwrap(), Ok(made));
-        assert!(fitted(Err(RefineError::Cancelled), Rung::Weak).is_err());
+        assert!(require_fitted(Ok(made.clone()), SelectionStage::Weak).unwrap().is_err());
+        assert_eq!(
+            require_fitted(Ok(made.clone()), SelectionStage::CarriedOver).unwrap(),
+            Ok(made)
+        );
+        assert!(require_fitted(Err(RefineError::Cancelled), SelectionStage::Weak).is_err());
     }
 
     #[test]
     fn the_reference_keeps_its_error_where_it_is_refused() {
-        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
+        let (zoo, (model, law)) = (Zoo::load_embedded().unwrap(), mariner_model());
         let source_law = Some(law.clone());
-        let alone = Entrant {
+        let alone = SelectionCandidate {
             source: model.clone(),
             source_law: None,
             law: law.clone(),
-            held_by: HeldBy::Source,
+            held_by: CandidatePrior::Source,
         };
-        let similar = Entrant { source: model, source_law, law, held_by: HeldBy::Source };
-        let search = Search {
+        let similar =
+            SelectionCandidate { source: model, source_law, law, held_by: CandidatePrior::Source };
+        let search = CandidateSearch {
             target: zoo.vessel("mariner").unwrap(),
             entrants: &[alone, similar],
             trials: &[],
             population: &[],
-            settings: &Settings::default(),
+            settings: &RefinementSettings::default(),
         };
-        let tried = |entrant, error, refusal: Option<&str>| Tried {
+        let tried = |entrant, error, refusal: Option<&str>| EvaluatedCandidate {
             entrant,
-            rung: Rung::Weak,
-            weighed: Weighed {
+            rung: SelectionStage::Weak,
+            weighed: CandidateEvaluation {
                 error: Some(error),
                 reason: None,
-                ..Weighed::refused(String::new())
+                ..CandidateEvaluation::with_refusal(String::new())
             },
             refinement: None,
             cost_s: 0.0,
@@ -265,18 +294,18 @@ mod tests {
             refusal: refusal.map(str::to_owned),
         };
         let all = [tried(0, 0.2, None), tried(1, 0.1, Some("does not sail"))];
-        let ladder = ladder(&search, &all, 0);
+        let ladder = build_report(&search, &all, 0);
         let line = &ladder.lines[1];
         assert!(line.reference && !line.chosen && !ladder.lines[0].reference);
         assert_eq!((line.error, line.reason.as_str()), (Some(0.1), "does not sail"));
         assert_eq!(ladder.lines[0].reason.split(' ').next(), Some("of"), "chosen");
-        let words = ladder.reference();
+        let words = ladder.reference_summary();
         assert!(words.contains("mariner/") && words.contains("0.50 times"), "{words}");
     }
 
     #[test]
     fn roll_is_held_more_with_every_refusal() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let law = |name: &str| zoo.law(name).unwrap();
         assert_eq!(stronger_roll(law("abkowitz"), None), None);
         let once = stronger_roll(law("abkowitz-roll"), None);
@@ -286,33 +315,46 @@ mod tests {
 
     #[test]
     fn what_cannot_be_taken_is_tried_nearer_to_its_source() {
-        let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
-        let trials = trials(&with(&model, |_| 1.1), &law, 0.001);
+        let (zoo, (model, law)) = (Zoo::load_embedded().unwrap(), mariner_model());
+        let trials = simulated_trials(&with_scaled_coefficients(&model, |_| 1.1), &law, 0.001);
         let trials: Vec<_> = trials.iter().collect();
-        let entrant =
-            Entrant { source: model, source_law: Some(law.clone()), law, held_by: HeldBy::Source };
-        let search = Search {
+        let entrant = SelectionCandidate {
+            source: model,
+            source_law: Some(law.clone()),
+            law,
+            held_by: CandidatePrior::Source,
+        };
+        let search = CandidateSearch {
             target: zoo.vessel("mariner").unwrap(),
             entrants: &[entrant],
             trials: &trials,
             population: &[],
-            settings: &Settings::default(),
+            settings: &RefinementSettings::default(),
         };
         let refused = |rung, lambda| {
-            let ridge = Some((Family::Own, lambda));
-            let weighed = Weighed { ridge, ..Weighed::refused(String::new()) };
+            let ridge = Some((TermFamily::Own, lambda));
+            let weighed =
+                CandidateEvaluation { ridge, ..CandidateEvaluation::with_refusal(String::new()) };
             let (refinement, roll_strength) = (None, None);
             let refusal = Some("does not sail".to_owned());
-            Tried { entrant: 0, rung, weighed, refinement, cost_s: 0.0, roll_strength, refusal }
+            EvaluatedCandidate {
+                entrant: 0,
+                rung,
+                weighed,
+                refinement,
+                cost_s: 0.0,
+                roll_strength,
+                refusal,
+            }
         };
         let again = |rung, lambda| {
             let refused = refused(rung, lambda);
-            held_more(&search, &refused, &|_, _| true).unwrap()
+            refit_stronger(&search, &refused, &|_, _| true).unwrap()
         };
-        let nearer = again(Rung::Weak, 1e-6).unwrap();
-        assert!(nearer.rung == Rung::Weak && nearer.weighed.error.is_some());
+        let nearer = again(SelectionStage::Weak, 1e-6).unwrap();
+        assert!(nearer.rung == SelectionStage::Weak && nearer.weighed.error.is_some());
         assert!(nearer.weighed.ridge.unwrap().1 > 3e-6);
-        assert!(again(Rung::Weak, 10.0).is_none(), "no strength is left");
-        assert!(again(Rung::Trajectory, 1e-6).is_none());
+        assert!(again(SelectionStage::Weak, 10.0).is_none(), "no strength is left");
+        assert!(again(SelectionStage::Trajectory, 1e-6).is_none());
     }
 }

@@ -82,7 +82,7 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
 
 /// Constants of the simulations that a model must complete before it is chosen.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SailedThresholds {
+pub(super) struct SimulationCheckThresholds {
     /// Records of random rudder orders, a count. Source: chosen; simulated in lockstep they cost as
     /// much as one.
     pub records: usize,
@@ -104,7 +104,7 @@ pub(super) struct SailedThresholds {
 }
 
 /// The values.
-pub(super) const SAILED: SailedThresholds = SailedThresholds {
+pub(super) const SIMULATION_CHECK: SimulationCheckThresholds = SimulationCheckThresholds {
     records: 8,
     turns: [0.25, 0.5, 0.75],
     lengths: 50.0,

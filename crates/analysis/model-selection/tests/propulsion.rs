@@ -4,16 +4,20 @@
 
 use std::collections::BTreeMap;
 
-use sistership_identification::refine::{Method as Estimator, Request, Settings, refine};
-use sistership_identification::testing::{mariner, trials, with};
+use sistership_identification::refine::{
+    EstimationMethod as Estimator, RefinementSettings, RefinementSpec, refine,
+};
+use sistership_identification::testing::{
+    mariner_model, simulated_trials, with_scaled_coefficients,
+};
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Vessel, Zoo};
-use sistership_model_selection::{Asked, Start, best_start};
-use sistership_propulsion::{PropulsionFault, check};
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
-use sistership_simulation::state::{RECORDED, Trajectory, at, straight};
-use sistership_simulation::{Method, Order, Run, Ship};
+use sistership_model_selection::{StartRequest, StartSelection, best_start};
+use sistership_propulsion::{PropulsionFault, check_straight};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
+use sistership_simulation::state::{RECORDED_CHANNELS, Trajectory, at, straight_state};
+use sistership_simulation::{HelmOrder, Method, RunSettings, Ship};
 
 /// Revolutions of ships whose law takes none, 1/s.
 const REVOLUTIONS: f64 = 1.5;
@@ -29,7 +33,7 @@ struct Stranger {
 }
 
 fn stranger(zoo: &Zoo, vessel: &Vessel) -> Option<Stranger> {
-    let model = zoo.published(vessel, None).ok()?;
+    let model = zoo.published_model(vessel, None).ok()?;
     let ship = Ship::new(&model, zoo.law(&model.law)?).ok()?;
     let length_s = ship.lpp_m() / ship.approach_speed_m_s();
     let settings = ManoeuvreSettings {
@@ -38,10 +42,10 @@ fn stranger(zoo: &Zoo, vessel: &Vessel) -> Option<Stranger> {
         ..ManoeuvreSettings::default()
     };
     let tracks = [
-        zigzag(&ship, 20.0, 20.0, &settings).ok()?.track,
-        zigzag(&ship, -10.0, 10.0, &settings).ok()?.track,
-        turn(&ship, 35.0, &settings).ok()?.track,
-        turn(&ship, -20.0, &settings).ok()?.track,
+        simulate_zigzag(&ship, 20.0, 20.0, &settings).ok()?.track,
+        simulate_zigzag(&ship, -10.0, 10.0, &settings).ok()?.track,
+        simulate_turn(&ship, 35.0, &settings).ok()?.track,
+        simulate_turn(&ship, -20.0, &settings).ok()?.track,
     ];
     let n_rps = model.revolutions_rps.unwrap_or(REVOLUTIONS);
     let trials = tracks.iter().enumerate().map(|(k, track)| recorded(track, k, n_rps)).collect();
@@ -56,8 +60,8 @@ fn recorded(track: &Trajectory, index: usize, n_rps: f64) -> Trial {
         track.states.iter().enumerate().map(|(k, s)| s[place] + 0.01 * size * shake(k)).collect()
     };
     let mut channels: BTreeMap<Channel, Vec<f64>> =
-        RECORDED[..6].iter().map(|&(channel, place)| (channel, column(place))).collect();
-    channels.insert(Channel::Delta, track.column(at::DELTA));
+        RECORDED_CHANNELS[..6].iter().map(|&(channel, place)| (channel, column(place))).collect();
+    channels.insert(Channel::Delta, track.state_column(at::DELTA));
     channels.insert(Channel::N, vec![n_rps; track.t_s.len()]);
     Trial { name: format!("trial {index}"), t_s: track.t_s.clone(), channels, ..Trial::default() }
 }
@@ -73,11 +77,12 @@ fn bare(vessel: &Vessel, model: &Model) -> Vessel {
     bare
 }
 
-fn found(zoo: &Zoo, stranger: &Stranger) -> Result<Start, String> {
+fn found(zoo: &Zoo, stranger: &Stranger) -> Result<StartSelection, String> {
     let trials: Vec<&Trial> = stranger.trials.iter().collect();
-    let (champions, settings) = (BTreeMap::new(), Settings::default());
+    let (champions, settings) = (BTreeMap::new(), RefinementSettings::default());
     let target = &stranger.vessel;
-    let asked = Asked { zoo, target, champions: &champions, trials: &trials, settings: &settings };
+    let asked =
+        StartRequest { zoo, target, champions: &champions, trials: &trials, settings: &settings };
     best_start(&asked, &|_, _| true).map_err(|error| error.to_string())
 }
 
@@ -85,21 +90,21 @@ fn found(zoo: &Zoo, stranger: &Stranger) -> Result<Start, String> {
 fn last(ship: &Ship, start: f64, turns: f64) -> Option<f64> {
     let speed = ship.approach_speed_m_s();
     let length_s = ship.lpp_m() / speed;
-    let order = Order { delta_rad: 0.0, n_rps: turns * ship.revolutions_at(speed) };
-    let run = Run {
-        start: straight(start * speed),
+    let order = HelmOrder { delta_rad: 0.0, n_rps: turns * ship.revolutions_at(speed) };
+    let run = RunSettings {
+        start: straight_state(start * speed),
         duration_s: LENGTHS * length_s,
         step_s: 0.05 * length_s,
         method: Method::Rk4,
     };
     let mut track = Trajectory::default();
-    ship.sail(run, &mut track, |_, _| Some(order)).ok()?;
+    ship.simulate_orders(run, &mut track, |_, _| Some(order)).ok()?;
     Some(track.states.last()?[at::U] / speed)
 }
 
 /// A line of the table; the propeller stopped, reversed, and reversed from rest: without the
 /// balance, with it, and by the ship itself.
-fn line(stranger: &Stranger, start: &Start) -> String {
+fn line(stranger: &Stranger, start: &StartSelection) -> String {
     let (model, law) = (&start.refinement.model, &*start.entrant.law);
     let without = Model { propulsion: None, ..model.clone() };
     let ships = [&without, model].map(|model| Ship::new(model, law).unwrap());
@@ -115,14 +120,14 @@ fn line(stranger: &Stranger, start: &Start) -> String {
     format!("| {name} | {} | {balance} | {cells} |", start.entrant.name())
 }
 
-fn stops(start: &Start) -> bool {
+fn stops(start: &StartSelection) -> bool {
     let ship = Ship::new(&start.refinement.model, &start.entrant.law).unwrap();
-    check(&ship).is_ok()
+    check_straight(&ship).is_ok()
 }
 
 #[test]
 fn what_is_taken_of_a_ship_without_revolutions_in_its_law_stops() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let stranger = stranger(&zoo, zoo.vessel("mariner").unwrap()).unwrap();
     let start = found(&zoo, &stranger).unwrap();
     println!("{}", line(&stranger, &start));
@@ -131,11 +136,11 @@ fn what_is_taken_of_a_ship_without_revolutions_in_its_law_stops() {
 
 #[test]
 fn a_named_method_gives_a_law_without_revolutions_a_balance() {
-    let (zoo, (model, law)) = (Zoo::embedded().unwrap(), mariner());
-    let trials = trials(&with(&model, |_| 1.1), &law, 0.001);
+    let (zoo, (model, law)) = (Zoo::load_embedded().unwrap(), mariner_model());
+    let trials = simulated_trials(&with_scaled_coefficients(&model, |_| 1.1), &law, 0.001);
     let trials: Vec<&Trial> = trials.iter().collect();
-    let settings = Settings { method: Estimator::Weak, ..Settings::default() };
-    let request = Request {
+    let settings = RefinementSettings { method: Estimator::Weak, ..RefinementSettings::default() };
+    let request = RefinementSpec {
         target: zoo.vessel("mariner").unwrap(),
         source: &model,
         source_law: None,
@@ -145,18 +150,21 @@ fn a_named_method_gives_a_law_without_revolutions_a_balance() {
         settings: &settings,
     };
     let made = refine(&request, &|_, _| true).unwrap();
-    assert_eq!(check(&Ship::new(&made.model, &law).unwrap()), Ok(()));
+    assert_eq!(check_straight(&Ship::new(&made.model, &law).unwrap()), Ok(()));
     let resistance = &made.model.propulsion.as_ref().unwrap().parameters["resistance"];
     println!("{resistance:?}");
     assert!(resistance.standard_error.unwrap() < 0.4 * resistance.value);
     assert!(made.remarks.iter().any(|remark| remark.contains("surge is a balance")));
-    assert_eq!(check(&Ship::new(&model, &law).unwrap()), Err(PropulsionFault::NoRevolutions));
+    assert_eq!(
+        check_straight(&Ship::new(&model, &law).unwrap()),
+        Err(PropulsionFault::NoRevolutions)
+    );
 }
 
 #[test]
 #[ignore = "minutes"]
 fn what_is_taken_of_every_ship_of_the_zoo_stops() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let mut running = Vec::new();
     for vessel in zoo.vessels() {
         let Some(stranger) = stranger(&zoo, vessel) else { continue };

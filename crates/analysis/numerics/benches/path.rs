@@ -4,7 +4,9 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use rand::{RngExt, SeedableRng};
-use sistership_numerics::{AlphaError, Moments, RidgeChoice, RidgePath, Validation};
+use sistership_numerics::{
+    AlphaError, RegressionMoments, RidgeChoice, RidgePath, ValidationSamples,
+};
 
 const REGRESSORS: usize = 22;
 const SAMPLES: usize = 5000;
@@ -28,30 +30,32 @@ fn refine(columns: &[Vec<f64>], source: &[Vec<f64>]) -> Vec<Vec<f64>> {
             .map(|column| column[fold * size..(fold + 1) * size].to_vec())
             .collect::<Vec<_>>()
     };
-    let parts: Vec<Moments> =
-        (0..FOLDS).map(|fold| Moments::of_columns(&slice(fold), REGRESSORS)).collect();
-    let folds: Vec<(RidgePath, Validation)> = (0..FOLDS)
+    let parts: Vec<RegressionMoments> =
+        (0..FOLDS).map(|fold| RegressionMoments::from_columns(&slice(fold), REGRESSORS)).collect();
+    let folds: Vec<(RidgePath, ValidationSamples)> = (0..FOLDS)
         .map(|out| {
             let rest =
                 parts.iter().enumerate().filter(|(fold, _)| *fold != out).map(|(_, part)| part);
-            let training = Moments::sum(rest).expect("four folds");
-            (RidgePath::new(&training, source), Validation::new(&parts[out]))
+            let training = RegressionMoments::merge_all(rest).expect("four folds");
+            (RidgePath::new(&training, source), ValidationSamples::new(&parts[out]))
         })
         .collect();
-    let whole = RidgePath::new(&Moments::sum(&parts).expect("five folds"), source);
+    let whole = RidgePath::new(&RegressionMoments::merge_all(&parts).expect("five folds"), source);
     (0..source.len())
-        .map(|target| whole.solve(target, best(&folds, target, &source[target]), &source[target]))
+        .map(|target| {
+            whole.solve_target(target, best(&folds, target, &source[target]), &source[target])
+        })
         .collect()
 }
 
-fn best(folds: &[(RidgePath, Validation)], target: usize, source: &[f64]) -> RidgeChoice {
+fn best(folds: &[(RidgePath, ValidationSamples)], target: usize, source: &[f64]) -> RidgeChoice {
     let mut best = (f64::INFINITY, RidgeChoice { lambda: 1.0, alpha: 0.0 });
     for k in 0..LAMBDAS {
         let lambda = 10_f64.powf(-6.0 + 16.0 * k as f64 / (LAMBDAS - 1) as f64);
-        let of_fold = |(path, validation): &(RidgePath, Validation)| {
+        let of_fold = |(path, validation): &(RidgePath, ValidationSamples)| {
             path.error_by_alpha(target, lambda, source, validation)
         };
-        let (alpha, error) = folds.iter().map(of_fold).sum::<AlphaError>().least(0.1);
+        let (alpha, error) = folds.iter().map(of_fold).sum::<AlphaError>().least_error(0.1);
         if error < best.0 {
             best = (error, RidgeChoice { lambda, alpha });
         }

@@ -10,8 +10,8 @@ mod scatter;
 mod whitened;
 
 pub use alpha_error::AlphaError;
-pub use metric::Metric;
-pub use moments::{Moments, merged};
-pub use path::{RidgeChoice, RidgePath, Validation};
-pub use scatter::Scatter;
-pub use whitened::Whitened;
+pub use metric::PriorMetric;
+pub use moments::{RegressionMoments, merge_trials};
+pub use path::{RidgeChoice, RidgePath, ValidationSamples};
+pub use scatter::RobustScatter;
+pub use whitened::WhitenedPath;

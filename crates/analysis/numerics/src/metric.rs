@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Moments;
+use super::RegressionMoments;
 
 /// Root of a prior's precision at strength 1: in the coordinates `z = root b` of coefficients `b`,
 /// the prior is isotropic.
 #[derive(Debug, Clone)]
-pub struct Metric {
+pub struct PriorMetric {
     root: DMatrix<f64>,
     /// Inverse of the root; zero for coefficients without variation.
     back: DMatrix<f64>,
@@ -15,18 +15,18 @@ pub struct Metric {
     still: Vec<bool>,
 }
 
-impl Metric {
+impl PriorMetric {
     /// Metric of each coefficient by the standard deviation of its regressor times the root of
     /// `shrinkage`, the precision of its prior relative to the common one (Kanazawa 2023, Eq. 5.11,
     /// with every shrinkage 1).
-    pub fn of_regressors(moments: &Moments, shrinkage: &[f64]) -> Self {
+    pub fn of_regressors(moments: &RegressionMoments, shrinkage: &[f64]) -> Self {
         let p = moments.regressors();
-        let deviation = |j: usize| moments.variance(j).sqrt();
+        let deviation = |j: usize| moments.regressor_variance(j).sqrt();
         let still: Vec<bool> =
             // Relative to the mean: rounding leaves a small deviation to a constant.
-            (0..p).map(|j| deviation(j) / moments.mean(j).abs().max(1e-300) <= 1e-10).collect();
+            (0..p).map(|j| deviation(j) / moments.regressor_mean(j).abs().max(1e-300) <= 1e-10).collect();
         let scales = DVector::from_fn(p, |j, _| {
-            if still[j] { 0.0 } else { (moments.variance(j) * shrinkage[j]).sqrt() }
+            if still[j] { 0.0 } else { (moments.regressor_variance(j) * shrinkage[j]).sqrt() }
         });
         let inverse = scales.map(|scale| if scale > 0.0 { 1.0 / scale } else { 0.0 });
         Self {
@@ -54,35 +54,37 @@ impl Metric {
     }
 
     /// Number of coefficients.
-    pub fn size(&self) -> usize {
+    pub fn coefficient_count(&self) -> usize {
         self.still.len()
     }
 
     /// True if the data cannot change a coefficient.
-    pub fn is_still(&self, coefficient: usize) -> bool {
+    pub fn is_fixed(&self, coefficient: usize) -> bool {
         self.still[coefficient]
     }
 
     /// Matrix from coefficients to coordinates.
-    pub fn root(&self) -> &DMatrix<f64> {
+    pub fn root_matrix(&self) -> &DMatrix<f64> {
         &self.root
     }
 
     /// Matrix from coordinates to coefficients.
-    pub fn back(&self) -> &DMatrix<f64> {
+    pub fn inverse_root(&self) -> &DMatrix<f64> {
         &self.back
     }
 
     /// Mean products of the regressors, transformed to the coordinates.
-    pub fn products(&self, moments: &Moments) -> DMatrix<f64> {
-        let p = self.size();
-        let own = DMatrix::from_fn(p, p, |i, j| moments.covariance(i, j));
+    pub fn regressor_products(&self, moments: &RegressionMoments) -> DMatrix<f64> {
+        let p = self.coefficient_count();
+        let own = DMatrix::from_fn(p, p, |i, j| moments.regressor_covariance(i, j));
         self.back.transpose() * own * &self.back
     }
 
     /// Mean products of the transformed regressors with a target.
-    pub fn products_with_target(&self, moments: &Moments, target: usize) -> DVector<f64> {
-        let own = DVector::from_fn(self.size(), |j, _| moments.covariance_with_target(j, target));
+    pub fn products_with_target(&self, moments: &RegressionMoments, target: usize) -> DVector<f64> {
+        let own = DVector::from_fn(self.coefficient_count(), |j, _| {
+            moments.covariance_with_target(j, target)
+        });
         self.back.tr_mul(&own)
     }
 }
@@ -92,23 +94,23 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    fn moments() -> Moments {
+    fn moments() -> RegressionMoments {
         let x: Vec<f64> = (0..400).map(|k| (0.11 * f64::from(k)).sin()).collect();
         let z: Vec<f64> = (0..400).map(|k| 3.0 + 1e-3 * (0.07 * f64::from(k)).cos()).collect();
         let y = x.iter().zip(&z).map(|(x, z)| 2.0 * x - 0.5 * z).collect();
-        Moments::of_columns(&[x, z, vec![5.0; 400], y], 3)
+        RegressionMoments::from_columns(&[x, z, vec![5.0; 400], y], 3)
     }
 
     #[test]
     fn regressors_in_their_own_deviations_have_ones_on_the_diagonal_and_what_is_still_has_none() {
-        let metric = Metric::of_regressors(&moments(), &[1.0, 4.0, 1.0]);
-        let products = metric.products(&moments());
+        let metric = PriorMetric::of_regressors(&moments(), &[1.0, 4.0, 1.0]);
+        let products = metric.regressor_products(&moments());
         assert!(
             (products[(0, 0)] - 1.0).abs() < 1e-12
                 && (products[(1, 1)] - 0.25).abs() < 1e-12
                 && products[(2, 2)] == 0.0
         );
-        assert!(metric.is_still(2) && !metric.is_still(0));
+        assert!(metric.is_fixed(2) && !metric.is_fixed(0));
     }
 
     #[test]
@@ -117,28 +119,31 @@ mod tests {
             (0..400).map(|k| mean + size * (0.11 * f64::from(k)).sin()).collect()
         };
         let columns = [column(1e6, 3e-6), column(1e6, 1e-2), column(0.0, 1e-12), vec![0.0; 400]];
-        let metric = Metric::of_regressors(&Moments::of_columns(&columns, 3), &[1.0; 3]);
-        assert!(metric.is_still(0) && !metric.is_still(1) && !metric.is_still(2));
-        assert_eq!((metric.root()[(0, 0)], metric.back()[(0, 0)]), (0.0, 0.0));
+        let metric =
+            PriorMetric::of_regressors(&RegressionMoments::from_columns(&columns, 3), &[1.0; 3]);
+        assert!(metric.is_fixed(0) && !metric.is_fixed(1) && !metric.is_fixed(2));
+        assert_eq!((metric.root_matrix()[(0, 0)], metric.inverse_root()[(0, 0)]), (0.0, 0.0));
     }
 
     #[test]
     fn a_precision_has_its_root_and_its_inverse() {
         let precision = DMatrix::from_row_slice(2, 2, &[4e8, 3e3, 3e3, 0.09]);
-        let metric = Metric::of_precision(&precision).unwrap();
-        let again = metric.root().transpose() * metric.root();
+        let metric = PriorMetric::of_precision(&precision).unwrap();
+        let again = metric.root_matrix().transpose() * metric.root_matrix();
         assert!((0..4).all(|k| (again[k] - precision[k]).abs() < 1e-9 * precision[k]));
-        let one = metric.root() * metric.back();
+        let one = metric.root_matrix() * metric.inverse_root();
         assert!((one - DMatrix::identity(2, 2)).abs().max() < 1e-9);
         let with_none =
-            Metric::of_precision(&DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0])).unwrap();
+            PriorMetric::of_precision(&DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0]))
+                .unwrap();
         assert!(
-            with_none.is_still(1)
-                && with_none.back()[(0, 0)] == 0.5
-                && with_none.back()[(1, 1)] == 0.0
+            with_none.is_fixed(1)
+                && with_none.inverse_root()[(0, 0)] == 0.5
+                && with_none.inverse_root()[(1, 1)] == 0.0
         );
         assert!(
-            Metric::of_precision(&DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 1.0])).is_none()
+            PriorMetric::of_precision(&DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 1.0]))
+                .is_none()
         );
     }
 }

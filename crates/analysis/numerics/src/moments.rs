@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Statistics of `p` regressors and `q` targets over a number of samples.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Moments {
+pub struct RegressionMoments {
     /// Number of samples.
     pub count: f64,
     /// Means of the regressors, then of the targets.
@@ -19,9 +19,9 @@ pub struct Moments {
 /// Number of rows accumulated at a time: their columns stay in the first-level cache.
 const CHUNK: usize = 128;
 
-impl Moments {
+impl RegressionMoments {
     /// Creates the statistics of no samples.
-    pub fn empty(regressors: usize, targets: usize) -> Self {
+    pub fn with_sizes(regressors: usize, targets: usize) -> Self {
         let size = regressors + targets;
         Self {
             count: 0.0,
@@ -33,13 +33,13 @@ impl Moments {
 
     /// Computes the statistics of samples given by column: each column holds one regressor or
     /// target over all samples.
-    pub fn of_columns(columns: &[Vec<f64>], regressors: usize) -> Self {
+    pub fn from_columns(columns: &[Vec<f64>], regressors: usize) -> Self {
         let rows = columns.first().map_or(0, Vec::len);
-        let mut all = Self::empty(regressors, columns.len() - regressors);
+        let mut all = Self::with_sizes(regressors, columns.len() - regressors);
         for start in (0..rows).step_by(CHUNK) {
             let end = (start + CHUNK).min(rows);
             let chunk: Vec<&[f64]> = columns.iter().map(|column| &column[start..end]).collect();
-            all.merge(&Self::of_chunk(&chunk, regressors));
+            all.merge_samples(&Self::from_chunk(&chunk, regressors));
         }
         all
     }
@@ -53,7 +53,7 @@ impl Moments {
         for i in 0..size {
             for j in i..size {
                 // Only the upper triangle is computed.
-                let product = weight * dot(&columns[i], &columns[j]);
+                let product = weight * dot_product(&columns[i], &columns[j]);
                 products[(i, j)] = product;
                 products[(j, i)] = product;
             }
@@ -62,7 +62,7 @@ impl Moments {
     }
 
     /// Computes the statistics of a few rows in two passes, means first.
-    fn of_chunk(columns: &[&[f64]], regressors: usize) -> Self {
+    fn from_chunk(columns: &[&[f64]], regressors: usize) -> Self {
         let size = columns.len();
         let count = columns[0].len() as f64;
         let mean = DVector::from_iterator(
@@ -75,7 +75,7 @@ impl Moments {
         let mut products = DMatrix::zeros(size, size);
         for i in 0..size {
             for j in i..size {
-                let product = dot(&centred[i], &centred[j]);
+                let product = dot_product(&centred[i], &centred[j]);
                 products[(i, j)] = product;
                 products[(j, i)] = product;
             }
@@ -85,7 +85,7 @@ impl Moments {
 
     /// Adds the statistics of other samples (Chan, Golub and LeVeque 1979, Eq. 2.1: without
     /// cancellation).
-    pub fn merge(&mut self, other: &Self) {
+    pub fn merge_samples(&mut self, other: &Self) {
         let total = self.count + other.count;
         if other.count == 0.0 {
             return;
@@ -100,10 +100,10 @@ impl Moments {
     }
 
     /// Returns the statistics of several sets of samples together; `None` without any set.
-    pub fn sum<'a>(parts: impl IntoIterator<Item = &'a Self>) -> Option<Self> {
+    pub fn merge_all<'a>(parts: impl IntoIterator<Item = &'a Self>) -> Option<Self> {
         let mut parts = parts.into_iter();
         let mut all = parts.next()?.clone();
-        parts.for_each(|part| all.merge(part));
+        parts.for_each(|part| all.merge_samples(part));
         Some(all)
     }
 
@@ -112,10 +112,10 @@ impl Moments {
     /// held-out set excites has a variance of exactly zero.
     pub fn leave_one_out(parts: &[Self]) -> Option<(Vec<Self>, Self)> {
         let first = parts.first()?;
-        let none = || Self::empty(first.regressors, first.targets());
+        let none = || Self::with_sizes(first.regressors, first.targets());
         let grown = |sum: &Self, part: &Self| {
             let mut sum = sum.clone();
-            sum.merge(part);
+            sum.merge_samples(part);
             sum
         };
         // after[k] holds the sum of the last k sets.
@@ -125,7 +125,7 @@ impl Moments {
         let mut without = Vec::with_capacity(parts.len());
         for (index, part) in parts.iter().enumerate() {
             without.push(grown(&before, &after[parts.len() - 1 - index]));
-            before.merge(part);
+            before.merge_samples(part);
         }
         Some((without, after.swap_remove(parts.len())))
     }
@@ -133,7 +133,7 @@ impl Moments {
     /// Returns the statistics of `map' z` where these are those of the samples `z`, regressors then
     /// targets; the first `regressors` columns of the map give the new regressors. Mapping and
     /// merging commute.
-    pub fn mapped(&self, map: &DMatrix<f64>, regressors: usize) -> Self {
+    pub fn map_linear(&self, map: &DMatrix<f64>, regressors: usize) -> Self {
         let transposed = map.transpose();
         Self {
             count: self.count,
@@ -158,13 +158,13 @@ impl Moments {
 
     /// Returns the same statistics with the upper triangle of the products copied to the lower:
     /// summation leaves differences by rounding.
-    pub fn symmetric(mut self) -> Self {
+    pub fn symmetrize_products(mut self) -> Self {
         self.products.fill_lower_triangle_with_upper_triangle();
         self
     }
 
     /// Returns count, means and the upper triangle of the centred products, row by row.
-    pub fn numbers(&self) -> Vec<f64> {
+    pub fn to_numbers(&self) -> Vec<f64> {
         let size = self.mean.len();
         let triangle =
             (0..size).flat_map(|i| (i..size).map(move |j| (i, j))).map(|at| self.products[at]);
@@ -207,7 +207,7 @@ impl Moments {
 
     /// Sum over the samples of regressors times residuals of the first target at `coefficients`,
     /// both about the means of `all`, of which these samples are a part.
-    pub fn score(&self, all: &Self, coefficients: &DVector<f64>) -> DVector<f64> {
+    pub fn residual_score(&self, all: &Self, coefficients: &DVector<f64>) -> DVector<f64> {
         let p = self.regressors;
         let mut weights = DVector::zeros(self.mean.len());
         weights.rows_mut(0, p).copy_from(&-coefficients);
@@ -219,17 +219,17 @@ impl Moments {
     }
 
     /// Variance of a regressor.
-    pub fn variance(&self, regressor: usize) -> f64 {
+    pub fn regressor_variance(&self, regressor: usize) -> f64 {
         self.products[(regressor, regressor)] / self.count
     }
 
     /// Mean of a regressor.
-    pub fn mean(&self, regressor: usize) -> f64 {
+    pub fn regressor_mean(&self, regressor: usize) -> f64 {
         self.mean[regressor]
     }
 
     /// Covariance of two regressors.
-    pub fn covariance(&self, i: usize, j: usize) -> f64 {
+    pub fn regressor_covariance(&self, i: usize, j: usize) -> f64 {
         self.products[(i, j)] / self.count
     }
 
@@ -245,7 +245,7 @@ impl Moments {
     }
 
     /// Covariances of the regressors with each other, and with the targets.
-    pub fn covariances(&self) -> (DMatrix<f64>, DMatrix<f64>) {
+    pub fn covariance_blocks(&self) -> (DMatrix<f64>, DMatrix<f64>) {
         let (p, q) = (self.regressors, self.targets());
         (
             self.products.view((0, 0), (p, p)) / self.count,
@@ -264,7 +264,7 @@ impl Moments {
 }
 
 /// Dot product in four independent sums, which the compiler turns into vector instructions.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+fn dot_product(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (left, right) = (a.chunks_exact(4), b.chunks_exact(4));
     let tail: f64 = left.remainder().iter().zip(right.remainder()).map(|(x, y)| x * y).sum();
@@ -278,11 +278,14 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Returns the statistics of the trials for which `keep` is true, one set per regression; `None` if
 /// there is no such trial.
-pub fn merged(moments: &[Vec<Moments>], keep: impl Fn(usize) -> bool) -> Option<Vec<Moments>> {
-    let kept: Vec<&Vec<Moments>> =
+pub fn merge_trials(
+    moments: &[Vec<RegressionMoments>],
+    keep: impl Fn(usize) -> bool,
+) -> Option<Vec<RegressionMoments>> {
+    let kept: Vec<&Vec<RegressionMoments>> =
         moments.iter().enumerate().filter(|(trial, _)| keep(*trial)).map(|(_, m)| m).collect();
     let blocks = kept.first()?.len();
-    (0..blocks).map(|block| Moments::sum(kept.iter().map(|m| &m[block]))).collect()
+    (0..blocks).map(|block| RegressionMoments::merge_all(kept.iter().map(|m| &m[block]))).collect()
 }
 
 #[cfg(test)]

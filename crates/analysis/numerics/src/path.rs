@@ -6,12 +6,12 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use super::{AlphaError, Metric, Moments};
+use super::{AlphaError, PriorMetric, RegressionMoments};
 
 /// Solutions of one set of samples and one source for all (lambda, alpha).
 #[derive(Debug, Clone)]
 pub struct RidgePath {
-    metric: Metric,
+    metric: PriorMetric,
     eigenvalues: DVector<f64>,
     eigenvectors: DMatrix<f64>,
     /// For each target, the contributions of the data and of the source in the eigenbasis.
@@ -33,29 +33,37 @@ pub struct RidgeChoice {
 impl RidgePath {
     /// Decomposes the statistics once; `source[t]` holds the prior coefficients of target `t`, in
     /// the units of the regressors. A regressor that does not vary keeps its source value.
-    pub fn new(moments: &Moments, source: &[Vec<f64>]) -> Self {
-        Self::shrunken(moments, source, &vec![1.0; moments.regressors()])
+    pub fn new(moments: &RegressionMoments, source: &[Vec<f64>]) -> Self {
+        Self::with_shrinkage(moments, source, &vec![1.0; moments.regressors()])
     }
 
     /// Creates the path of a prior whose precision is `shrinkage[j]` times the common one for
     /// regressor `j`: its coefficient is measured by the standard deviation times the root of its
     /// shrinkage.
-    pub fn shrunken(moments: &Moments, source: &[Vec<f64>], shrinkage: &[f64]) -> Self {
-        Self::measured(moments, source, Metric::of_regressors(moments, shrinkage))
+    pub fn with_shrinkage(
+        moments: &RegressionMoments,
+        source: &[Vec<f64>],
+        shrinkage: &[f64],
+    ) -> Self {
+        Self::with_metric(moments, source, PriorMetric::of_regressors(moments, shrinkage))
     }
 
     /// Creates the path with any metric of the coefficients.
-    pub fn measured(moments: &Moments, source: &[Vec<f64>], metric: Metric) -> Self {
+    pub fn with_metric(
+        moments: &RegressionMoments,
+        source: &[Vec<f64>],
+        metric: PriorMetric,
+    ) -> Self {
         let SymmetricEigen { eigenvalues, eigenvectors } =
-            SymmetricEigen::new(metric.products(moments));
+            SymmetricEigen::new(metric.regressor_products(moments));
         let targets = 0..moments.targets();
         let data = targets
             .clone()
             .map(|t| tr_mul(&eigenvectors, &metric.products_with_target(moments, t)))
             .collect();
-        let source = source
-            .iter()
-            .map(|beta| tr_mul(&eigenvectors, &(metric.root() * DVector::from_column_slice(beta))));
+        let source = source.iter().map(|beta| {
+            tr_mul(&eigenvectors, &(metric.root_matrix() * DVector::from_column_slice(beta)))
+        });
         let source = source.collect();
         let target_variance = targets.map(|t| moments.target_variance(t)).collect();
         // A correlation matrix is positive semidefinite; negative eigenvalues are rounding errors.
@@ -72,14 +80,14 @@ impl RidgePath {
     }
 
     /// Coefficients of a target in the units of the regressors.
-    pub fn solve(&self, target: usize, choice: RidgeChoice, source: &[f64]) -> Vec<f64> {
-        let (from_data, from_source) = self.parts(target, choice.lambda);
-        self.unscaled(&(from_data + from_source * (1.0 - choice.alpha)), source)
+    pub fn solve_target(&self, target: usize, choice: RidgeChoice, source: &[f64]) -> Vec<f64> {
+        let (from_data, from_source) = self.solution_parts(target, choice.lambda);
+        self.to_coefficients(&(from_data + from_source * (1.0 - choice.alpha)), source)
     }
 
     /// Returns the two vectors of which every solution at `lambda` is `data + (1 - alpha) source`,
     /// in the coordinates of the metric.
-    fn parts(&self, target: usize, lambda: f64) -> (DVector<f64>, DVector<f64>) {
+    fn solution_parts(&self, target: usize, lambda: f64) -> (DVector<f64>, DVector<f64>) {
         let divide = |v: &DVector<f64>, by: f64| {
             v.zip_map(&self.eigenvalues, |x, d| by * x / (d + lambda).max(1e-300))
         };
@@ -89,10 +97,10 @@ impl RidgePath {
     }
 
     /// Coefficients in the units of the regressors; a fixed one keeps its source value.
-    fn unscaled(&self, beta: &DVector<f64>, source: &[f64]) -> Vec<f64> {
-        let coefficients = self.metric.back() * beta;
+    fn to_coefficients(&self, beta: &DVector<f64>, source: &[f64]) -> Vec<f64> {
+        let coefficients = self.metric.inverse_root() * beta;
         let one = |(j, kept): (usize, &f64)| {
-            if self.metric.is_still(j) { *kept } else { coefficients[j] }
+            if self.metric.is_fixed(j) { *kept } else { coefficients[j] }
         };
         source.iter().enumerate().map(one).collect()
     }
@@ -104,13 +112,13 @@ impl RidgePath {
         target: usize,
         lambda: f64,
         source: &[f64],
-        validation: &Validation,
+        validation: &ValidationSamples,
     ) -> AlphaError {
-        let (data, prior) = self.parts(target, lambda);
+        let (data, prior) = self.solution_parts(target, lambda);
         // The solution is fixed + (1 - alpha) along, so its squared error is quadratic in alpha.
-        let fixed = self.unscaled(&data, source);
+        let fixed = self.to_coefficients(&data, source);
         let zero = vec![0.0; source.len()];
-        let along = self.unscaled(&prior, &zero);
+        let along = self.to_coefficients(&prior, &zero);
         validation.error_along(target, &fixed, &along)
     }
 
@@ -143,7 +151,7 @@ impl RidgePath {
     /// not depend on lambda. If the prior has the variance `s^2/(n lambda)` about the source, the
     /// samples less the prediction of the source are normal with eigenvalues `s^2 (d +
     /// lambda)/lambda` in the eigenbasis (MacKay 1992, Neural Computation 4, 415-447, section 3).
-    pub fn misfit(&self, target: usize, lambda: f64) -> f64 {
+    pub fn evidence_misfit(&self, target: usize, lambda: f64) -> f64 {
         let (data, source, d) = (&self.data[target], &self.source[target], &self.eigenvalues);
         let terms = || data.iter().zip(source).zip(d).map(|((z, s), d)| (*z, *s, *d));
         // Variance of the residual of the source's prediction.
@@ -157,40 +165,45 @@ impl RidgePath {
 
     /// Posterior standard deviations of the coefficients at residual variance 1, and those of the
     /// prior, both in the units of the regressors.
-    pub fn deviations(&self, lambda: f64) -> Vec<(f64, f64)> {
+    pub fn coefficient_deviations(&self, lambda: f64) -> Vec<(f64, f64)> {
         // Posterior covariance n^-1 (C + lambda I)^-1 in the eigenbasis.
         let weights = self.eigenvalues.map(|d| 1.0 / (self.count * (d + lambda).max(1e-300)));
-        let directions = self.metric.back() * &self.eigenvectors;
+        let directions = self.metric.inverse_root() * &self.eigenvectors;
         let posterior = |j: usize| {
             directions.row(j).iter().zip(weights.iter()).map(|(v, w)| v * v * w).sum::<f64>()
         };
         let prior = 1.0 / (self.count * lambda.max(1e-300));
-        let held = |j: usize| prior * self.metric.back().row(j).norm_squared();
-        (0..self.metric.size()).map(|j| (posterior(j).sqrt(), held(j).sqrt())).collect()
+        let held = |j: usize| prior * self.metric.inverse_root().row(j).norm_squared();
+        (0..self.metric.coefficient_count())
+            .map(|j| (posterior(j).sqrt(), held(j).sqrt()))
+            .collect()
     }
 
     /// Half the second derivative of the cost at a solution with `lambda`, the sum of squares plus
     /// the penalty of the prior, in the units of the regressors; 1 for a regressor that does not
     /// vary.
-    pub fn curvature(&self, lambda: f64) -> DMatrix<f64> {
+    pub fn cost_curvature(&self, lambda: f64) -> DMatrix<f64> {
         let weights = self.eigenvalues.map(|d| self.count * (d + lambda));
         let standard =
             &self.eigenvectors * DMatrix::from_diagonal(&weights) * self.eigenvectors.transpose();
         // Chain rule: coordinates are root times coefficients.
-        let own = self.metric.root().transpose() * standard * self.metric.root();
-        let still = |j: usize| self.metric.is_still(j);
-        DMatrix::from_fn(self.metric.size(), self.metric.size(), |i, j| {
-            match still(i) || still(j) {
+        let own = self.metric.root_matrix().transpose() * standard * self.metric.root_matrix();
+        let still = |j: usize| self.metric.is_fixed(j);
+        DMatrix::from_fn(
+            self.metric.coefficient_count(),
+            self.metric.coefficient_count(),
+            |i, j| match still(i) || still(j) {
                 true => f64::from(u8::from(i == j)),
                 false => own[(i, j)],
-            }
-        })
+            },
+        )
     }
 
     /// Largest eigenvalue of the correlation matrix divided by the smallest of those that belong to
     /// varying regressors.
     pub fn condition_number(&self) -> f64 {
-        let still = (0..self.metric.size()).filter(|j| self.metric.is_still(*j)).count();
+        let still =
+            (0..self.metric.coefficient_count()).filter(|j| self.metric.is_fixed(*j)).count();
         let mut values: Vec<f64> = self.eigenvalues.iter().copied().collect();
         values.sort_by(f64::total_cmp);
         // Each regressor without variation adds an eigenvalue of zero.
@@ -206,9 +219,9 @@ impl RidgePath {
             (0..self.eigenvalues.len()).filter(|&i| self.eigenvalues[i] < tolerance * largest);
         let members = |i: usize| -> Vec<usize> {
             // Components of the eigenvector by coefficient, each scaled to its own size.
-            let moved = self.metric.back() * self.eigenvectors.column(i);
+            let moved = self.metric.inverse_root() * self.eigenvectors.column(i);
             let moved = DVector::from_fn(moved.len(), |j, _| {
-                moved[j] * self.metric.root().column(j).norm()
+                moved[j] * self.metric.root_matrix().column(j).norm()
             })
             .normalize();
             // Members are the coefficients with a large component of the normalised eigenvector.
@@ -229,14 +242,14 @@ fn tr_mul(matrix: &DMatrix<f64>, vector: &DVector<f64>) -> DVector<f64> {
 
 /// Held-out samples on which solutions are evaluated, prepared once.
 #[derive(Debug, Clone)]
-pub struct Validation {
+pub struct ValidationSamples {
     raw: DMatrix<f64>,
     regressors: usize,
 }
 
-impl Validation {
+impl ValidationSamples {
     /// Creates them from their statistics.
-    pub fn new(moments: &Moments) -> Self {
+    pub fn new(moments: &RegressionMoments) -> Self {
         Self { raw: moments.raw_products(), regressors: moments.regressors() }
     }
 

@@ -2,18 +2,18 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::Metric;
+use crate::PriorMetric;
 
 /// Mean and scatter of members.
 #[derive(Debug, Clone)]
-pub struct Scatter {
+pub struct RobustScatter {
     /// Robust means, by target.
     pub means: Vec<DVector<f64>>,
     /// Scatter matrix over all targets, each scaled by its own size; of trace 1.
     matrix: DMatrix<f64>,
 }
 
-impl Scatter {
+impl RobustScatter {
     /// Computes mean and scatter of coordinates by target and member, with `rounds` iterations of
     /// the robust mean.
     pub fn new(coordinates: &[Vec<DVector<f64>>], rounds: usize) -> Self {
@@ -35,14 +35,19 @@ impl Scatter {
     /// Precision of coefficients, whose coordinates are given by a metric, with a share `outside`
     /// of their variance in directions that no member shows. Returns `None` if the covariance is
     /// not positive definite.
-    pub fn precision(&self, metric: &Metric, outside: f64) -> Option<DMatrix<f64>> {
-        let size = metric.size();
-        let moving = (0..size).filter(|k| !metric.is_still(*k)).count() as f64;
+    pub fn coefficient_precision(
+        &self,
+        metric: &PriorMetric,
+        outside: f64,
+    ) -> Option<DMatrix<f64>> {
+        let size = metric.coefficient_count();
+        let moving = (0..size).filter(|k| !metric.is_fixed(*k)).count() as f64;
         // Scaled so that the trace equals the number of varying coefficients, as for the identity.
         let mut covariance = &self.matrix * ((1.0 - outside) * moving);
         (0..size).for_each(|k| covariance[(k, k)] += outside);
-        let precision =
-            metric.root().transpose() * covariance.cholesky()?.inverse() * metric.root();
+        let precision = metric.root_matrix().transpose()
+            * covariance.cholesky()?.inverse()
+            * metric.root_matrix();
         // Rounding leaves the product slightly asymmetric.
         Some((&precision + precision.transpose()) * 0.5)
     }
@@ -93,10 +98,10 @@ mod tests {
 
     #[test]
     fn what_ships_differ_by_is_held_least() {
-        let metric = Metric::of_precision(&DMatrix::identity(3, 3)).unwrap();
-        let scatter = Scatter::new(&[members()], ROUNDS);
+        let metric = PriorMetric::of_precision(&DMatrix::identity(3, 3)).unwrap();
+        let scatter = RobustScatter::new(&[members()], ROUNDS);
         assert!((scatter.matrix.trace() - 1.0).abs() < 1e-12);
-        let precision = scatter.precision(&metric, OUTSIDE).unwrap();
+        let precision = scatter.coefficient_precision(&metric, OUTSIDE).unwrap();
         let held = |along: [f64; 3]| {
             let along = DVector::from_row_slice(&along).normalize();
             along.dot(&(&precision * &along))
@@ -114,7 +119,7 @@ mod tests {
         let first =
             vec![member(0.6, 0.8), member(-0.6, -0.8), member(0.8, -0.6), member(-0.8, 0.6)];
         let second = vec![member(2.0, 0.0), member(-2.0, 0.0)];
-        let scatter = Scatter::new(&[first, second], ROUNDS);
+        let scatter = RobustScatter::new(&[first, second], ROUNDS);
         for mean in &scatter.means {
             assert!((mean - DVector::from_vec(vec![5.0, -2.0, 0.0])).norm() < 1e-12);
         }
@@ -122,8 +127,8 @@ mod tests {
         let direct = DMatrix::from_diagonal(&DVector::from_vec(vec![0.75, 0.25, 0.0]));
         assert!((&scatter.matrix - &direct).amax() < 1e-12, "{}", scatter.matrix);
         let own = DMatrix::from_diagonal(&DVector::from_vec(vec![4.0, 9.0, 0.0]));
-        let metric = Metric::of_precision(&own).unwrap();
-        let precision = scatter.precision(&metric, OUTSIDE).unwrap();
+        let metric = PriorMetric::of_precision(&own).unwrap();
+        let precision = scatter.coefficient_precision(&metric, OUTSIDE).unwrap();
         // Two coefficients move.
         let variance = |share: f64| (1.0 - OUTSIDE) * 2.0 * share + OUTSIDE;
         let expected = [4.0 / variance(0.75), 9.0 / variance(0.25), 0.0];

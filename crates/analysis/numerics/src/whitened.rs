@@ -4,11 +4,11 @@
 
 use nalgebra::{DMatrix, DVector, DVectorView, SymmetricEigen};
 
-use super::Moments;
+use super::RegressionMoments;
 
 /// Decomposed statistics of some samples.
 #[derive(Debug, Clone)]
-pub struct Whitened {
+pub struct WhitenedPath {
     /// Eigenvalues of the regressors' covariance.
     eigenvalues: DVector<f64>,
     eigenvectors: DMatrix<f64>,
@@ -18,10 +18,10 @@ pub struct Whitened {
     count: f64,
 }
 
-impl Whitened {
+impl WhitenedPath {
     /// Decomposes the statistics once.
-    pub fn new(moments: &Moments) -> Self {
-        let (covariance, cross) = moments.covariances();
+    pub fn new(moments: &RegressionMoments) -> Self {
+        let (covariance, cross) = moments.covariance_blocks();
         let SymmetricEigen { mut eigenvalues, eigenvectors } = SymmetricEigen::new(covariance);
         // Negative eigenvalues are rounding errors.
         eigenvalues.apply(|value| *value = value.max(0.0));
@@ -31,12 +31,12 @@ impl Whitened {
     }
 
     /// Eigenvectors as columns.
-    pub fn basis(&self) -> &DMatrix<f64> {
+    pub fn eigenvector_basis(&self) -> &DMatrix<f64> {
         &self.eigenvectors
     }
 
     /// Number of samples.
-    pub fn count(&self) -> f64 {
+    pub fn sample_count(&self) -> f64 {
         self.count
     }
 
@@ -47,12 +47,12 @@ impl Whitened {
     }
 
     /// Solution for a target in the eigenbasis.
-    pub fn solution(&self, target: usize, lambda: f64) -> DVector<f64> {
+    pub fn eigenbasis_solution(&self, target: usize, lambda: f64) -> DVector<f64> {
         self.data.column(target).zip_map(&self.eigenvalues, |x, d| x / (d + lambda))
     }
 
     /// Posterior variances along the eigenvectors, relative to the residual variance.
-    pub fn variances(&self, lambda: f64) -> DVector<f64> {
+    pub fn posterior_variances(&self, lambda: f64) -> DVector<f64> {
         self.eigenvalues.map(|d| 1.0 / (self.count * (d + lambda)))
     }
 
@@ -74,7 +74,7 @@ impl Whitened {
 
     /// Mean squared errors of the solutions for each target at each lambda on other samples, for a
     /// model without intercept.
-    pub fn errors(&self, lambdas: &[f64], left_out: &Moments) -> Vec<Vec<f64>> {
+    pub fn held_out_errors(&self, lambdas: &[f64], left_out: &RegressionMoments) -> Vec<Vec<f64>> {
         let raw = left_out.raw_products();
         let p = self.eigenvalues.len();
         // An explicit transpose: nalgebra's product with a transposed matrix does not use the fast
@@ -105,7 +105,7 @@ impl Whitened {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::{RidgeChoice, RidgePath, Validation};
+    use super::super::{RidgeChoice, RidgePath, ValidationSamples};
     use super::*;
 
     fn columns(phase: f64) -> Vec<Vec<f64>> {
@@ -125,10 +125,12 @@ mod tests {
     /// Against the path that keeps the source apart, with regressors in units of their deviation.
     #[test]
     fn about_the_source_it_is_the_published_path() {
-        let (training, left_out) =
-            (Moments::of_columns(&columns(0.0), 2), Moments::of_columns(&columns(500.0), 2));
+        let (training, left_out) = (
+            RegressionMoments::from_columns(&columns(0.0), 2),
+            RegressionMoments::from_columns(&columns(500.0), 2),
+        );
         let source = [1.5, -1.0];
-        let deviation = |j: usize| training.variance(j).sqrt();
+        let deviation = |j: usize| training.regressor_variance(j).sqrt();
         let map = DMatrix::from_row_slice(
             3,
             3,
@@ -144,19 +146,20 @@ mod tests {
                 1.0,
             ],
         );
-        let whitened = Whitened::new(&training.mapped(&map, 2));
+        let whitened = WhitenedPath::new(&training.map_linear(&map, 2));
         let path = RidgePath::new(&training, &[source.to_vec()]);
         let lambdas = [1e-4, 0.1, 10.0];
-        let errors = &whitened.errors(&lambdas, &left_out.mapped(&map, 2))[0];
+        let errors = &whitened.held_out_errors(&lambdas, &left_out.map_linear(&map, 2))[0];
         for (lambda, error) in lambdas.into_iter().zip(errors) {
             let choice = RidgeChoice { lambda, alpha: 0.0 };
-            let direct = path.solve(0, choice, &source);
-            let solved = whitened.basis() * whitened.solution(0, lambda);
+            let direct = path.solve_target(0, choice, &source);
+            let solved = whitened.eigenvector_basis() * whitened.eigenbasis_solution(0, lambda);
             (0..2).for_each(|j| {
                 assert!((source[j] + solved[j] / deviation(j) - direct[j]).abs() < 1e-10)
             });
-            let by_alpha = path.error_by_alpha(0, lambda, &source, &Validation::new(&left_out));
-            let expected = by_alpha.at(0.0);
+            let by_alpha =
+                path.error_by_alpha(0, lambda, &source, &ValidationSamples::new(&left_out));
+            let expected = by_alpha.error_at(0.0);
             assert!((error - expected).abs() < 1e-10, "{lambda}: {error} {expected}");
             assert!(
                 (whitened.residual_variance(0, lambda) - path.residual_variance(0, choice)).abs()
@@ -171,18 +174,20 @@ mod tests {
         let mut columns = columns(0.0);
         let other = (0..300).map(|k| (0.23 * f64::from(k)).cos() + 0.5 * columns[0][k as usize]);
         columns.push(other.collect());
-        let moments = Moments::of_columns(&columns, 2);
-        let whitened = Whitened::new(&moments);
+        let moments = RegressionMoments::from_columns(&columns, 2);
+        let whitened = WhitenedPath::new(&moments);
         let lambda = 0.2;
-        let (covariance, cross) = moments.covariances();
+        let (covariance, cross) = moments.covariance_blocks();
         let inverse = (&covariance + DMatrix::identity(2, 2) * lambda).try_inverse().unwrap();
-        assert_eq!(whitened.count(), 300.0);
-        let spread = DMatrix::from_diagonal(&whitened.variances(lambda));
-        let variances = whitened.basis() * spread * whitened.basis().transpose();
+        assert_eq!(whitened.sample_count(), 300.0);
+        let spread = DMatrix::from_diagonal(&whitened.posterior_variances(lambda));
+        let variances =
+            whitened.eigenvector_basis() * spread * whitened.eigenvector_basis().transpose();
         assert!((variances - &inverse / 300.0).amax() < 1e-14);
         let freedom = (&covariance * &inverse).trace();
         for target in 0..2 {
-            let solved = whitened.basis() * whitened.solution(target, lambda);
+            let solved =
+                whitened.eigenvector_basis() * whitened.eigenbasis_solution(target, lambda);
             assert!((&solved - &inverse * cross.column(target)).amax() < 1e-12);
             let own = &columns[2 + target];
             let left = |k: usize| own[k] - solved[0] * columns[0][k] - solved[1] * columns[1][k];
@@ -195,11 +200,11 @@ mod tests {
 
     #[test]
     fn the_least_lambda_is_a_billionth_of_the_largest_eigenvalue() {
-        let moments = Moments::of_columns(&columns(0.0), 2);
-        let largest = moments.covariances().0.symmetric_eigen().eigenvalues.max();
-        let own = Whitened::new(&moments).least_lambda();
+        let moments = RegressionMoments::from_columns(&columns(0.0), 2);
+        let largest = moments.covariance_blocks().0.symmetric_eigen().eigenvalues.max();
+        let own = WhitenedPath::new(&moments).least_lambda();
         assert!((own / (1e-9 * largest) - 1.0).abs() < 1e-12);
-        let still = Moments::of_columns(&[vec![2.0; 9], vec![3.0; 9], vec![1.0; 9]], 2);
-        assert_eq!(Whitened::new(&still).least_lambda(), f64::MIN_POSITIVE);
+        let still = RegressionMoments::from_columns(&[vec![2.0; 9], vec![3.0; 9], vec![1.0; 9]], 2);
+        assert_eq!(WhitenedPath::new(&still).least_lambda(), f64::MIN_POSITIVE);
     }
 }

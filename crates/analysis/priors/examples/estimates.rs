@@ -5,12 +5,16 @@
 
 use std::time::Instant;
 
-use sistership_assessment::validation::compare;
+use sistership_assessment::validation::compare_published;
 use sistership_model::law::Law;
 use sistership_model::{Vessel, Zoo};
-use sistership_priors::estimates::{EstimateBands, LAW, Library, estimate, estimate_bands};
+use sistership_priors::estimates::{
+    EstimateBands, LAW, RegressionLibrary, estimate_bands, estimate_ship,
+};
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
+use sistership_simulation::manoeuvre::{
+    ManoeuvreSettings, StandardManoeuvres, simulate_standard_manoeuvres,
+};
 
 /// The figures that are compared.
 const FIGURES: [&str; 3] = [
@@ -26,7 +30,8 @@ struct Row {
 }
 
 fn main() {
-    let (zoo, library) = (Zoo::embedded().unwrap(), Library::embedded().unwrap());
+    let (zoo, library) =
+        (Zoo::load_embedded().unwrap(), RegressionLibrary::parse_embedded().unwrap());
     let law = zoo.law(LAW).unwrap();
     let mut rows = Vec::new();
     let mut times_ms = Vec::new();
@@ -35,10 +40,10 @@ fn main() {
          estimate | band |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
     );
     for vessel in zoo.vessels().filter(|vessel| !vessel.file.models.is_empty()) {
-        let model = zoo.published(vessel, None).unwrap();
+        let model = zoo.published_model(vessel, None).unwrap();
         let ship = Ship::new(&model, zoo.law(&model.law).unwrap()).unwrap();
         let started = Instant::now();
-        let estimated = match estimate(&library, vessel, law, ship.approach_speed_m_s()) {
+        let estimated = match estimate_ship(&library, vessel, law, ship.approach_speed_m_s()) {
             Ok(estimated) => estimated,
             Err(refused) => {
                 println!("| `{}` | {refused} | | | | | | | | |", vessel.name());
@@ -47,7 +52,7 @@ fn main() {
         };
         let bands = estimate_bands(&estimated, law, 1).unwrap();
         times_ms.push(1e3 * started.elapsed().as_secs_f64());
-        let own = standard(&ship, &ManoeuvreSettings::default());
+        let own = simulate_standard_manoeuvres(&ship, &ManoeuvreSettings::default());
         let row = row(&own, &bands, ship.lpp_m());
         print_row(vessel.name(), &row);
         rows.push(row);
@@ -63,7 +68,7 @@ fn main() {
 }
 
 /// Estimates of ships whose own free-running trials are published.
-fn against_trials(zoo: &Zoo, library: &Library, law: &Law) {
+fn against_trials(zoo: &Zoo, library: &RegressionLibrary, law: &Law) {
     println!(
         "\n| ship | trial | published | estimate | error | band |\n| --- | --- | --- | --- | --- | \
          --- |"
@@ -73,14 +78,14 @@ fn against_trials(zoo: &Zoo, library: &Library, law: &Law) {
     }
 }
 
-fn one_against_trials(vessel: &Vessel, library: &Library, law: &Law) {
+fn one_against_trials(vessel: &Vessel, library: &RegressionLibrary, law: &Law) {
     for trials in &vessel.file.free_running {
         let speed = trials.speed_m_s.or_else(|| vessel.particular("service_speed_m_s"));
         let speed = speed.or_else(|| vessel.file.models.first()?.speed_m_s).unwrap();
-        let estimated = estimate(library, vessel, law, speed).unwrap();
+        let estimated = estimate_ship(library, vessel, law, speed).unwrap();
         let bands = estimate_bands(&estimated, law, 1).unwrap();
         let ship = Ship::new(&estimated.model, law).unwrap();
-        for one in compare(&ship, std::slice::from_ref(trials)) {
+        for one in compare_published(&ship, std::slice::from_ref(trials)) {
             let scale = if one.unit == "L" { 1.0 / ship.lpp_m() } else { 1.0 };
             // An estimate is the same on both sides.
             let figure = one.figure.replace("turn -", "turn ").replace("zigzag -", "zigzag ");
@@ -105,7 +110,7 @@ fn one_against_trials(vessel: &Vessel, library: &Library, law: &Law) {
 }
 
 fn value(of: &StandardManoeuvres, name: &str) -> Option<f64> {
-    of.figures().into_iter().find(|figure| figure.name == name).and_then(|figure| figure.value)
+    of.list_figures().into_iter().find(|figure| figure.name == name).and_then(|figure| figure.value)
 }
 
 fn row(own: &StandardManoeuvres, bands: &EstimateBands, lpp_m: f64) -> Row {

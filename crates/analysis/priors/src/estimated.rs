@@ -16,7 +16,7 @@ static ESTIMATES: LazyLock<Option<Law>> = LazyLock::new(|| {
 });
 
 /// Estimate of a law's parameter, with a source that marks it as one.
-pub(crate) fn estimated(law: &Law, name: &str, target: &Vessel) -> Option<Quantity> {
+pub(crate) fn estimated_parameter(law: &Law, name: &str, target: &Vessel) -> Option<Quantity> {
     let estimates = ESTIMATES.as_ref()?;
     let (wanted, known) = (law.parameters.get(name)?, estimates.parameters.get(name)?);
     // The same name may have another meaning in another law: dimension and meaning must agree.
@@ -33,14 +33,14 @@ mod tests {
 
     #[test]
     fn added_masses_of_another_law_are_estimated_near_those_published() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let (mariner, law) = (zoo.vessel("mariner").unwrap(), zoo.law("abkowitz").unwrap());
-        let published = zoo.model("mariner/abkowitz").unwrap();
+        let published = zoo.find_model("mariner/abkowitz").unwrap();
         for name in ["X_udot", "Y_vdot", "N_rdot"] {
-            let estimate = estimated(law, name, mariner).unwrap().value;
+            let estimate = estimated_parameter(law, name, mariner).unwrap().value;
             let ratio = estimate / published.parameters[name].value;
             assert!((0.5..2.0).contains(&ratio), "{name}: {ratio}");
         }
-        assert!(estimated(law, "U0", mariner).is_none());
+        assert!(estimated_parameter(law, "U0", mariner).is_none());
     }
 }

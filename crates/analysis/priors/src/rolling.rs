@@ -10,7 +10,7 @@ use sistership_model::law::{AxisLaw, Law};
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Vessel, particulars};
 
-use crate::transfer::{Approach, blank_of};
+use crate::transfer::{TrialApproach, blank_from_source};
 
 /// `zeta`: damping in roll by the critical damping, dimensionless. Source: chosen; trials correct
 /// it, and `docs/evidence/plain.md` has half and double.
@@ -31,25 +31,25 @@ pub fn with_roll(
     (carried, own): (&Model, &Law),
     law: &Law,
     target: &Vessel,
-    approach: Option<Approach>,
+    approach: Option<TrialApproach>,
 ) -> Option<Model> {
-    if own.has_roll() || !law.has_roll() || !says_the_same(own, law, carried) {
+    if own.has_roll() || !law.has_roll() || !has_same_meaning(own, law, carried) {
         return None;
     }
     let mut rolling = Model {
         name: format!("{}/{}", target.name(), law.name),
         law: law.name.clone(),
-        parameters: blank_of(law, target, carried, approach).ok()?.parameters,
+        parameters: blank_from_source(law, target, carried, approach).ok()?.parameters,
         ..carried.clone()
     };
-    let roll = hydrostatics(&rolling, law)?;
+    let roll = hydrostatic_coefficients(&rolling, law)?;
     rolling.coefficients.extend(roll);
     Some(rolling)
 }
 
 /// Coefficients of roll by the stiffness of a ship's metacentric height and a usual damping. `None`
 /// where its particulars do not give the stiffness, or the law does not have the two coefficients.
-pub fn hydrostatics(model: &Model, law: &Law) -> Option<[(String, Quantity); 2]> {
+pub fn hydrostatic_coefficients(model: &Model, law: &Law) -> Option<[(String, Quantity); 2]> {
     let [stiffness, damping] = stiffness_and_damping(model, law)?;
     let named = |(name, value): (&str, f64)| (name.to_owned(), Quantity::new(value, HYDROSTATICS));
     let [by_heel, by_rate] = STIFFNESS_AND_DAMPING;
@@ -57,13 +57,16 @@ pub fn hydrostatics(model: &Model, law: &Law) -> Option<[(String, Quantity); 2]>
 }
 
 /// Returns true if all coefficients of a model have the same meaning in another law.
-fn says_the_same(own: &Law, law: &Law, model: &Model) -> bool {
+fn has_same_meaning(own: &Law, law: &Law, model: &Model) -> bool {
     let is_kept = |(name, value): (&String, _)| law.values.get(name) == Some(value);
     let as_before = |axis: &Axis, of: &AxisLaw| {
         law.axes.get(axis).is_some_and(|other| other.scale == of.scale && other.rest == of.rest)
     };
     // Both laws have the coefficient, on the same axis with the same regressor.
-    let spelled = |name: &String| own.term(name).is_ok() && own.term(name) == law.term(name);
+    let spelled = |name: &String| {
+        own.unscaled_regressor(name).is_ok()
+            && own.unscaled_regressor(name) == law.unscaled_regressor(name)
+    };
     own.values.iter().all(is_kept)
         && own.axes.iter().all(|(axis, of)| as_before(axis, of))
         && model.coefficients.keys().all(spelled)
@@ -73,8 +76,8 @@ fn says_the_same(own: &Law, law: &Law, model: &Model) -> bool {
 /// `V` gives the righting moment `rho g V GM phi`.
 fn stiffness_and_damping(model: &Model, law: &Law) -> Option<[f64; 2]> {
     let is_open = law.axes.get(&Axis::K)?.open;
-    let is_spelled = STIFFNESS_AND_DAMPING.iter().all(|name| law.term(name).is_ok());
-    let of_ship = |name: &str| particulars::value(&model.particulars, name);
+    let is_spelled = STIFFNESS_AND_DAMPING.iter().all(|name| law.unscaled_regressor(name).is_ok());
+    let of_ship = |name: &str| particulars::particular_value(&model.particulars, name);
     let stable = of_ship("gm_m").filter(|gm_m| is_open && is_spelled && *gm_m > 0.0)?;
     let (volume, length) = (of_ship("displacement_m3")?, of_ship("lpp_m")?);
     let speed = model.speed_m_s.filter(|speed| *speed > 0.0)?;
@@ -87,7 +90,7 @@ fn stiffness_and_damping(model: &Model, law: &Law) -> Option<[f64; 2]> {
 }
 
 /// Remark on the prior of roll for a source without roll.
-pub fn roll_words(carried: &Model) -> Option<String> {
+pub fn roll_remark(carried: &Model) -> Option<String> {
     let is_hydrostatic = |quantity: &&Quantity| quantity.source == HYDROSTATICS;
     carried.coefficients.values().find(is_hydrostatic)?;
     let what = "the source says nothing of roll: the prior has the stiffness of the ship's \
@@ -100,34 +103,36 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use sistership_model::Zoo;
     use sistership_simulation::Ship;
-    use sistership_simulation::manoeuvre::{ManoeuvreSettings, STANDARD, sail_together};
+    use sistership_simulation::manoeuvre::{
+        ManoeuvreSettings, STANDARD_MANOEUVRES, simulate_manoeuvre_batch,
+    };
 
     use super::*;
-    use crate::transfer::transfer;
+    use crate::transfer::transfer_model;
 
     fn carried(source: &str, law: &str, ship: &str) -> Option<Model> {
-        let zoo = Zoo::embedded().unwrap();
-        let source = zoo.model(source).unwrap();
-        let approach = Approach { speed_m_s: 8.377, n_rps: None };
+        let zoo = Zoo::load_embedded().unwrap();
+        let source = zoo.find_model(source).unwrap();
+        let approach = TrialApproach { speed_m_s: 8.377, n_rps: None };
         let own = zoo.law(&source.law).unwrap();
         let target = zoo.vessel(ship).unwrap();
-        let carried = transfer(&source, own, target, Some(approach));
+        let carried = transfer_model(&source, own, target, Some(approach));
         with_roll((&carried, own), zoo.law(law).unwrap(), target, Some(approach))
     }
 
     #[test]
     fn the_mariner_rolls_by_the_container_ship_s_hydrostatics() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let model = carried("mariner", "abkowitz-roll", "sr108").unwrap();
-        let mariner = zoo.model("mariner").unwrap();
+        let mariner = zoo.find_model("mariner").unwrap();
         assert_eq!(model.coefficient("N_vvr"), mariner.coefficient("N_vvr"));
         // Son and Nomoto: GM 0.3 m, 21222 m3, 175 m.
         let stiffness = 2.0 * 21_222.0 * 0.3 / 175_f64.powi(4);
         assert!((model.coefficient("K_heel") / -stiffness - 1.0).abs() < 1e-12);
         assert!(model.coefficient("K_p") < 0.0);
         let ship = Ship::new(&model, zoo.law("abkowitz-roll").unwrap()).unwrap();
-        let standard = STANDARD.map(|manoeuvre| (manoeuvre, &[][..]));
-        let sailed = sail_together(&ship, &standard, &ManoeuvreSettings::default());
+        let standard = STANDARD_MANOEUVRES.map(|manoeuvre| (manoeuvre, &[][..]));
+        let sailed = simulate_manoeuvre_batch(&ship, &standard, &ManoeuvreSettings::default());
         assert!(sailed.iter().all(Result::is_ok), "sails every standard manoeuvre");
     }
 

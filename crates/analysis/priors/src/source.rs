@@ -4,37 +4,37 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use sistership_model::categories::{group_of, known_categories};
+use sistership_model::categories::{category_group, known_categories};
 use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{FileError, Model, Vessel, Zoo};
 
 use crate::similarity::{
-    CharacteristicVector, Definition, EligibilityLimits, ModelHead, RankedSource, SourceCandidate,
-    rank,
+    CharacteristicVector, EligibilityLimits, ModelHead, RankedSource, SourceCandidate,
+    VectorDefinition, rank_candidates,
 };
-use crate::transfer::{approach_of, transfer};
-use crate::trend::{TrendError, trend};
+use crate::transfer::{transfer_model, trial_approach};
+use crate::trend::{TrendError, trend_correlation};
 
 /// Ranking of similar ships for a target.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Similarity {
+pub struct SimilarityRanking {
     /// Name of the target.
     pub target: String,
     /// Category of the target.
     #[serde(skip)]
     pub category: String,
     /// Definition of the characteristic vector.
-    pub definition: Definition,
+    pub definition: VectorDefinition,
     /// Vector of the target.
     pub vector: BTreeMap<String, f64>,
     /// Candidates, most similar first.
     pub ranking: Vec<RankedSource>,
 }
 
-impl Similarity {
+impl SimilarityRanking {
     /// Ships that pass every step, most similar first.
-    pub fn eligible(&self) -> impl Iterator<Item = &RankedSource> {
+    pub fn eligible_sources(&self) -> impl Iterator<Item = &RankedSource> {
         self.ranking.iter().filter(|ranked| ranked.eligible)
     }
 }
@@ -57,31 +57,33 @@ pub enum SourceError {
 
 /// Definition by which ships are compared with a target: Mei's where the target has all of its
 /// components, otherwise Kanazawa's.
-pub fn definition_for(target: &Vessel) -> Definition {
-    let complete = CharacteristicVector::of(target, Definition::Mei2019).missing().is_empty();
-    if complete { Definition::Mei2019 } else { Definition::Kanazawa2023 }
+pub fn definition_for(target: &Vessel) -> VectorDefinition {
+    let complete = CharacteristicVector::from_vessel(target, VectorDefinition::Mei2019)
+        .missing_components()
+        .is_empty();
+    if complete { VectorDefinition::Mei2019 } else { VectorDefinition::Kanazawa2023 }
 }
 
 /// Ranks the zoo for a target. Default definition: that of [`definition_for`]. With `trials`, the
 /// third step of eligibility is measured.
-pub fn similar(
+pub fn rank_similar(
     zoo: &Zoo,
     target: &Vessel,
-    definition: Option<Definition>,
+    definition: Option<VectorDefinition>,
     trials: &[&Trial],
-) -> Similarity {
-    similar_with(zoo, target, definition, trials, &BTreeMap::new())
+) -> SimilarityRanking {
+    rank_similar_with(zoo, target, definition, trials, &BTreeMap::new())
 }
 
 /// Ranks the zoo for a target, where some ships have a better model than their published one, by
 /// their names.
-pub fn similar_with(
+pub fn rank_similar_with(
     zoo: &Zoo,
     target: &Vessel,
-    definition: Option<Definition>,
+    definition: Option<VectorDefinition>,
     trials: &[&Trial],
     champions: &BTreeMap<String, Model>,
-) -> Similarity {
+) -> SimilarityRanking {
     let definition = definition.unwrap_or_else(|| definition_for(target));
     let head = |vessel: &Vessel| match champions.get(vessel.name()) {
         Some(champion) => {
@@ -95,19 +97,25 @@ pub fn similar_with(
         // Looked up also without trials, so that an invalid model is reported in any case.
         let model = match champions.get(vessel.name()) {
             Some(champion) => champion.clone(),
-            None => zoo.published(vessel, None)?,
+            None => zoo.published_model(vessel, None)?,
         };
         if trials.is_empty() {
             return Ok(None);
         }
         trend_on(zoo, target, &model, trials).map(Some)
     };
-    Similarity {
+    SimilarityRanking {
         target: target.name().to_owned(),
         category: target.file.category.clone(),
         definition,
-        vector: CharacteristicVector::of(target, definition).values,
-        ranking: rank(target, &candidates, definition, &EligibilityLimits::default(), &measured),
+        vector: CharacteristicVector::from_vessel(target, definition).values,
+        ranking: rank_candidates(
+            target,
+            &candidates,
+            definition,
+            &EligibilityLimits::default(),
+            &measured,
+        ),
     }
 }
 
@@ -134,12 +142,12 @@ fn trend_on(
     if let Some(reason) = silent {
         return Err(reason);
     }
-    let approach = approach_of(trials);
-    let model = transfer(source, law, target, approach);
+    let approach = trial_approach(trials);
+    let model = transfer_model(source, law, target, approach);
     // Without a length or an approach speed, restarts are 200 s apart.
     let lengths_s = target.particular("lpp_m").zip(approach).map(|(l, a)| 20.0 * l / a.speed_m_s);
     let law = at_own_revolutions(law, &model, trials);
-    trend(&model, &law, trials, lengths_s.unwrap_or(200.0))
+    trend_correlation(&model, &law, trials, lengths_s.unwrap_or(200.0))
 }
 
 /// Law of a source, with the source's own revolutions as default where a trial does not record
@@ -160,17 +168,17 @@ fn at_own_revolutions<'a>(law: &'a Law, source: &Model, trials: &[&Trial]) -> Co
 ///
 /// # Errors
 /// Returns an error that lists each ship of the ranking with the step that it failed.
-pub fn best_source(zoo: &Zoo, similarity: &Similarity) -> Result<Model, SourceError> {
+pub fn best_source(zoo: &Zoo, similarity: &SimilarityRanking) -> Result<Model, SourceError> {
     let best = best_ranked(similarity)?;
-    Ok(zoo.model(best.model.as_deref().unwrap_or(&best.ship))?)
+    Ok(zoo.find_model(best.model.as_deref().unwrap_or(&best.ship))?)
 }
 
 /// Returns the best eligible ship of a ranking.
 ///
 /// # Errors
 /// Returns an error that lists each ship of the ranking with the step that it failed.
-pub fn best_ranked(similarity: &Similarity) -> Result<&RankedSource, SourceError> {
-    if let Some(best) = similarity.eligible().next() {
+pub fn best_ranked(similarity: &SimilarityRanking) -> Result<&RankedSource, SourceError> {
+    if let Some(best) = similarity.eligible_sources().next() {
         return Ok(best);
     }
     let why = |ranked: &RankedSource| {
@@ -183,7 +191,7 @@ pub fn best_ranked(similarity: &Similarity) -> Result<&RankedSource, SourceError
 
 /// Remark on a category that is in no group.
 fn unknown_category(category: &str) -> String {
-    if group_of(category).is_some() {
+    if category_group(category).is_some() {
         return String::new();
     }
     let known = known_categories().join(", ");
@@ -197,8 +205,8 @@ mod tests {
 
     #[test]
     fn revolutions_that_no_trial_records_are_the_source_s_own() {
-        let zoo = Zoo::embedded().unwrap();
-        let source = zoo.model("kcs").unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let source = zoo.find_model("kcs").unwrap();
         let law = zoo.law(&source.law).unwrap();
         let mut trial = Trial::default();
         let at = |trial: &Trial| at_own_revolutions(law, &source, &[trial]).inputs["n"].default;

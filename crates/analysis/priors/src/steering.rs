@@ -55,12 +55,12 @@ pub fn measured_rate(trials: &[&Trial], length_s: f64, window: RateWindow) -> Op
         let step_s = trial.interval_s();
         let count = ((STEERING.window * length_s / step_s).round() as usize).max(1);
         match window {
-            RateWindow::OfLength => rates(trial, count),
+            RateWindow::OfLength => rudder_rates(trial, count),
             RateWindow::AboveNoise => rates_above_noise(trial, count),
         }
     };
     let each: Vec<Vec<(f64, f64)>> = trials.iter().map(of).collect();
-    let largest = largest(each.iter().flatten());
+    let largest = largest_rate(each.iter().flatten());
     // Movements are runs of windows whose rate is near the largest one.
     let is_inside = |(rate, _): &(f64, f64)| largest > 0.0 && *rate >= STEERING.inside * largest;
     let movements =
@@ -78,7 +78,7 @@ pub fn measured_rate(trials: &[&Trial], length_s: f64, window: RateWindow) -> Op
 
 /// Rates of the rudder over windows of so many samples that begin at each sample, each with the
 /// time to the next sample.
-fn rates(trial: &Trial, count: usize) -> Vec<(f64, f64)> {
+fn rudder_rates(trial: &Trial, count: usize) -> Vec<(f64, f64)> {
     let Some(angle) = trial.channel(Channel::Delta) else { return Vec::new() };
     let step_s = trial.interval_s();
     let pairs = (count..angle.len()).map(|end| (end - count, end));
@@ -96,16 +96,16 @@ fn rates(trial: &Trial, count: usize) -> Vec<(f64, f64)> {
 fn rates_above_noise(trial: &Trial, count: usize) -> Vec<(f64, f64)> {
     let needed_rad = STEERING.above_noise * noise_rad(trial);
     let stands_out = |count: &usize, rates: &[(f64, f64)]| {
-        largest(rates.iter()) * *count as f64 * trial.interval_s() >= needed_rad
+        largest_rate(rates.iter()) * *count as f64 * trial.interval_s() >= needed_rad
     };
     let tried =
-        (count..=STEERING.most_samples.max(count)).map(|count| (count, rates(trial, count)));
+        (count..=STEERING.most_samples.max(count)).map(|count| (count, rudder_rates(trial, count)));
     // The shortest window that suffices is used.
     let found = tried.into_iter().find(|(count, rates)| stands_out(count, rates));
     found.map(|(_, rates)| rates).unwrap_or_default()
 }
 
-fn largest<'a>(rates: impl Iterator<Item = &'a (f64, f64)>) -> f64 {
+fn largest_rate<'a>(rates: impl Iterator<Item = &'a (f64, f64)>) -> f64 {
     rates.map(|(rate, _)| *rate).fold(0.0, f64::max)
 }
 

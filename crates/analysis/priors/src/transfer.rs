@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use crate::estimated::estimated;
+use crate::estimated::estimated_parameter;
 
 use crate::estimates::particulars::{complete_particulars, estimate_particular};
 use sistership_formula::Expr;
 use sistership_formula::units::Dimension;
 use sistership_model::estimated_particulars::SCALED;
 use sistership_model::law::Law;
-use sistership_model::model::{DERIVED, ModelKind};
+use sistership_model::model::{DERIVED_SOURCE, ModelKind};
 use sistership_model::particulars::{self, Particulars};
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
@@ -19,7 +19,7 @@ use sistership_simulation::{PlantError, Ship};
 
 /// Approach of a ship to its trials.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Approach {
+pub struct TrialApproach {
     /// Speed, m/s.
     pub speed_m_s: f64,
     /// Propeller revolutions, 1/s, where recorded.
@@ -28,7 +28,7 @@ pub struct Approach {
 
 /// Returns the approach of a set of trials: the median speed at their first samples; where they
 /// start from rest, the median speed under way. `None` without velocities.
-pub fn approach_of(trials: &[&Trial]) -> Option<Approach> {
+pub fn trial_approach(trials: &[&Trial]) -> Option<TrialApproach> {
     let first = |trial: &&Trial| {
         Some(trial.channel(Channel::U)?.first()?.hypot(*trial.channel(Channel::V)?.first()?))
     };
@@ -39,14 +39,16 @@ pub fn approach_of(trials: &[&Trial]) -> Option<Approach> {
         .collect();
     let mut revolutions: Vec<f64> =
         trials.iter().flat_map(|t| t.channel(Channel::N).into_iter().flatten().copied()).collect();
-    let (start, under_way) = (median(&mut starts)?, median(&mut speeds)?);
+    let (start, under_way) = (median_value(&mut starts)?, median_value(&mut speeds)?);
     // Half of the speed under way separates a start from rest from a steady approach.
     let speed_m_s = if start > 0.5 * under_way { start } else { under_way };
-    (speed_m_s > 0.0)
-        .then(|| Approach { speed_m_s, n_rps: median(&mut revolutions).filter(|n| *n > 0.0) })
+    (speed_m_s > 0.0).then(|| TrialApproach {
+        speed_m_s,
+        n_rps: median_value(&mut revolutions).filter(|n| *n > 0.0),
+    })
 }
 
-fn median(values: &mut [f64]) -> Option<f64> {
+fn median_value(values: &mut [f64]) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
@@ -55,13 +57,18 @@ fn median(values: &mut [f64]) -> Option<f64> {
 /// does not state are estimated, or scaled from the source by Froude's law, and marked so;
 /// parameters with a unit that do not follow from particulars and the steering gear's rate are
 /// scaled likewise.
-pub fn transfer(source: &Model, law: &Law, target: &Vessel, approach: Option<Approach>) -> Model {
-    let ratio = ratio(source, target);
-    let particulars = completed(law, target, Some(source));
-    let service = particulars::value(&particulars, "service_speed_m_s");
+pub fn transfer_model(
+    source: &Model,
+    law: &Law,
+    target: &Vessel,
+    approach: Option<TrialApproach>,
+) -> Model {
+    let ratio = length_ratio(source, target);
+    let particulars = complete_for_law(law, target, Some(source));
+    let service = particulars::particular_value(&particulars, "service_speed_m_s");
     let froude = source.speed_m_s.map(|speed| speed * ratio.sqrt());
     let speed = approach.map(|a| a.speed_m_s).or(service).or(froude);
-    let mut model = source.transferred(law, target.name(), &particulars, speed);
+    let mut model = source.transfer_to(law, target.name(), &particulars, speed);
     scale_parameters(&mut model, law, ratio);
     model.speed_m_s = speed;
     // Revolutions scale with 1/sqrt(length ratio), and then with the speed at constant advance
@@ -96,8 +103,8 @@ fn froude_factor(dimension: Dimension, ratio: f64) -> f64 {
 }
 
 /// Ratio of the lengths of target and source; 1 where one is not known.
-fn ratio(source: &Model, target: &Vessel) -> f64 {
-    let there = particulars::value(&source.particulars, "lpp_m");
+fn length_ratio(source: &Model, target: &Vessel) -> f64 {
+    let there = particulars::particular_value(&source.particulars, "lpp_m");
     target.particular("lpp_m").zip(there).map_or(1.0, |(here, there)| here / there)
 }
 
@@ -118,14 +125,14 @@ pub struct UnknownParameter {
 ///
 /// # Errors
 /// Returns an error that names a parameter of the law that does not follow from the particulars.
-pub fn blank_of(
+pub fn blank_from_source(
     law: &Law,
     target: &Vessel,
     source: &Model,
-    approach: Option<Approach>,
+    approach: Option<TrialApproach>,
 ) -> Result<Model, UnknownParameter> {
-    let particulars = completed(law, target, Some(source));
-    filled(law, (target, &particulars), approach, &|name| same_parameter(law, name, source))
+    let particulars = complete_for_law(law, target, Some(source));
+    fill_model(law, (target, &particulars), approach, &|name| same_parameter(law, name, source))
 }
 
 /// Parameter of a source with the same name, if it has no unit and so does not depend on size.
@@ -140,20 +147,20 @@ fn same_parameter(law: &Law, name: &str, source: &Model) -> Option<Quantity> {
 ///
 /// # Errors
 /// Returns an error that names a parameter of the law that does not follow from the particulars.
-pub fn blank(
+pub fn blank_model(
     law: &Law,
     target: &Vessel,
-    approach: Option<Approach>,
+    approach: Option<TrialApproach>,
 ) -> Result<Model, UnknownParameter> {
-    filled(law, (target, &completed(law, target, None)), approach, &|_| None)
+    fill_model(law, (target, &complete_for_law(law, target, None)), approach, &|_| None)
 }
 
 /// Creates a blank model; values that do not follow from the particulars are given by the caller,
 /// or estimated.
-fn filled(
+fn fill_model(
     law: &Law,
     (target, particulars): (&Vessel, &Particulars),
-    approach: Option<Approach>,
+    approach: Option<TrialApproach>,
     given: &dyn Fn(&str) -> Option<Quantity>,
 ) -> Result<Model, UnknownParameter> {
     let zero = |name: &String| (name.clone(), Quantity::new(0.0, "nothing known"));
@@ -166,8 +173,9 @@ fn filled(
         };
         // In this order: approach, particulars, the caller's value, a published estimate.
         let derived = own.or_else(|| law.derived_parameter(name, particulars));
-        let value = derived.map(|value| Quantity::new(value, DERIVED));
-        let value = value.or_else(|| given(name)).or_else(|| estimated(law, name, target));
+        let value = derived.map(|value| Quantity::new(value, DERIVED_SOURCE));
+        let value =
+            value.or_else(|| given(name)).or_else(|| estimated_parameter(law, name, target));
         let unknown = || UnknownParameter {
             name: name.clone(),
             law: law.name.clone(),
@@ -185,7 +193,7 @@ fn filled(
         sources: Default::default(),
         speed_m_s: approach
             .map(|a| a.speed_m_s)
-            .or_else(|| particulars::value(particulars, "service_speed_m_s")),
+            .or_else(|| particulars::particular_value(particulars, "service_speed_m_s")),
         revolutions_rps: approach.and_then(|a| a.n_rps),
         steering: Default::default(),
         particulars: particulars.clone(),
@@ -220,7 +228,7 @@ const LOADING: [&str; 6] = [
 /// distribution of its mass by regressions; geometry scaled from the source whose coefficients
 /// depend on it, and by regressions where the source does not state it either; values without a
 /// regression are the source's.
-pub fn completed(law: &Law, target: &Vessel, source: Option<&Model>) -> Particulars {
+pub fn complete_for_law(law: &Law, target: &Vessel, source: Option<&Model>) -> Particulars {
     let needed = needed_particulars(law);
     let (loading, geometry): (Vec<&str>, Vec<&str>) =
         needed.iter().map(String::as_str).partition(|name| LOADING.contains(name));
@@ -244,14 +252,15 @@ fn scale_particular(
     source: Option<&Model>,
     name: &str,
 ) {
-    let is_known = particulars::given(particulars, name).is_some();
+    let is_known = particulars::stated_value(particulars, name).is_some();
     let Some(source) = source.filter(|_| !is_known) else { return };
-    let (Some(value), Some(dimension)) =
-        (particulars::value(&source.particulars, name), particulars::dimension(name))
-    else {
+    let (Some(value), Some(dimension)) = (
+        particulars::particular_value(&source.particulars, name),
+        particulars::particular_dimension(name),
+    ) else {
         return;
     };
-    let value = value * froude_factor(dimension, ratio(source, target));
+    let value = value * froude_factor(dimension, length_ratio(source, target));
     let mut quantity = Quantity::new(value, format!("{SCALED}{}", source.name));
     // The scatter of the regression, or that of a common ratio where no regression applies.
     let scatter = estimate_particular(particulars, name).and_then(|one| one.standard_error);
@@ -276,16 +285,16 @@ fn needed_particulars(law: &Law) -> BTreeSet<String> {
         law.values.values().chain(law.mass.values()).chain(axes).chain(parameters).collect();
     let names = formulas
         .into_iter()
-        .flat_map(|expr| expr.names().into_iter().map(str::to_owned).collect::<Vec<_>>());
-    names.filter(|name| particulars::dimension(name).is_some()).collect()
+        .flat_map(|expr| expr.mentioned_names().into_iter().map(str::to_owned).collect::<Vec<_>>());
+    names.filter(|name| particulars::particular_dimension(name).is_some()).collect()
 }
 
 /// Prepares a ship whose envelope covers the speeds of the trials.
 ///
 /// # Errors
 /// Returns an error if the model cannot be simulated.
-pub fn ready(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantError> {
-    widened(Ship::new(model, law), trials)
+pub fn prepare_ship(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantError> {
+    widen_envelope(Ship::new(model, law), trials)
 }
 
 /// Prepares a ship whose envelope covers the speeds of the trials, for all models that have the
@@ -293,13 +302,17 @@ pub fn ready(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantE
 ///
 /// # Errors
 /// Returns an error if the model cannot be simulated.
-pub fn ready_for_sisters(model: &Model, law: &Law, trials: &[&Trial]) -> Result<Ship, PlantError> {
-    let mut ship = widened(Ship::sisters(model, law), trials)?;
-    ship.forget_validity();
+pub fn prepare_sister_ships(
+    model: &Model,
+    law: &Law,
+    trials: &[&Trial],
+) -> Result<Ship, PlantError> {
+    let mut ship = widen_envelope(Ship::with_open_coefficients(model, law), trials)?;
+    ship.disable_excursions();
     Ok(ship)
 }
 
-fn widened(ship: Result<Ship, PlantError>, trials: &[&Trial]) -> Result<Ship, PlantError> {
+fn widen_envelope(ship: Result<Ship, PlantError>, trials: &[&Trial]) -> Result<Ship, PlantError> {
     let mut ship = ship?;
     // The range covers astern speeds by their magnitude.
     let fastest = trials

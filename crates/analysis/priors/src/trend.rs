@@ -3,14 +3,16 @@
 use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{FileError, Model};
-use sistership_simulation::recorded::{MissingChannel, Recorded, ReplaySettings, replay_all};
+use sistership_simulation::recorded::{
+    MissingChannel, RecordedTrial, ReplaySettings, replay_trials,
+};
 use sistership_simulation::state::at;
-use sistership_simulation::{PlantError, Stopped};
+use sistership_simulation::{PlantError, SimulationStop};
 
-use crate::transfer::ready;
+use crate::transfer::prepare_ship;
 
 /// Number of trials that are simulated in lockstep; more would be wasted where the first one fails.
-const TOGETHER: usize = 8;
+const BATCH_SIZE: usize = 8;
 
 /// Error of the trend of trials.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -41,7 +43,7 @@ pub enum TrendError {
         /// The trial.
         trial: String,
         /// Time and reason of the stop.
-        stopped: Stopped,
+        stopped: SimulationStop,
     },
     /// The yaw rate does not vary.
     #[error("the yaw rate is constant")]
@@ -53,18 +55,18 @@ pub enum TrendError {
 ///
 /// # Errors
 /// Returns an error that names a missing channel, or one if the simulation left the physical range.
-pub fn trend(
+pub fn trend_correlation(
     model: &Model,
     law: &Law,
     trials: &[&Trial],
     restart_s: f64,
 ) -> Result<f64, TrendError> {
-    let ship = ready(model, law, trials)?;
+    let ship = prepare_ship(model, law, trials)?;
     let settings = ReplaySettings { restart_s: Some(restart_s), ..ReplaySettings::default() };
     let mut pairs = Vec::new();
-    for together in trials.chunks(TOGETHER) {
-        let recorded = together.iter().map(|trial| Recorded { trial, coefficients: &[] });
-        let runs = replay_all(&ship, &recorded.collect::<Vec<_>>(), &settings)?;
+    for together in trials.chunks(BATCH_SIZE) {
+        let recorded = together.iter().map(|trial| RecordedTrial { trial, coefficients: &[] });
+        let runs = replay_trials(&ship, &recorded.collect::<Vec<_>>(), &settings)?;
         for (trial, run) in together.iter().zip(runs) {
             if let Some(stopped) = run.stopped {
                 return Err(TrendError::Stopped { trial: trial.name.clone(), stopped });
@@ -75,10 +77,10 @@ pub fn trend(
             pairs.extend(states.map(|(state, &k)| (state[at::R], measured[k])));
         }
     }
-    pearson(&pairs).ok_or(TrendError::Constant)
+    pearson_correlation(&pairs).ok_or(TrendError::Constant)
 }
 
-fn pearson(pairs: &[(f64, f64)]) -> Option<f64> {
+fn pearson_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
     let n = pairs.len() as f64;
     let mean = pairs.iter().fold((0.0, 0.0), |m, p| (m.0 + p.0 / n, m.1 + p.1 / n));
     let sums = pairs.iter().fold((0.0, 0.0, 0.0), |s, p| {

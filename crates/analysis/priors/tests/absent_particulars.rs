@@ -12,7 +12,7 @@ use rand_chacha::ChaCha12Rng;
 use rayon::prelude::*;
 use sistership_model::estimated_particulars::estimated_particulars;
 use sistership_model::{Model, Vessel, Zoo};
-use sistership_priors::transfer::{Approach, completed, transfer};
+use sistership_priors::transfer::{TrialApproach, complete_for_law, transfer_model};
 use sistership_simulation::Ship;
 
 /// No regression gives these.
@@ -23,7 +23,7 @@ fn sources(zoo: &Zoo) -> Vec<Model> {
     let mut by_law: BTreeMap<String, Model> = BTreeMap::new();
     for vessel in zoo.vessels() {
         for one in &vessel.file.models {
-            let model = zoo.model(&format!("{}/{}", vessel.name(), one.name)).unwrap();
+            let model = zoo.find_model(&format!("{}/{}", vessel.name(), one.name)).unwrap();
             by_law.entry(model.law.clone()).or_insert(model);
         }
     }
@@ -44,10 +44,10 @@ fn optional(vessel: &Vessel) -> Vec<&str> {
 /// A source on a ship, made ready to sail at the speed that corresponds by Froude's law.
 fn carried(zoo: &Zoo, source: &Model, target: &Vessel) -> Result<Model, String> {
     let law = zoo.law(&source.law).unwrap();
-    let lpp_m = |particulars| sistership_model::particulars::value(particulars, "lpp_m");
+    let lpp_m = |particulars| sistership_model::particulars::particular_value(particulars, "lpp_m");
     let ratio = lpp_m(&target.particulars).unwrap() / lpp_m(&source.particulars).unwrap();
     let speed_m_s = source.speed_m_s.unwrap_or(1.0) * ratio.sqrt();
-    let model = transfer(source, law, target, Some(Approach { speed_m_s, n_rps: None }));
+    let model = transfer_model(source, law, target, Some(TrialApproach { speed_m_s, n_rps: None }));
     Ship::new(&model, law).map(|_| model).map_err(|error| error.to_string())
 }
 
@@ -88,12 +88,12 @@ fn is_implied(model: &Model, name: &str) -> bool {
     let estimated = estimated_particulars(&model.particulars);
     let mut stated = model.particulars.clone();
     estimated.iter().for_each(|one| drop(stated.remove(&one.name)));
-    sistership_model::particulars::given(&stated, name).is_some()
+    sistership_model::particulars::stated_value(&stated, name).is_some()
 }
 
 #[test]
 fn a_ship_without_an_optional_particular_still_takes_every_source() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let sources = sources(&zoo);
     let vessels: Vec<&Arc<Vessel>> = zoo.vessels().collect();
     let singles = |vessel: &&Arc<Vessel>| -> Vec<String> {
@@ -106,7 +106,7 @@ fn a_ship_without_an_optional_particular_still_takes_every_source() {
 
 #[test]
 fn pairs_of_particulars_may_be_absent_as_well() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let sources = sources(&zoo);
     let mut random = ChaCha12Rng::seed_from_u64(50);
     let vessels: Vec<&Arc<Vessel>> = zoo.vessels().collect();
@@ -121,8 +121,8 @@ fn pairs_of_particulars_may_be_absent_as_well() {
 
 #[test]
 fn a_ferry_without_its_centre_of_gravity_takes_no_other_ship_s() {
-    let zoo = Zoo::embedded().unwrap();
-    let (tanker, kcs) = (zoo.model("kvlcc2").unwrap(), zoo.vessel("kcs").unwrap());
+    let zoo = Zoo::load_embedded().unwrap();
+    let (tanker, kcs) = (zoo.find_model("kvlcc2").unwrap(), zoo.vessel("kcs").unwrap());
     let reduced = without(kcs, &["x_g_m"]);
     let model = carried(&zoo, &tanker, &reduced).unwrap();
     let named = estimated_particulars(&model.particulars);
@@ -131,6 +131,6 @@ fn a_ferry_without_its_centre_of_gravity_takes_no_other_ship_s() {
     let own = kcs.particular("x_g_m").unwrap();
     assert!((low..high).contains(&own), "{own} is not in {x_g:?}");
     assert!((model.parameters["x_G"].value - x_g.value).abs() < 1e-9);
-    let alone = completed(zoo.law("mmg").unwrap(), &reduced, None);
+    let alone = complete_for_law(zoo.law("mmg").unwrap(), &reduced, None);
     assert_eq!(alone["x_g_m"].source, "estimated: zoo-medians");
 }

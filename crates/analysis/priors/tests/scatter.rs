@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 use sistership_model::{Model, Zoo};
-use sistership_priors::estimates::Library;
-use sistership_priors::estimates::inputs::Inputs;
+use sistership_priors::estimates::RegressionLibrary;
+use sistership_priors::estimates::inputs::FormulaInputs;
 
 /// Published sets of the law `mmg` and its kin; one of each hull. Seiun Maru's is left out: part of
 /// it comes of formulas.
@@ -21,9 +21,9 @@ fn published(model: &Model, name: &str) -> Option<f64> {
     }
 }
 
-fn inputs(model: &Model) -> Inputs {
+fn inputs(model: &Model) -> FormulaInputs {
     let speed = model.speed_m_s.unwrap();
-    let mut inputs = Inputs::new(&model.ship, &model.particulars, speed).unwrap();
+    let mut inputs = FormulaInputs::new(&model.ship, &model.particulars, speed).unwrap();
     for name in ["m_x", "m_y"] {
         inputs.set(name, published(model, name).unwrap());
     }
@@ -34,19 +34,20 @@ fn inputs(model: &Model) -> Inputs {
 
 #[test]
 fn stated_scatter_is_the_error_against_published_sets() {
-    let (zoo, library) = (Zoo::embedded().unwrap(), Library::embedded().unwrap());
-    let models: Vec<Model> = HULLS.iter().map(|name| zoo.model(name).unwrap()).collect();
+    let (zoo, library) =
+        (Zoo::load_embedded().unwrap(), RegressionLibrary::parse_embedded().unwrap());
+    let models: Vec<Model> = HULLS.iter().map(|name| zoo.find_model(name).unwrap()).collect();
     let mut wrong = Vec::new();
     for regression in &library.regressions {
         if CHOSEN.contains(&regression.name.as_str()) {
             continue;
         }
-        for name in regression.names() {
+        for name in regression.value_names() {
             let mut squares = Vec::new();
             let mut stated = 0.0;
             for model in &models {
                 let inputs = inputs(model);
-                let given = regression.given(name, &|name| inputs.get(name)).unwrap();
+                let given = regression.value_for(name, &|name| inputs.get(name)).unwrap();
                 stated = given.scatter;
                 squares.extend(published(model, name).map(|own| (given.value - own).powi(2)));
             }

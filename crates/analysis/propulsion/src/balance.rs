@@ -12,13 +12,13 @@ use sistership_model::propulsion::Propulsion;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Law, Model, Trial, particulars};
 
-use crate::covered::{Range, by_speed, revolutions, speeds};
-use crate::slope::{Figure, slope};
+use crate::covered::{CoveredRange, covered_revolutions, covered_speed_ratios, covered_speeds};
+use crate::slope::{UncertainValue, surge_derivative};
 use crate::thresholds::BALANCE;
 
 /// Evidence on a model's propulsion.
 #[derive(Debug, Clone, Copy)]
-pub struct Evidence<'a> {
+pub struct PropulsionEvidence<'a> {
     /// The model, with its posterior where there is one.
     pub model: &'a Model,
     /// Its law.
@@ -31,7 +31,7 @@ pub struct Evidence<'a> {
 
 /// The propeller at the self-propulsion point.
 #[derive(Debug, Clone, Copy)]
-struct Working {
+struct SelfPropulsionPoint {
     /// Advance ratio relative to that of zero thrust.
     loading: f64,
     /// `J/(0.7 pi)`.
@@ -47,17 +47,17 @@ const CHOSEN: &str = "docs/evidence/propulsion.md";
 
 /// Returns the balance of a model; `None` if its speed or revolutions at the approach are not
 /// known.
-pub fn balance(of: &Evidence<'_>) -> Option<Propulsion> {
+pub fn model_balance(of: &PropulsionEvidence<'_>) -> Option<Propulsion> {
     let speed = of.model.speed_m_s.filter(|speed| *speed > 0.0)?;
     let n_rps = of.model.revolutions_rps.filter(|n_rps| *n_rps > 0.0)?;
-    let working = of.estimate.and_then(working).unwrap_or(Working {
+    let working = of.estimate.and_then(self_propulsion_point).unwrap_or(SelfPropulsionPoint {
         loading: BALANCE.loading,
         advance: BALANCE.advance,
         source: TYPICAL,
     });
     let mut parameters: BTreeMap<String, Quantity> = BTreeMap::new();
     let mut add = |name: &str, quantity| parameters.insert(name.to_owned(), quantity);
-    add("resistance", resistance(of, working, [speed, n_rps]));
+    add("resistance", approach_resistance(of, working, [speed, n_rps]));
     add("speed", Quantity::new(speed, TRIALS));
     add("revolutions", Quantity::new(n_rps, TRIALS));
     add("loading", Quantity::new(working.loading, working.source));
@@ -65,9 +65,13 @@ pub fn balance(of: &Evidence<'_>) -> Option<Propulsion> {
     add("backing", Quantity::new(BALANCE.backing, CHOSEN));
     // A law that takes revolutions holds for ratios of revolutions to speed; another one for the
     // revolutions of the trials.
-    let range = revolutions(of.trials, n_rps);
+    let range = covered_revolutions(of.trials, n_rps);
     let takes_them = of.law.inputs.contains_key("n");
-    let seen = if takes_them { by_speed(of.trials, [speed, n_rps]) } else { [range[1], range[2]] };
+    let seen = if takes_them {
+        covered_speed_ratios(of.trials, [speed, n_rps])
+    } else {
+        [range[1], range[2]]
+    };
     let proportional = f64::from(u8::from(takes_them));
     for (name, value) in
         [("seen_from", seen[0]), ("seen_to", seen[1]), ("proportional", proportional)]
@@ -75,7 +79,7 @@ pub fn balance(of: &Evidence<'_>) -> Option<Propulsion> {
         add(name, Quantity::new(value, RANGE));
     }
     add_range(&mut parameters, 'n', range);
-    add_range(&mut parameters, 'u', speeds(of.trials, speed));
+    add_range(&mut parameters, 'u', covered_speeds(of.trials, speed));
     Some(Propulsion { parameters })
 }
 
@@ -85,7 +89,7 @@ pub fn needs_balance(law: &Law) -> bool {
     law.factors.contains_key("n") || !law.inputs.contains_key("n")
 }
 
-fn add_range(parameters: &mut BTreeMap<String, Quantity>, of: char, range: Range) {
+fn add_range(parameters: &mut BTreeMap<String, Quantity>, of: char, range: CoveredRange) {
     let names = ["none_below", "full_from", "full_to", "none_above"];
     for (name, value) in names.into_iter().zip(range) {
         parameters.insert(format!("{of}_{name}"), Quantity::new(value, RANGE));
@@ -94,9 +98,9 @@ fn add_range(parameters: &mut BTreeMap<String, Quantity>, of: char, range: Range
 
 /// The self-propulsion point of an estimate, where thrust and resistance balance; `None` if a
 /// quantity is missing.
-fn working(estimate: &Model) -> Option<Working> {
+fn self_propulsion_point(estimate: &Model) -> Option<SelfPropulsionPoint> {
     let parameter = |name: &str| estimate.parameters.get(name).map(|quantity| quantity.value);
-    let diameter_m = particulars::value(&estimate.particulars, "propeller_diameter_m")?;
+    let diameter_m = particulars::particular_value(&estimate.particulars, "propeller_diameter_m")?;
     let inflow = (1.0 - parameter("w_P0")?) * estimate.speed_m_s?;
     // Advance ratio `J = u_P / (n D)` at the estimate's approach.
     let ratio = inflow / (estimate.revolutions_rps? * diameter_m);
@@ -106,7 +110,7 @@ fn working(estimate: &Model) -> Option<Working> {
     let zero = 2.0 * k_0 / (root - k_1);
     let [least, most] = BALANCE.loadings;
     let loading = ratio / zero;
-    (loading.is_finite() && loading > 0.0).then(|| Working {
+    (loading.is_finite() && loading > 0.0).then(|| SelfPropulsionPoint {
         loading: loading.clamp(least, most),
         advance: ratio / (0.7 * std::f64::consts::PI),
         source: ESTIMATED,
@@ -114,41 +118,48 @@ fn working(estimate: &Model) -> Option<Working> {
 }
 
 /// Resistance at the self-propulsion point, N.
-fn resistance(of: &Evidence<'_>, working: Working, at: [f64; 2]) -> Quantity {
-    let known = beforehand(of, at[0]);
-    let Working { loading, advance, source } = working;
+fn approach_resistance(
+    of: &PropulsionEvidence<'_>,
+    working: SelfPropulsionPoint,
+    at: [f64; 2],
+) -> Quantity {
+    let known = prior_resistance(of, at[0]);
+    let SelfPropulsionPoint { loading, advance, source } = working;
     let square = advance * advance;
     let factor = 2.0 + loading / (1.0 - loading) - square / (1.0 + square);
-    let of_slope = slope(of.model, of.law, at).map(|slope| {
+    let of_slope = surge_derivative(of.model, of.law, at).map(|slope| {
         let (mean, by) = (-slope.mean * at[0] / factor, at[0] / factor);
         // The formula itself is uncertain by a share of the resistance, besides the posterior.
         let own = BALANCE.slope_deviation * mean.abs().max(known.mean);
-        Figure { mean, deviation: (slope.deviation * by).hypot(own) }
+        UncertainValue { mean, deviation: (slope.deviation * by).hypot(own) }
     });
     // A resistance that is not positive is an error of the fit: the prior knowledge alone is used.
     let Some(fitted) = of_slope.filter(|figure| figure.mean > 0.0) else {
-        return quantity(known, format!("{source}; the trials do not tell it"));
+        return value_quantity(known, format!("{source}; the trials do not tell it"));
     };
-    quantity(weighed(known, fitted), format!("{source}, and surge by speed in the trials"))
+    value_quantity(
+        weighted_mean(known, fitted),
+        format!("{source}, and surge by speed in the trials"),
+    )
 }
 
-fn quantity(figure: Figure, source: String) -> Quantity {
+fn value_quantity(figure: UncertainValue, source: String) -> Quantity {
     Quantity { standard_error: Some(figure.deviation), ..Quantity::new(figure.mean, source) }
 }
 
 /// The mean of two figures, weighted by their precisions.
-fn weighed(a: Figure, b: Figure) -> Figure {
+fn weighted_mean(a: UncertainValue, b: UncertainValue) -> UncertainValue {
     let [p, q] = [a, b].map(|figure| figure.deviation.powi(-2));
-    Figure { mean: (p * a.mean + q * b.mean) / (p + q), deviation: (p + q).powf(-0.5) }
+    UncertainValue { mean: (p * a.mean + q * b.mean) / (p + q), deviation: (p + q).powf(-0.5) }
 }
 
 /// Prior knowledge of the resistance, N.
-fn beforehand(of: &Evidence<'_>, speed_m_s: f64) -> Figure {
+fn prior_resistance(of: &PropulsionEvidence<'_>, speed_m_s: f64) -> UncertainValue {
     let [particulars, estimate] =
         [Some(&of.model.particulars), of.estimate.map(|estimate| &estimate.particulars)];
     let value = |name: &str| {
         let of = [particulars, estimate].into_iter().flatten();
-        of.filter_map(|own| particulars::value(own, name)).next()
+        of.filter_map(|own| particulars::particular_value(own, name)).next()
     };
     // Particulars of the model have priority over those of the estimate.
     let density = value("water_density_kg_m3").unwrap_or(1025.0);
@@ -161,11 +172,11 @@ fn beforehand(of: &Evidence<'_>, speed_m_s: f64) -> Figure {
             let mean = -x_0.value * unit;
             // The stated error of the regression, at least the usual one of estimates.
             let stated = x_0.standard_error.unwrap_or(0.0) * unit;
-            Figure { mean, deviation: stated.max(BALANCE.estimate_deviation * mean) }
+            UncertainValue { mean, deviation: stated.max(BALANCE.estimate_deviation * mean) }
         }
         None => {
             let mean = BALANCE.resistance * unit;
-            Figure { mean, deviation: 0.5 * mean }
+            UncertainValue { mean, deviation: 0.5 * mean }
         }
     }
 }

@@ -1,11 +1,11 @@
 //! Checks of a ship with its propeller stopped or reversed, straight ahead and from a turn.
 
 use sistership_simulation::Ship;
-use sistership_simulation::envelope::Stopped;
+use sistership_simulation::envelope::SimulationStop;
 use sistership_simulation::integrate::Method;
-use sistership_simulation::plant::Work;
-use sistership_simulation::ship::{Order, Run};
-use sistership_simulation::state::{StateVector, Trajectory, at, straight};
+use sistership_simulation::plant::PlantWorkspace;
+use sistership_simulation::ship::{HelmOrder, RunSettings};
+use sistership_simulation::state::{StateVector, Trajectory, at, straight_state};
 
 use crate::thresholds::CHECK;
 
@@ -52,12 +52,12 @@ pub enum PropulsionFault {
         /// Order.
         motion: &'static str,
         /// Time and reason.
-        stopped: Stopped,
+        stopped: SimulationStop,
     },
 }
 
 /// An order, and the speed at which its check ends.
-struct Motion {
+struct PropellerOrder {
     name: &'static str,
     /// Speed at the beginning, and revolutions, relative to those of the approach.
     start: f64,
@@ -68,29 +68,29 @@ struct Motion {
     arrived: fn(f64) -> bool,
 }
 
-const STRAIGHT: [Motion; 4] = [
-    Motion {
+const STRAIGHT: [PropellerOrder; 4] = [
+    PropellerOrder {
         name: "propeller stopped",
         start: 1.0,
         revolutions: 0.0,
         turning: false,
         arrived: |u| u < CHECK.rest,
     },
-    Motion {
+    PropellerOrder {
         name: "propeller reversed",
         start: 1.0,
         revolutions: -1.0,
         turning: false,
         arrived: |u| u < -CHECK.rest,
     },
-    Motion {
+    PropellerOrder {
         name: "astern from rest",
         start: 0.0,
         revolutions: -1.0,
         turning: false,
         arrived: |u| u < -CHECK.rest,
     },
-    Motion {
+    PropellerOrder {
         name: "ahead from rest",
         start: 0.0,
         revolutions: 1.0,
@@ -99,15 +99,15 @@ const STRAIGHT: [Motion; 4] = [
     },
 ];
 
-const TURNING: [Motion; 2] = [
-    Motion {
+const TURNING: [PropellerOrder; 2] = [
+    PropellerOrder {
         name: "propeller stopped in a turn",
         start: 1.0,
         revolutions: 0.0,
         turning: true,
         arrived: |u| u < CHECK.rest,
     },
-    Motion {
+    PropellerOrder {
         name: "propeller reversed in a turn",
         start: 1.0,
         revolutions: -1.0,
@@ -121,7 +121,7 @@ const TURNING: [Motion; 2] = [
 ///
 /// # Errors
 /// Returns the fault of the first order that ends otherwise.
-pub fn check(ship: &Ship) -> Result<(), PropulsionFault> {
+pub fn check_straight(ship: &Ship) -> Result<(), PropulsionFault> {
     check_motions(ship, &STRAIGHT)
 }
 
@@ -133,21 +133,22 @@ pub fn check_turning(ship: &Ship) -> Result<(), PropulsionFault> {
     check_motions(ship, &TURNING)
 }
 
-fn check_motions(ship: &Ship, motions: &[Motion]) -> Result<(), PropulsionFault> {
+fn check_motions(ship: &Ship, motions: &[PropellerOrder]) -> Result<(), PropulsionFault> {
     let speed = ship.approach_speed_m_s();
     if !ship.has_propeller() || ship.revolutions_at(speed) <= 0.0 {
         return Err(PropulsionFault::NoRevolutions);
     }
     // The ship's own deceleration sets the time scale of all orders.
     let longest_s = CHECK.patience * stopping_time_s(ship)?;
-    motions.iter().try_for_each(|motion| sailed(ship, motion, longest_s))
+    motions.iter().try_for_each(|motion| simulate_order(ship, motion, longest_s))
 }
 
 /// The speed divided by the deceleration with the propeller stopped, s; an error if that is
 /// implausible.
 fn stopping_time_s(ship: &Ship) -> Result<f64, PropulsionFault> {
     let speed = ship.approach_speed_m_s();
-    let surge = ship.rate_at(&straight(speed), 0.0, 0.0, &mut Work::default())[at::U];
+    let surge =
+        ship.rate_at(&straight_state(speed), 0.0, 0.0, &mut PlantWorkspace::default())[at::U];
     let length_s = ship.lpp_m() / speed;
     // Relative deceleration in the time of a ship length, dimensionless.
     let rate = surge / speed * length_s;
@@ -160,7 +161,7 @@ fn stopping_time_s(ship: &Ship) -> Result<f64, PropulsionFault> {
 }
 
 /// Speeds of a motion so far.
-struct Watch {
+struct SpeedMonitor {
     /// Least speed relative to that of the approach.
     least: f64,
     /// Last speed.
@@ -171,30 +172,34 @@ struct Watch {
 
 /// Simulates one order, after a turn if it has one, until the ship arrives, speeds up or takes too
 /// long.
-fn sailed(ship: &Ship, motion: &Motion, longest_s: f64) -> Result<(), PropulsionFault> {
+fn simulate_order(
+    ship: &Ship,
+    motion: &PropellerOrder,
+    longest_s: f64,
+) -> Result<(), PropulsionFault> {
     let name = motion.name;
     let (speed, length_s) = (ship.approach_speed_m_s(), ship.lpp_m() / ship.approach_speed_m_s());
     let turn_s = if motion.turning { CHECK.turn * length_s } else { 0.0 };
     let ahead_rps = ship.revolutions_at(speed);
-    let run = Run {
-        start: straight(motion.start * speed),
+    let run = RunSettings {
+        start: straight_state(motion.start * speed),
         duration_s: turn_s + longest_s,
         step_s: CHECK.step * length_s,
         method: Method::Rk4,
     };
-    let turn = Order { delta_rad: CHECK.turn_deg.to_radians(), n_rps: ahead_rps };
-    let ordered = Order { delta_rad: 0.0, n_rps: motion.revolutions * ahead_rps };
+    let turn = HelmOrder { delta_rad: CHECK.turn_deg.to_radians(), n_rps: ahead_rps };
+    let ordered = HelmOrder { delta_rad: 0.0, n_rps: motion.revolutions * ahead_rps };
     let mut watch =
-        Watch { least: f64::INFINITY, last: motion.start, rises: false, arrived: false };
+        SpeedMonitor { least: f64::INFINITY, last: motion.start, rises: false, arrived: false };
     let order = |t_s: f64, state: &StateVector| {
         if t_s < turn_s {
             return Some(turn);
         }
         // The watch begins only after the turn; `None` ends the simulation.
-        watch.see(state[at::U] / speed, motion);
+        watch.observe_speed(state[at::U] / speed, motion);
         (!watch.rises && !watch.arrived).then_some(ordered)
     };
-    let went = ship.sail(run, &mut Trajectory::default(), order);
+    let went = ship.simulate_orders(run, &mut Trajectory::default(), order);
     went.map_err(|stopped| PropulsionFault::Stopped { motion: name, stopped })?;
     // A rise counts first, also if the ship arrived in the same step.
     match (watch.rises, watch.arrived) {
@@ -204,9 +209,9 @@ fn sailed(ship: &Ship, motion: &Motion, longest_s: f64) -> Result<(), Propulsion
     }
 }
 
-impl Watch {
+impl SpeedMonitor {
     /// Records a speed. Out of a turn a ship may gain speed at first.
-    fn see(&mut self, share: f64, motion: &Motion) {
+    fn observe_speed(&mut self, share: f64, motion: &PropellerOrder) {
         let should_fall = motion.revolutions <= 0.0 && !motion.turning;
         let too_fast = share > CHECK.ahead[1];
         // A small rise is tolerated, as of a decaying drift.

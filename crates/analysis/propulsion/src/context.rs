@@ -3,14 +3,14 @@
 use sistership_model::propulsion::Propulsion;
 use sistership_model::{Law, Model, Trial};
 use sistership_simulation::Ship;
-use sistership_simulation::validity::covered;
+use sistership_simulation::validity::covered_region;
 
-use crate::balance::{Evidence, balance, needs_balance};
-use crate::check::{PropulsionFault, check};
+use crate::balance::{PropulsionEvidence, model_balance, needs_balance};
+use crate::check::{PropulsionFault, check_straight};
 
 /// Inputs for the choice of a model's propulsion.
 #[derive(Debug)]
-pub struct Context<'a> {
+pub struct PropulsionContext<'a> {
     /// The law.
     pub law: &'a Law,
     /// Trials on which the model was fitted.
@@ -19,7 +19,7 @@ pub struct Context<'a> {
     pub estimate: Option<Model>,
 }
 
-impl Context<'_> {
+impl PropulsionContext<'_> {
     /// Returns the model as it is if its trials stopped or reversed the propeller, or if its law
     /// has a propeller that passes the check; otherwise with a surge balance, if its revolutions
     /// are known. Both have the range of the trials.
@@ -30,12 +30,12 @@ impl Context<'_> {
         let least = model.validity.as_ref().and_then(|region| region.ranges.get("n"));
         let is_measured = least.is_some_and(|[least, _]| *least <= 0.0);
         let has_propeller = !needs_balance(self.law);
-        if is_measured || has_propeller && self.fault(&model).is_none() {
+        if is_measured || has_propeller && self.propulsion_fault(&model).is_none() {
             return model;
         }
         let balanced = self.with_balance(model.clone());
         // The law's own propeller is kept if a balance would not correct the fault.
-        let keeps = has_propeller && self.fault(&balanced).is_some();
+        let keeps = has_propeller && self.propulsion_fault(&balanced).is_some();
         if keeps || balanced.propulsion.is_none() { model } else { balanced }
     }
 
@@ -51,27 +51,27 @@ impl Context<'_> {
         let own = self.estimate.as_ref().and_then(|estimate| estimate.revolutions_rps);
         model.revolutions_rps = model.revolutions_rps.or(own);
         let (estimate, trials) = (self.estimate.as_ref(), self.trials);
-        let evidence = Evidence { model: &model, law: self.law, estimate, trials };
-        model.propulsion = balance(&evidence);
+        let evidence = PropulsionEvidence { model: &model, law: self.law, estimate, trials };
+        model.propulsion = model_balance(&evidence);
         self.with_range(model)
     }
 
     /// Returns the fault of a model with the propeller stopped or reversed; a model that cannot be
     /// simulated at all is refused elsewhere.
-    pub fn fault(&self, model: &Model) -> Option<PropulsionFault> {
-        Ship::new(model, self.law).ok().and_then(|ship| check(&ship).err())
+    pub fn propulsion_fault(&self, model: &Model) -> Option<PropulsionFault> {
+        Ship::new(model, self.law).ok().and_then(|ship| check_straight(&ship).err())
     }
 
     /// The model with the range of its trials, including revolutions if it takes them.
     fn with_range(&self, mut model: Model) -> Model {
         let own = self.law.with_effects(&model);
-        model.validity = covered(self.trials, own.as_ref().unwrap_or(self.law));
+        model.validity = covered_region(self.trials, own.as_ref().unwrap_or(self.law));
         model
     }
 }
 
 /// Returns a balance in words.
-pub fn words(propulsion: &Propulsion) -> String {
+pub fn describe_balance(propulsion: &Propulsion) -> String {
     let of = |name: &str| propulsion.value(name).unwrap_or(f64::NAN);
     let resistance = propulsion.parameters.get("resistance");
     let deviation = resistance.and_then(|one| one.standard_error).unwrap_or(f64::NAN);

@@ -7,11 +7,11 @@ use crate::thresholds::BALANCE;
 
 /// Range in which a law alone counts, and where its weight falls to zero: none below, full from,
 /// full to, none above.
-pub(crate) type Range = [f64; 4];
+pub(crate) type CoveredRange = [f64; 4];
 
 /// Returns the range of revolutions, 1/s; that of the approach if none were recorded.
-pub(crate) fn revolutions(trials: &[&Trial], approach_rps: f64) -> Range {
-    let [least, greatest] = bulk(trials, Channel::N).unwrap_or([approach_rps; 2]);
+pub(crate) fn covered_revolutions(trials: &[&Trial], approach_rps: f64) -> CoveredRange {
+    let [least, greatest] = central_range(trials, Channel::N).unwrap_or([approach_rps; 2]);
     let width = BALANCE.revolutions * approach_rps;
     [least - width, least, greatest, greatest + width]
 }
@@ -20,7 +20,7 @@ pub(crate) fn revolutions(trials: &[&Trial], approach_rps: f64) -> Range {
 /// those of the approach if none were recorded. Samples near rest have no such ratio; the width
 /// over which a law's weight falls is added on either side, so that it has full weight at every
 /// sample.
-pub(crate) fn by_speed(trials: &[&Trial], [speed_m_s, n_rps]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn covered_speed_ratios(trials: &[&Trial], [speed_m_s, n_rps]: [f64; 2]) -> [f64; 2] {
     let least = BALANCE.rest * speed_m_s;
     let of = |trial: &&Trial| {
         let (u, n) = (trial.channel(Channel::U)?, trial.channel(Channel::N)?);
@@ -34,8 +34,8 @@ pub(crate) fn by_speed(trials: &[&Trial], [speed_m_s, n_rps]: [f64; 2]) -> [f64;
 }
 
 /// Returns the range of speeds ahead, m/s.
-pub(crate) fn speeds(trials: &[&Trial], approach_m_s: f64) -> Range {
-    let [least, greatest] = bulk(trials, Channel::U).unwrap_or([approach_m_s; 2]);
+pub(crate) fn covered_speeds(trials: &[&Trial], approach_m_s: f64) -> CoveredRange {
+    let [least, greatest] = central_range(trials, Channel::U).unwrap_or([approach_m_s; 2]);
     let near_rest = BALANCE.rest * approach_m_s;
     // Trials that reach rest cover the speeds down to it, so that their range is not widened by a
     // share of their least speed.
@@ -48,7 +48,7 @@ pub(crate) fn speeds(trials: &[&Trial], approach_m_s: f64) -> Range {
 }
 
 /// Range of all but the tails of the samples; `None` if no trial has the channel.
-fn bulk(trials: &[&Trial], channel: Channel) -> Option<[f64; 2]> {
+fn central_range(trials: &[&Trial], channel: Channel) -> Option<[f64; 2]> {
     let samples = trials.iter().filter_map(|trial| trial.channel(channel)).flatten().copied();
     between_tails(samples.collect())
 }

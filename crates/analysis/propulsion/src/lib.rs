@@ -8,6 +8,6 @@ mod covered;
 mod slope;
 mod thresholds;
 
-pub use balance::{Evidence, balance, needs_balance};
-pub use check::{PropulsionFault, check, check_turning};
-pub use context::{Context, words};
+pub use balance::{PropulsionEvidence, model_balance, needs_balance};
+pub use check::{PropulsionFault, check_straight, check_turning};
+pub use context::{PropulsionContext, describe_balance};

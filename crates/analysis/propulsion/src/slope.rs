@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use sistership_model::coefficient::Axis;
 use sistership_model::{Law, Model};
-use sistership_simulation::equations::{EquationsOfMotion, Lowering, PlantError};
+use sistership_simulation::equations::{EquationLowering, EquationsOfMotion, PlantError};
 
 /// A figure and its standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Figure {
+pub(crate) struct UncertainValue {
     pub mean: f64,
     pub deviation: f64,
 }
@@ -18,13 +18,17 @@ const STEP: f64 = 0.05;
 
 /// Returns the derivative of the surge force by the speed, N s/m, with its deviation by the model's
 /// posterior; `None` without one.
-pub(crate) fn slope(model: &Model, law: &Law, [speed_m_s, n_rps]: [f64; 2]) -> Option<Figure> {
-    let posterior = model.posterior()?;
-    let slopes = slopes(model, law, [speed_m_s, n_rps]).ok()?;
+pub(crate) fn surge_derivative(
+    model: &Model,
+    law: &Law,
+    [speed_m_s, n_rps]: [f64; 2],
+) -> Option<UncertainValue> {
+    let posterior = model.valid_posterior()?;
+    let slopes = coefficient_derivatives(model, law, [speed_m_s, n_rps]).ok()?;
     let of = |name: &String| slopes.by_name.get(name).copied().unwrap_or(0.0);
     let coefficients = model.coefficients.iter();
     let mean = slopes.rest + coefficients.map(|(name, c)| c.value * of(name)).sum::<f64>();
-    let root = posterior.root().ok()?;
+    let root = posterior.covariance_root().ok()?;
     // With `L` the root of the covariance and `g` the derivatives by coefficient the variance is
     // `|L' g|^2`.
     let along = |column: usize| {
@@ -32,37 +36,42 @@ pub(crate) fn slope(model: &Model, law: &Law, [speed_m_s, n_rps]: [f64; 2]) -> O
         rows.map(|(name, row)| of(name) * row.get(column).copied().unwrap_or(0.0)).sum::<f64>()
     };
     let variance = (0..posterior.names.len()).map(|column| along(column).powi(2)).sum::<f64>();
-    Some(Figure { mean, deviation: variance.sqrt() })
+    Some(UncertainValue { mean, deviation: variance.sqrt() })
 }
 
 /// Derivatives per unit of each coefficient, and of the rest.
-struct Slopes {
+struct CoefficientDerivatives {
     by_name: BTreeMap<String, f64>,
     rest: f64,
 }
 
-fn slopes(model: &Model, law: &Law, [speed, n_rps]: [f64; 2]) -> Result<Slopes, PlantError> {
-    let equations = EquationsOfMotion::of_foundation(model, law)?;
-    let names = equations.names();
-    let mut lowering = Lowering::new(&equations, &names);
-    let coefficients: Vec<&String> = equations.coefficients(Axis::X).collect();
+fn coefficient_derivatives(
+    model: &Model,
+    law: &Law,
+    [speed, n_rps]: [f64; 2],
+) -> Result<CoefficientDerivatives, PlantError> {
+    let equations = EquationsOfMotion::from_foundation(model, law)?;
+    let names = equations.tape_input_names();
+    let mut lowering = EquationLowering::new(&equations, &names);
+    let coefficients: Vec<&String> = equations.axis_coefficients(Axis::X).collect();
     for name in &coefficients {
-        lowering.output(&equations.regressor(name)?)?;
+        lowering.add_output(&equations.scaled_regressor(name)?)?;
     }
     // The rest is the last output, after the regressors of the coefficients.
-    lowering.output(&equations.law().axes[&Axis::X].rest)?;
+    lowering.add_output(&equations.law().axes[&Axis::X].rest)?;
     let tape = lowering.finish();
-    let defaults: BTreeMap<String, Option<f64>> = equations.inputs().into_iter().collect();
+    let defaults: BTreeMap<String, Option<f64>> = equations.law_inputs().into_iter().collect();
     let given = |name: &String, u: f64| match name.as_str() {
         "u" => u,
         "n" => n_rps,
         name => defaults.get(name).copied().flatten().unwrap_or(0.0),
     };
-    let at = |u: f64| tape.values(&names.iter().map(|name| given(name, u)).collect::<Vec<_>>());
+    let at =
+        |u: f64| tape.evaluate_point(&names.iter().map(|name| given(name, u)).collect::<Vec<_>>());
     let (low, high) = (at((1.0 - STEP) * speed), at((1.0 + STEP) * speed));
     let by: Vec<f64> =
         low.iter().zip(&high).map(|(low, high)| (high - low) / (2.0 * STEP * speed)).collect();
     let rest = by.last().copied().unwrap_or(0.0);
     let by_name = coefficients.into_iter().cloned().zip(by).collect();
-    Ok(Slopes { by_name, rest })
+    Ok(CoefficientDerivatives { by_name, rest })
 }

@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
-use sistership_propulsion::{Evidence, PropulsionFault, balance, check};
+use sistership_propulsion::{PropulsionEvidence, PropulsionFault, check_straight, model_balance};
 use sistership_simulation::Ship;
-use sistership_simulation::plant::Work;
-use sistership_simulation::state::{StateVector, at, straight};
+use sistership_simulation::plant::PlantWorkspace;
+use sistership_simulation::state::{StateVector, at, straight_state};
 
 /// A trial at constant revolutions, in which the speed falls to six tenths.
 fn trial(model: &Model) -> Trial {
@@ -26,7 +26,7 @@ fn trial(model: &Model) -> Trial {
 /// none.
 fn models(zoo: &Zoo) -> Vec<(Model, Law)> {
     let of = |vessel: &std::sync::Arc<sistership_model::Vessel>| {
-        let mut model = zoo.model(vessel.name()).ok()?;
+        let mut model = zoo.find_model(vessel.name()).ok()?;
         let law = zoo.law(&model.law)?.as_ref().clone();
         model.speed_m_s?;
         model.revolutions_rps = model.revolutions_rps.or(Some(1.0));
@@ -37,23 +37,23 @@ fn models(zoo: &Zoo) -> Vec<(Model, Law)> {
 
 fn balanced(model: &Model, law: &Law) -> Model {
     let trial = trial(model);
-    let evidence = Evidence { model, law, estimate: None, trials: &[&trial] };
-    Model { propulsion: balance(&evidence), ..model.clone() }
+    let evidence = PropulsionEvidence { model, law, estimate: None, trials: &[&trial] };
+    Model { propulsion: model_balance(&evidence), ..model.clone() }
 }
 
 fn rate(ship: &Ship, state: &StateVector, delta_rad: f64, n_rps: f64) -> StateVector {
-    ship.rate_at(state, delta_rad, n_rps, &mut Work::default())
+    ship.rate_at(state, delta_rad, n_rps, &mut PlantWorkspace::default())
 }
 
 #[test]
 fn every_model_stops_and_goes_astern() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let mut failed = Vec::new();
     let all = models(&zoo);
     for (model, law) in &all {
-        let before = Ship::new(model, law).map(|ship| check(&ship));
+        let before = Ship::new(model, law).map(|ship| check_straight(&ship));
         let Ok(ship) = Ship::new(&balanced(model, law), law) else { continue };
-        let after = check(&ship);
+        let after = check_straight(&ship);
         println!("{:24} {:22} before {before:?}, after {after:?}", model.name, law.name);
         if let Err(fault) = after {
             failed.push(format!("{}: {fault}", model.name));
@@ -64,14 +64,14 @@ fn every_model_stops_and_goes_astern() {
 
 #[test]
 fn within_its_trials_a_model_stays_what_it_was() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     for (model, law) in models(&zoo) {
         let Ok(before) = Ship::new(&model, &law) else { continue };
         let after = Ship::new(&balanced(&model, &law), &law).unwrap();
         let (speed, n_rps) = (model.speed_m_s.unwrap(), model.revolutions_rps.unwrap());
         for k in 0..20_u32 {
             let share = f64::from(k) / 19.0;
-            let mut state = straight((0.6 + 0.4 * share) * speed);
+            let mut state = straight_state((0.6 + 0.4 * share) * speed);
             state[at::V] = 0.2 * speed * (share - 0.5);
             state[at::R] = 0.5 * (0.7 - share) * speed / before.lpp_m();
             let [old, new] = [&before, &after].map(|ship| rate(ship, &state, 0.2 * share, n_rps));
@@ -83,17 +83,17 @@ fn within_its_trials_a_model_stays_what_it_was() {
 
 #[test]
 fn a_law_without_revolutions_runs_on_for_ever() {
-    let zoo = Zoo::embedded().unwrap();
-    let model = zoo.model("mariner").unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = zoo.find_model("mariner").unwrap();
     let law = zoo.law(&model.law).unwrap();
-    let fault = check(&Ship::new(&model, law).unwrap()).unwrap_err();
+    let fault = check_straight(&Ship::new(&model, law).unwrap()).unwrap_err();
     assert_eq!(fault, PropulsionFault::NoRevolutions);
     let model = Model { revolutions_rps: Some(1.5), ..model };
     let ship = Ship::new(&balanced(&model, law), law).unwrap();
     assert!(ship.has_propeller());
     let speed = ship.approach_speed_m_s();
     let surge = |share: f64, turns: f64| {
-        rate(&ship, &straight(share * speed), 0.0, turns * 1.5)[at::U] / speed * ship.lpp_m()
+        rate(&ship, &straight_state(share * speed), 0.0, turns * 1.5)[at::U] / speed * ship.lpp_m()
     };
     assert!(surge(1.0, 0.0) < 0.0 && surge(1.0, -1.0) < surge(1.0, 0.0));
     assert!(surge(0.0, 0.0).abs() < 1e-6 && surge(-0.5, 0.0) > 0.0);
@@ -102,16 +102,16 @@ fn a_law_without_revolutions_runs_on_for_ever() {
 
 #[test]
 fn parameters_that_lack_or_are_unknown_are_named() {
-    let zoo = Zoo::embedded().unwrap();
-    let model = Model { revolutions_rps: Some(1.5), ..zoo.model("mariner").unwrap() };
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = Model { revolutions_rps: Some(1.5), ..zoo.find_model("mariner").unwrap() };
     let law = zoo.law(&model.law).unwrap();
     let whole = balanced(&model, law);
-    assert_eq!(whole.check(law), Ok(()));
+    assert_eq!(whole.check_against(law), Ok(()));
     let mut less = whole.clone();
     less.propulsion.as_mut().unwrap().parameters.remove("loading");
-    assert_eq!(less.check(law).unwrap_err().0, "propulsion.parameters.loading");
+    assert_eq!(less.check_against(law).unwrap_err().0, "propulsion.parameters.loading");
     let mut more = whole;
     let parameters = &mut more.propulsion.as_mut().unwrap().parameters;
     parameters.insert("pitch".to_owned(), parameters["loading"].clone());
-    assert_eq!(more.check(law).unwrap_err().0, "propulsion.parameters.pitch");
+    assert_eq!(more.check_against(law).unwrap_err().0, "propulsion.parameters.pitch");
 }

@@ -2,20 +2,20 @@
 
 use askama::Template;
 use serde::Serialize;
-use sistership_learned::Judgement;
-use sistership_model::branch::Branch;
+use sistership_learned::CorrectionEvaluation;
+use sistership_model::branch::CorrectionDocument;
 use sistership_model::version::code_revision;
 
-use crate::numbers::significant;
-use crate::rendered::{Rendered, ReportError, VersionLabel};
+use crate::numbers::format_significant;
+use crate::rendered::{RenderedReport, ReportError, VersionLabel};
 
 /// Input of the report.
 #[derive(Debug, Clone, Serialize)]
 pub struct BranchInput<'a> {
     /// Learned correction.
-    pub branch: &'a Branch,
+    pub branch: &'a CorrectionDocument,
     /// Evaluation on held-out trials; `None` if there was only one trial.
-    pub judgement: Option<&'a Judgement>,
+    pub judgement: Option<&'a CorrectionEvaluation>,
     /// Version of the foundation.
     pub of: VersionLabel,
     /// Version with the correction.
@@ -45,12 +45,12 @@ struct BranchRow {
 ///
 /// # Errors
 /// Returns an error if it cannot be written.
-pub fn render_branch(input: &BranchInput<'_>) -> Result<Rendered, ReportError> {
+pub fn render_branch(input: &BranchInput<'_>) -> Result<RenderedReport, ReportError> {
     let trials = input.judgement.iter().flat_map(|judgement| &judgement.trials);
     let row = |name: &str, foundation: f64, branch: f64, share: f64| BranchRow {
         name: name.to_owned(),
-        foundation: significant(foundation, 3),
-        branch: significant(branch, 3),
+        foundation: format_significant(foundation, 3),
+        branch: format_significant(branch, 3),
         share: format!("{:.0} %", 100.0 * share),
     };
     let page = BranchPage {
@@ -63,34 +63,35 @@ pub fn render_branch(input: &BranchInput<'_>) -> Result<Rendered, ReportError> {
             .collect(),
         // The last row of the table is the mean over the trials.
         mean: input.judgement.map(|all| row("mean", all.foundation, all.branch, all.share)),
-        verdict: verdict(input.judgement),
-        domain: domain(input.branch),
+        verdict: verdict_sentence(input.judgement),
+        domain: domain_ranges(input.branch),
     };
-    Ok(Rendered { json: serde_json::to_value(input)?, html: page.render()? })
+    Ok(RenderedReport { json: serde_json::to_value(input)?, html: page.render()? })
 }
 
 /// Result on held-out trials, as a sentence.
-fn verdict(judgement: Option<&Judgement>) -> String {
+fn verdict_sentence(judgement: Option<&CorrectionEvaluation>) -> String {
     let Some(judged) = judgement else {
         return "There was one trial only, so that none is left to judge the branch on.".to_owned();
     };
-    let word = if judged.wins() { "wins" } else { "does not win" };
+    let word = if judged.is_better() { "wins" } else { "does not win" };
     format!(
         "On {} trials left out of its training, the branch {word} by more than its uncertainty: \
          error {} with it, {} without, the difference sure to {}. It counted for {:.0} % of the \
          simulated time.",
         judged.trials.len(),
-        significant(judged.branch, 3),
-        significant(judged.foundation, 3),
-        significant(judged.standard_error, 2),
+        format_significant(judged.branch, 3),
+        format_significant(judged.foundation, 3),
+        format_significant(judged.standard_error, 2),
         100.0 * judged.share
     )
 }
 
 /// Ranges of the domain, SI units and radians.
-fn domain(branch: &Branch) -> Vec<(String, String)> {
-    let range =
-        |[low, high]: &[f64; 2]| format!("{} to {}", significant(*low, 3), significant(*high, 3));
+fn domain_ranges(branch: &CorrectionDocument) -> Vec<(String, String)> {
+    let range = |[low, high]: &[f64; 2]| {
+        format!("{} to {}", format_significant(*low, 3), format_significant(*high, 3))
+    };
     branch.domain.ranges.iter().map(|(name, bounds)| (name.clone(), range(bounds))).collect()
 }
 
@@ -100,6 +101,6 @@ impl BranchPage<'_> {
     }
 
     fn number(&self, value: &f64) -> String {
-        significant(*value, 3)
+        format_significant(*value, 3)
     }
 }

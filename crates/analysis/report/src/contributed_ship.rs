@@ -2,26 +2,26 @@
 
 use std::fmt::Write as _;
 
-use sistership_assessment::validation::{Appraisal, Dataset, Review, Severity};
+use sistership_assessment::validation::{CatalogueEntry, ModelAppraisal, Severity, ShipReview};
 use sistership_model::Vessel;
 
-use crate::numbers::hundredths;
+use crate::numbers::format_hundredths;
 
 /// Returns the particulars, models, published trials, findings and sources of a ship as Markdown.
-pub fn contributed_ship(vessel: &Vessel, review: &Review) -> String {
+pub fn contributed_ship_page(vessel: &Vessel, review: &ShipReview) -> String {
     [
         format!("# {}\n\n{}\n\n", review.ship, review.title),
-        findings(review),
-        particulars(vessel),
-        models(review),
-        trials(review),
-        sources(vessel),
+        findings_section(review),
+        particulars_section(vessel),
+        models_section(review),
+        trials_section(review),
+        sources_section(vessel),
     ]
     .concat()
 }
 
 /// Markdown table under a heading; empty without rows.
-fn table(head: &str, columns: &[&str], rows: Vec<Vec<String>>) -> String {
+fn markdown_table(head: &str, columns: &[&str], rows: Vec<Vec<String>>) -> String {
     if rows.is_empty() {
         return String::new();
     }
@@ -37,8 +37,8 @@ fn table(head: &str, columns: &[&str], rows: Vec<Vec<String>>) -> String {
 }
 
 /// Findings of the review, the refusals first.
-fn findings(review: &Review) -> String {
-    let verdict = if review.is_taken() { "It can be taken." } else { "It is refused." };
+fn findings_section(review: &ShipReview) -> String {
+    let verdict = if review.is_acceptable() { "It can be taken." } else { "It is refused." };
     let mut text = format!("{verdict}\n\n");
     for (severity, head) in
         [(Severity::Refused, "Refused"), (Severity::Look, "A reviewer should look at")]
@@ -54,36 +54,36 @@ fn findings(review: &Review) -> String {
     text
 }
 
-fn particulars(vessel: &Vessel) -> String {
+fn particulars_section(vessel: &Vessel) -> String {
     let row = |(name, quantity): (&String, &sistership_model::quantity::Quantity)| {
         let note = quantity.note.clone().unwrap_or_default();
         vec![name.clone(), format!("{}", quantity.value), quantity.source.clone(), note]
     };
     let rows = vessel.particulars.iter().map(row).collect();
-    table("Particulars", &["particular", "value", "source", "note"], rows)
+    markdown_table("Particulars", &["particular", "value", "source", "note"], rows)
 }
 
-fn models(review: &Review) -> String {
+fn models_section(review: &ShipReview) -> String {
     let columns =
         ["model", "law", "status", "advance, L", "tactical, L", "10/10, deg", "20/20, deg"];
-    table("Models", &columns, review.models.iter().map(model).collect())
+    markdown_table("Models", &columns, review.models.iter().map(model_cells).collect())
 }
 
-fn model(model: &Appraisal) -> Vec<String> {
+fn model_cells(model: &ModelAppraisal) -> Vec<String> {
     // The ship's name is in the title, so the model's own name is enough.
     let name = model.model.split_once('/').map_or(model.model.as_str(), |(_, name)| name);
     vec![
         format!("`{name}`"),
         format!("`{}`", model.law),
-        model.standing.word().to_owned(),
-        hundredths(model.turn_lengths(|turn| turn.advance_m)),
-        hundredths(model.turn_lengths(|turn| turn.tactical_diameter_m)),
-        hundredths(model.first_overshoot_deg(10.0)),
-        hundredths(model.first_overshoot_deg(20.0)),
+        model.standing.as_word().to_owned(),
+        format_hundredths(model.turn_lengths(|turn| turn.advance_m)),
+        format_hundredths(model.turn_lengths(|turn| turn.tactical_diameter_m)),
+        format_hundredths(model.first_overshoot_deg(10.0)),
+        format_hundredths(model.first_overshoot_deg(20.0)),
     ]
 }
 
-fn trials(review: &Review) -> String {
+fn trials_section(review: &ShipReview) -> String {
     let columns = ["model", "figure", "published", "sailed", "allowed", "met", "source"];
     let each = review.models.iter().flat_map(|model| {
         model.comparisons.iter().map(|one| {
@@ -91,20 +91,20 @@ fn trials(review: &Review) -> String {
                 format!("`{}`", model.model),
                 one.figure.clone(),
                 format!("{:.2} ± {:.2} {}", one.published, one.uncertainty, one.unit),
-                hundredths(one.sailed),
+                format_hundredths(one.sailed),
                 format!("{:.2}", one.limit),
                 if one.is_within() { "yes" } else { "no" }.to_owned(),
                 one.source.clone(),
             ]
         })
     });
-    table("Published trials", &columns, each.collect())
+    markdown_table("Published trials", &columns, each.collect())
 }
 
-fn sources(vessel: &Vessel) -> String {
-    let rows = Dataset::of(vessel).sources.into_iter().map(|work| {
+fn sources_section(vessel: &Vessel) -> String {
+    let rows = CatalogueEntry::from_vessel(vessel).sources.into_iter().map(|work| {
         let terms = work.license.as_deref().or(work.usage).unwrap_or("not known").to_owned();
         vec![work.alternate_name, work.name, work.url.unwrap_or_default(), terms]
     });
-    table("Sources", &["key", "citation", "where", "licence"], rows.collect())
+    markdown_table("Sources", &["key", "citation", "where", "licence"], rows.collect())
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::numbers::fixed;
-use crate::words::ShownChannel;
+use crate::numbers::format_fixed;
+use crate::words::DisplayChannel;
 
 /// Relative changes below this are reported as unchanged.
 const SAME: f64 = 0.005;
@@ -14,7 +14,7 @@ const SAME: f64 = 0.005;
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(crate) struct ErrorRow {
     #[serde(flatten)]
-    pub quantity: ShownChannel,
+    pub quantity: DisplayChannel,
     pub source: Option<f64>,
     pub refined: Option<f64>,
     /// Source error divided by refined error: above one if the error fell.
@@ -23,12 +23,13 @@ pub(crate) struct ErrorRow {
 
 impl ErrorRow {
     /// Error of a channel in both models.
-    pub fn of(
-        quantity: ShownChannel,
+    pub fn from_errors(
+        quantity: DisplayChannel,
         source: &BTreeMap<String, f64>,
         refined: &BTreeMap<String, f64>,
     ) -> Self {
-        let shown = |errors| error(errors, quantity.channel).map(|value| value * quantity.factor);
+        let shown =
+            |errors| channel_error(errors, quantity.channel).map(|value| value * quantity.factor);
         let (source, refined) = (shown(source), shown(refined));
         // A factor needs two positive errors.
         let factor = source.zip(refined).filter(|(s, r)| *s > 0.0 && *r > 0.0).map(|(s, r)| s / r);
@@ -36,7 +37,7 @@ impl ErrorRow {
     }
 
     /// Direction of the change, `fell`, `rose` or `unchanged`, and its factor.
-    pub fn change(&self) -> (&'static str, f64) {
+    pub fn error_change(&self) -> (&'static str, f64) {
         match self.factor {
             None => ("unknown", 1.0),
             Some(factor) if (factor - 1.0).abs() < SAME => ("unchanged", 1.0),
@@ -47,24 +48,24 @@ impl ErrorRow {
 
     /// Change in words: `4.2 times smaller`.
     pub fn change_text(&self) -> String {
-        match self.change() {
-            ("fell", factor) => format!("{} times smaller", times(factor)),
-            ("rose", factor) => format!("{} times larger", times(factor)),
+        match self.error_change() {
+            ("fell", factor) => format!("{} times smaller", format_factor(factor)),
+            ("rose", factor) => format!("{} times larger", format_factor(factor)),
             (word, _) => word.into(),
         }
     }
 }
 
 /// Factor with two significant digits, never rounded to 1.
-pub(crate) fn times(factor: f64) -> String {
+pub(crate) fn format_factor(factor: f64) -> String {
     let decimals = if factor < 1.95 { 2 } else { usize::from(factor < 9.95) };
-    fixed(factor, decimals)
+    format_fixed(factor, decimals)
 }
 
 /// Error of a channel; that of the horizontal position is combined from north and east.
-fn error(errors: &BTreeMap<String, f64>, channel: &str) -> Option<f64> {
+fn channel_error(errors: &BTreeMap<String, f64>, channel: &str) -> Option<f64> {
     if channel == "position" {
-        return Some(error(errors, "x")?.hypot(error(errors, "y")?));
+        return Some(channel_error(errors, "x")?.hypot(channel_error(errors, "y")?));
     }
     // Errors that are not finite, or near overflow, are unknown.
     errors.get(channel).copied().filter(|value| value.is_finite() && *value < 1e300)

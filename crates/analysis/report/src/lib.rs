@@ -23,8 +23,11 @@ mod words;
 pub const STYLE: &str = include_str!("../templates/report_style.css");
 
 pub use branch::{BranchInput, render_branch};
-pub use contributed_ship::contributed_ship;
-pub use diagnosis::{DiagnosisInput, change, dependence, distinct, origin, render_diagnosis};
+pub use contributed_ship::contributed_ship_page;
+pub use diagnosis::{
+    DiagnosisInput, change_words, dependence_sentence, distinct_hypotheses, origin_sentence,
+    render_diagnosis,
+};
 pub use refinement::{RefinementInput, render_refinement};
-pub use rendered::{Rendered, ReportError, VersionLabel};
+pub use rendered::{RenderedReport, ReportError, VersionLabel};
 pub use validation::render_validation;

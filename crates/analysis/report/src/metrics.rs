@@ -3,10 +3,10 @@
 use sistership_simulation::metrics::{ManoeuvreMetrics, TurningMetrics, ZigzagMetrics};
 
 /// Accessor of one figure in the metrics of a manoeuvre.
-pub(crate) type ReadMetric<T> = fn(&T) -> Option<f64>;
+pub(crate) type MetricReader<T> = fn(&T) -> Option<f64>;
 
 /// Figures of a turning circle, in metres.
-pub(crate) const TURN: [(&str, ReadMetric<TurningMetrics>); 4] = [
+pub(crate) const TURN: [(&str, MetricReader<TurningMetrics>); 4] = [
     ("advance", |turn| turn.advance_m),
     ("transfer", |turn| turn.transfer_m),
     ("tactical diameter", |turn| turn.tactical_diameter_m),
@@ -14,7 +14,7 @@ pub(crate) const TURN: [(&str, ReadMetric<TurningMetrics>); 4] = [
 ];
 
 /// Figures of a zigzag, with units.
-pub(crate) const ZIGZAG: [(&str, &str, ReadMetric<ZigzagMetrics>); 3] = [
+pub(crate) const ZIGZAG: [(&str, &str, MetricReader<ZigzagMetrics>); 3] = [
     ("first overshoot", "deg", |zigzag| zigzag.first_overshoot_deg),
     ("second overshoot", "deg", |zigzag| zigzag.second_overshoot_deg),
     ("period", "s", |zigzag| zigzag.period_s),
@@ -24,7 +24,7 @@ pub(crate) const ZIGZAG: [(&str, &str, ReadMetric<ZigzagMetrics>); 3] = [
 pub(crate) type MetricValue = (&'static str, &'static str, Option<f64>);
 
 /// Returns the figures of a manoeuvre.
-pub(crate) fn read(metrics: &ManoeuvreMetrics) -> Vec<MetricValue> {
+pub(crate) fn manoeuvre_figures(metrics: &ManoeuvreMetrics) -> Vec<MetricValue> {
     match metrics {
         // All figures of a turn are lengths.
         ManoeuvreMetrics::Turn(turn) => {

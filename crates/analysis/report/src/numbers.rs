@@ -1,7 +1,7 @@
 //! Formatting of numbers for readers: significant digits, a typographic minus sign, powers of ten.
 
 /// Value with `digits` significant digits; very small and very large ones as a power of ten.
-pub fn significant(value: f64, digits: usize) -> String {
+pub fn format_significant(value: f64, digits: usize) -> String {
     if !value.is_finite() || value.abs() >= 1e300 {
         return "–".into();
     }
@@ -9,18 +9,18 @@ pub fn significant(value: f64, digits: usize) -> String {
         return "0".into();
     }
     // The exponent after rounding: 9.996 with three digits is 10.0, not 9.99.
-    let exponent = exponent(value, digits);
+    let exponent = rounded_exponent(value, digits);
     // Powers of ten start where the digits would be hidden among zeros.
     if exponent < -4 || exponent >= (digits as i32 + 2).min(6) {
         return power_of_ten(value, digits, exponent);
     }
     let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
-    fixed(value, decimals)
+    format_fixed(value, decimals)
 }
 
 /// Value with at most `digits` significant digits, without trailing zeros.
-pub fn stated(value: f64, digits: usize) -> String {
-    let text = significant(value, digits);
+pub fn format_stated(value: f64, digits: usize) -> String {
+    let text = format_significant(value, digits);
     // Trailing zeros are removed from the mantissa, not from the power of ten.
     let (number, power) = text
         .split_once('×')
@@ -35,18 +35,18 @@ pub fn stated(value: f64, digits: usize) -> String {
 }
 
 /// Decimal exponent of a value after rounding to `digits` significant digits.
-fn exponent(value: f64, digits: usize) -> i32 {
+fn rounded_exponent(value: f64, digits: usize) -> i32 {
     let text = format!("{:.*e}", digits.saturating_sub(1), value);
     text.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0)
 }
 
 fn power_of_ten(value: f64, digits: usize, exponent: i32) -> String {
-    let mantissa = fixed(value / 10_f64.powi(exponent), digits.saturating_sub(1));
-    format!("{mantissa}×10{}", superscript(exponent))
+    let mantissa = format_fixed(value / 10_f64.powi(exponent), digits.saturating_sub(1));
+    format!("{mantissa}×10{}", format_superscript(exponent))
 }
 
 /// Integer in superscript digits.
-pub(crate) fn superscript(number: i32) -> String {
+pub(crate) fn format_superscript(number: i32) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',
         _ => {
@@ -57,7 +57,7 @@ pub(crate) fn superscript(number: i32) -> String {
 }
 
 /// Value with a fixed number of decimals; a dash if it is not finite.
-pub fn fixed(value: f64, decimals: usize) -> String {
+pub fn format_fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() || value.abs() >= 1e300 {
         return "–".into();
     }
@@ -71,24 +71,24 @@ pub fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// The same with a plus sign if the value is not negative.
-pub fn signed(value: f64, decimals: usize) -> String {
-    let text = fixed(value, decimals);
+pub fn format_signed(value: f64, decimals: usize) -> String {
+    let text = format_fixed(value, decimals);
     // The second character is the dash of an unknown value, which has no sign.
     if text.starts_with(['−', '–']) { text } else { format!("+{text}") }
 }
 
 /// Value that may be unknown, which is a dash.
-pub fn known(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
+pub fn format_known(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
     value.map_or_else(|| "–".into(), format)
 }
 
 /// Value with two decimals that may be unknown.
-pub fn hundredths(value: Option<f64>) -> String {
-    known(value, |value| fixed(value, 2))
+pub fn format_hundredths(value: Option<f64>) -> String {
+    format_known(value, |value| format_fixed(value, 2))
 }
 
 /// Words joined to a list: `a, b and c`.
-pub(crate) fn list(words: &[String]) -> String {
+pub(crate) fn join_words(words: &[String]) -> String {
     match words {
         [] => String::new(),
         [one] => one.clone(),
@@ -111,16 +111,16 @@ mod tests {
             (f64::MAX, "–"),
         ];
         for (value, text) in cases {
-            assert_eq!(significant(value, 3), text);
+            assert_eq!(format_significant(value, 3), text);
         }
         assert_eq!(
-            (significant(1.2345e7, 3), significant(171_298.0, 2)),
+            (format_significant(1.2345e7, 3), format_significant(171_298.0, 2)),
             ("1.23×10⁷".into(), "1.7×10⁵".into())
         );
-        let stated = [175.0, 0.562, 21222.0, -4.646e-5, 0.0].map(|value| stated(value, 5));
+        let stated = [175.0, 0.562, 21222.0, -4.646e-5, 0.0].map(|value| format_stated(value, 5));
         assert_eq!(stated, ["175", "0.562", "21222", "−4.646×10⁻⁵", "0"]);
         assert_eq!(
-            (fixed(-0.001, 1), signed(2.0, 1), signed(-2.0, 1)),
+            (format_fixed(-0.001, 1), format_signed(2.0, 1), format_signed(-2.0, 1)),
             ("0.0".into(), "+2.0".into(), "−2.0".into())
         );
     }
@@ -128,6 +128,9 @@ mod tests {
     #[test]
     fn lists_read_as_sentences() {
         let words = ["a", "b", "c"].map(str::to_owned);
-        assert_eq!((list(&words), list(&words[..1])), ("a, b and c".into(), "a".into()));
+        assert_eq!(
+            (join_words(&words), join_words(&words[..1])),
+            ("a, b and c".into(), "a".into())
+        );
     }
 }

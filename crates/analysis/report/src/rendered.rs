@@ -16,7 +16,7 @@ pub struct VersionLabel {
 
 /// Report as a page and as JSON.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Rendered {
+pub struct RenderedReport {
     /// Content as JSON.
     pub json: serde_json::Value,
     /// Self-contained HTML page.

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::plots::Hull;
+use crate::plots::HullOutline;
 use serde::Serialize;
 use sistership_model::trial::Trial;
-use sistership_simulation::recorded::Replay;
+use sistership_simulation::recorded::TrialReplay;
 
 /// Summary of the plots of one trial.
 #[derive(Debug, Clone, Serialize)]
@@ -27,11 +27,11 @@ pub(crate) struct ReplaySummary<'a> {
 #[derive(Debug)]
 pub(crate) struct ReplayedTrial<'a> {
     pub trial: &'a Trial,
-    pub source: Replay,
-    pub refined: Replay,
+    pub source: TrialReplay,
+    pub refined: TrialReplay,
     /// True if roll is simulated.
     pub rolls: bool,
     /// Outline of the ship, if length and beam are known.
-    pub hull: Option<Hull>,
+    pub hull: Option<HullOutline>,
     pub shown: ReplaySummary<'a>,
 }

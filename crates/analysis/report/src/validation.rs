@@ -4,9 +4,9 @@ use askama::Template;
 use sistership_assessment::validation::{ValidatedQuantity, Validation, Verdict};
 use sistership_model::version::code_revision;
 
-use crate::numbers::{fixed, known, significant};
-use crate::rendered::{Rendered, ReportError};
-use crate::tables::{Cell, Column, Row, Table};
+use crate::numbers::{format_fixed, format_known, format_significant};
+use crate::rendered::{RenderedReport, ReportError};
+use crate::tables::{ReportTable, TableCell, TableColumn, TableRow};
 
 /// Page as the template takes it.
 #[derive(Template)]
@@ -14,54 +14,61 @@ use crate::tables::{Cell, Column, Row, Table};
 struct ValidationPage<'a> {
     of: &'a Validation,
     verdict: String,
-    quantities: Table,
+    quantities: ReportTable,
 }
 
 /// Renders a validation as a page and as JSON.
 ///
 /// # Errors
 /// Returns an error if it cannot be written.
-pub fn render_validation(of: &Validation) -> Result<Rendered, ReportError> {
-    let page = ValidationPage { of, verdict: verdict(of), quantities: table(&of.quantities) };
-    Ok(Rendered { json: serde_json::to_value(of)?, html: page.render()? })
+pub fn render_validation(of: &Validation) -> Result<RenderedReport, ReportError> {
+    let page = ValidationPage {
+        of,
+        verdict: verdict_sentence(of),
+        quantities: quantity_table(&of.quantities),
+    };
+    Ok(RenderedReport { json: serde_json::to_value(of)?, html: page.render()? })
 }
 
 /// Result of the validation, as a sentence.
-fn verdict(of: &Validation) -> String {
+fn verdict_sentence(of: &Validation) -> String {
     let all = of.quantities.len();
     if all == 0 {
         return "There is nothing to validate this model by.".to_owned();
     }
     // Both verdicts leave the question open.
-    let open = of.count(Verdict::Undecided) + of.count(Verdict::AboveWhatIsKnown);
+    let open = of.count_verdicts(Verdict::Undecided) + of.count_verdicts(Verdict::AboveWhatIsKnown);
     format!(
         "Of {all} quantities {} are validated at the level of their validation uncertainty, {} are \
          not, and {open} cannot be decided.",
-        of.count(Verdict::Validated),
-        of.count(Verdict::NotValidated),
+        of.count_verdicts(Verdict::Validated),
+        of.count_verdicts(Verdict::NotValidated),
     )
 }
 
-fn table(quantities: &[ValidatedQuantity]) -> Table {
+fn quantity_table(quantities: &[ValidatedQuantity]) -> ReportTable {
     let columns = vec![
-        Column::text("quantity", ""),
-        Column::text("unit", ""),
-        Column::number("D", "data"),
-        Column::number("S", "simulated"),
-        Column::number("E", "% D"),
-        Column::number("U_V", "% D"),
-        Column::number("U_D", ""),
-        Column::number("U_SN", ""),
-        Column::number("U_input", ""),
-        Column::text("", ""),
-        Column::prose("data from"),
+        TableColumn::text_column("quantity", ""),
+        TableColumn::text_column("unit", ""),
+        TableColumn::number_column("D", "data"),
+        TableColumn::number_column("S", "simulated"),
+        TableColumn::number_column("E", "% D"),
+        TableColumn::number_column("U_V", "% D"),
+        TableColumn::number_column("U_D", ""),
+        TableColumn::number_column("U_SN", ""),
+        TableColumn::number_column("U_input", ""),
+        TableColumn::text_column("", ""),
+        TableColumn::prose_column("data from"),
     ];
-    Table { columns, rows: quantities.iter().map(row).collect() }
+    ReportTable { columns, rows: quantities.iter().map(quantity_row).collect() }
 }
 
-fn row(one: &ValidatedQuantity) -> Row {
-    let value = |value: Option<f64>| Cell::new(known(value, |value| significant(value, 3)));
-    let percent = |value: Option<f64>| Cell::new(known(value, |value| fixed(value, 1)));
+fn quantity_row(one: &ValidatedQuantity) -> TableRow {
+    let value = |value: Option<f64>| {
+        TableCell::new(format_known(value, |value| format_significant(value, 3)))
+    };
+    let percent =
+        |value: Option<f64>| TableCell::new(format_known(value, |value| format_fixed(value, 1)));
     let kind = match one.verdict {
         Verdict::Validated => "good",
         Verdict::NotValidated => "bad",
@@ -72,9 +79,9 @@ fn row(one: &ValidatedQuantity) -> Row {
         Some(records) => format!("{records}: {}", one.data_from),
         None => one.data_from.clone(),
     };
-    Row::of(vec![
-        Cell::new(&one.quantity),
-        Cell::new(&one.unit),
+    TableRow::from_cells(vec![
+        TableCell::new(&one.quantity),
+        TableCell::new(&one.unit),
         value(Some(one.data)),
         value(one.simulated),
         percent(one.comparison_error_percent),
@@ -82,8 +89,8 @@ fn row(one: &ValidatedQuantity) -> Row {
         value(one.data_uncertainty),
         value(one.step_uncertainty),
         value(one.input_uncertainty),
-        Cell::new("").mark(one.verdict.words(), kind),
-        Cell::new(from),
+        TableCell::new("").with_mark(one.verdict.as_words(), kind),
+        TableCell::new(from),
     ])
 }
 

@@ -5,7 +5,7 @@ use sistership_model::vessel::Status;
 
 /// Channel as it is displayed: angles in degrees.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(crate) struct ShownChannel {
+pub(crate) struct DisplayChannel {
     /// Name in the data.
     pub channel: &'static str,
     /// Name in words.
@@ -22,34 +22,34 @@ pub(crate) struct ShownChannel {
 const DEG: f64 = 180.0 / std::f64::consts::PI;
 
 /// Creates a displayed channel.
-const fn quantity(
+const fn display_channel(
     channel: &'static str,
     name: &'static str,
     symbol: &'static str,
     unit: &'static str,
     factor: f64,
-) -> ShownChannel {
-    ShownChannel { channel, name, symbol, unit, factor }
+) -> DisplayChannel {
+    DisplayChannel { channel, name, symbol, unit, factor }
 }
 
 /// Channels of errors, in their order; `position` is the horizontal distance.
-pub(crate) const CHANNELS: [ShownChannel; 9] = [
-    quantity("u", "surge speed", "u", "m/s", 1.0),
-    quantity("v", "sway speed", "v", "m/s", 1.0),
-    quantity("r", "yaw rate", "r", "deg/s", DEG),
-    quantity("psi", "heading", "ψ", "deg", DEG),
-    quantity("x", "position north", "x", "m", 1.0),
-    quantity("y", "position east", "y", "m", 1.0),
-    quantity("position", "position", "x, y", "m", 1.0),
-    quantity("phi", "roll angle", "φ", "deg", DEG),
-    quantity("p", "roll rate", "p", "deg/s", DEG),
+pub(crate) const CHANNELS: [DisplayChannel; 9] = [
+    display_channel("u", "surge speed", "u", "m/s", 1.0),
+    display_channel("v", "sway speed", "v", "m/s", 1.0),
+    display_channel("r", "yaw rate", "r", "deg/s", DEG),
+    display_channel("psi", "heading", "ψ", "deg", DEG),
+    display_channel("x", "position north", "x", "m", 1.0),
+    display_channel("y", "position east", "y", "m", 1.0),
+    display_channel("position", "position", "x, y", "m", 1.0),
+    display_channel("phi", "roll angle", "φ", "deg", DEG),
+    display_channel("p", "roll rate", "p", "deg/s", DEG),
 ];
 
 /// Rudder angle, which is an input and not simulated.
-pub(crate) const RUDDER: ShownChannel = quantity("delta", "rudder angle", "δ", "deg", DEG);
+pub(crate) const RUDDER: DisplayChannel = display_channel("delta", "rudder angle", "δ", "deg", DEG);
 
 /// Returns a channel by its name in the data.
-pub(crate) fn channel(name: &str) -> Option<ShownChannel> {
+pub(crate) fn find_channel(name: &str) -> Option<DisplayChannel> {
     CHANNELS.into_iter().find(|quantity| quantity.channel == name)
 }
 
@@ -68,7 +68,7 @@ const UNITS: [(&str, &str); 9] = [
 ];
 
 /// Name in words and unit of a field such as `rudder_area_m2`.
-pub(crate) fn field(name: &str) -> (String, &'static str) {
+pub(crate) fn field_words(name: &str) -> (String, &'static str) {
     let (stem, unit) = UNITS
         .into_iter()
         .find_map(|(ending, unit)| Some((name.strip_suffix(ending)?, unit)))
@@ -84,7 +84,7 @@ pub(crate) fn field(name: &str) -> (String, &'static str) {
 }
 
 /// Status in words.
-pub(crate) fn status(status: Status) -> &'static str {
+pub(crate) fn status_word(status: Status) -> &'static str {
     match status {
         Status::Published => "published",
         Status::Estimated => "estimated",
@@ -106,7 +106,7 @@ pub(crate) fn status_meaning(status: Status) -> &'static str {
 }
 
 /// Estimator in words.
-pub(crate) fn method(name: &str) -> &'static str {
+pub(crate) fn method_words(name: &str) -> &'static str {
     match name {
         "published" => {
             "one-step differences, ridge regression drawn towards the source (Kanazawa 2023)"
@@ -121,7 +121,7 @@ pub(crate) fn method(name: &str) -> &'static str {
 }
 
 /// Axis in words.
-pub(crate) fn axis(axis: &str) -> &'static str {
+pub(crate) fn axis_words(axis: &str) -> &'static str {
     match axis {
         "X" => "surge force X",
         "Y" => "sway force Y",
@@ -132,7 +132,7 @@ pub(crate) fn axis(axis: &str) -> &'static str {
 }
 
 /// Recorded variable in words, its displayed unit, and the conversion from SI.
-pub(crate) fn recorded(name: &str) -> (&str, &'static str, fn(f64) -> f64) {
+pub(crate) fn variable_words(name: &str) -> (&str, &'static str, fn(f64) -> f64) {
     let plain: fn(f64) -> f64 = |value| value;
     let degrees: fn(f64) -> f64 = |value| value.to_degrees();
     match name {
@@ -150,7 +150,7 @@ pub(crate) fn recorded(name: &str) -> (&str, &'static str, fn(f64) -> f64) {
         "apparent_wind_speed" => ("apparent wind speed", "m/s", plain),
         "depth" => ("water depth", "m", plain),
         "t" | "time" => ("time", "s", plain),
-        other => match channel(other) {
+        other => match find_channel(other) {
             Some(quantity) if quantity.factor == 1.0 => (quantity.name, quantity.unit, plain),
             Some(quantity) => (quantity.name, quantity.unit, degrees),
             None => (other, "SI", plain),
@@ -159,7 +159,7 @@ pub(crate) fn recorded(name: &str) -> (&str, &'static str, fn(f64) -> f64) {
 }
 
 /// Displayed unit of an acceleration, and the factor from SI.
-pub(crate) fn acceleration(channel: &str) -> (&'static str, f64) {
+pub(crate) fn acceleration_unit(channel: &str) -> (&'static str, f64) {
     match channel {
         "r" | "p" | "psi" | "phi" => ("deg/s²", 180.0 / std::f64::consts::PI),
         _ => ("m/s²", 1.0),

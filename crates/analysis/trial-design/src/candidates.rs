@@ -6,7 +6,7 @@ use crate::thresholds::THRESHOLDS;
 
 /// A candidate trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Candidate {
+pub(crate) struct ManoeuvreCandidate {
     /// Manoeuvre by the rudder.
     pub manoeuvre: Manoeuvre,
     /// Approach speed by that of the model.
@@ -35,24 +35,28 @@ const STANDARD: [Manoeuvre; 6] = [
 
 /// Returns all manoeuvres to both sides, at all speeds, and on several headings where an external
 /// influence is present.
-pub(crate) fn candidates(has_outside: bool) -> Vec<Candidate> {
+pub(crate) fn all_candidates(has_outside: bool) -> Vec<ManoeuvreCandidate> {
     let turns = TURNS_DEG.into_iter().map(|rudder| Manoeuvre::Turn { rudder });
     let zigzag = |(rudder, switch): (f64, f64)| Manoeuvre::Zigzag { rudder, switch };
     let one_side = turns.chain(ZIGZAGS_DEG.map(zigzag));
     // Both sides are candidates, as a ship need not be symmetric.
-    let both = one_side.flat_map(|manoeuvre| [manoeuvre, mirrored(manoeuvre)]);
+    let both = one_side.flat_map(|manoeuvre| [manoeuvre, mirror_manoeuvre(manoeuvre)]);
     // Without an external influence all headings give the same information.
     let headings = &THRESHOLDS.headings_deg[..if has_outside { 3 } else { 1 }];
     let at = |manoeuvre: Manoeuvre| {
         let speeds = THRESHOLDS.speeds.into_iter();
         speeds.flat_map(move |speed| {
-            headings.iter().map(move |&heading_deg| Candidate { manoeuvre, speed, heading_deg })
+            headings.iter().map(move |&heading_deg| ManoeuvreCandidate {
+                manoeuvre,
+                speed,
+                heading_deg,
+            })
         })
     };
     both.flat_map(at).collect()
 }
 
-fn mirrored(manoeuvre: Manoeuvre) -> Manoeuvre {
+fn mirror_manoeuvre(manoeuvre: Manoeuvre) -> Manoeuvre {
     match manoeuvre {
         Manoeuvre::Turn { rudder } => Manoeuvre::Turn { rudder: -rudder },
         Manoeuvre::Zigzag { rudder, switch } => Manoeuvre::Zigzag { rudder: -rudder, switch },
@@ -60,7 +64,7 @@ fn mirrored(manoeuvre: Manoeuvre) -> Manoeuvre {
 }
 
 /// Indices among candidates of the IMO manoeuvres at full speed, on the first heading.
-pub(crate) fn standard(candidates: &[Candidate]) -> Vec<usize> {
+pub(crate) fn standard_indices(candidates: &[ManoeuvreCandidate]) -> Vec<usize> {
     let place = |manoeuvre: Manoeuvre| {
         candidates.iter().position(|one| one.manoeuvre == manoeuvre && one.speed == 1.0)
     };

@@ -1,17 +1,17 @@
 //! Simulation of a candidate by the model: the track that would be recorded, and the time of all
 //! its phases.
 
-use sistership_simulation::manoeuvre::{Manoeuvre, ManoeuvreSettings, sail_together};
-use sistership_simulation::state::{StateVector, Trajectory, at, speed};
-use sistership_simulation::{Method, Order, Run, Ship};
+use sistership_simulation::manoeuvre::{Manoeuvre, ManoeuvreSettings, simulate_manoeuvre_batch};
+use sistership_simulation::state::{StateVector, Trajectory, at, horizontal_speed};
+use sistership_simulation::{HelmOrder, Method, RunSettings, Ship};
 
-use crate::candidates::Candidate;
+use crate::candidates::ManoeuvreCandidate;
 use crate::thresholds::THRESHOLDS;
 
 /// A simulated candidate.
 #[derive(Debug, Clone)]
-pub(crate) struct Course {
-    pub candidate: Candidate,
+pub(crate) struct SimulatedCandidate {
+    pub candidate: ManoeuvreCandidate,
     /// Track, with the run before the rudder is executed.
     pub track: Trajectory,
     /// Time from the execution of the rudder to the end, s.
@@ -22,7 +22,10 @@ pub(crate) struct Course {
 
 /// Simulates candidates at one speed in lockstep; the error is the reason, where one leaves the
 /// physical range.
-pub(crate) fn courses(ship: &Ship, candidates: &[Candidate]) -> Vec<Result<Course, String>> {
+pub(crate) fn simulate_candidates(
+    ship: &Ship,
+    candidates: &[ManoeuvreCandidate],
+) -> Vec<Result<SimulatedCandidate, String>> {
     let Some(first) = candidates.first() else { return Vec::new() };
     let speed_m_s = first.speed * ship.approach_speed_m_s();
     let length_s = ship.lpp_m() / speed_m_s;
@@ -32,37 +35,40 @@ pub(crate) fn courses(ship: &Ship, candidates: &[Candidate]) -> Vec<Result<Cours
         ..ManoeuvreSettings::default()
     };
     // Turns need a limit of their duration; zigzags end by themselves.
-    let (turns, zigzags): (Vec<Candidate>, Vec<Candidate>) =
+    let (turns, zigzags): (Vec<ManoeuvreCandidate>, Vec<ManoeuvreCandidate>) =
         candidates.iter().partition(|one| matches!(one.manoeuvre, Manoeuvre::Turn { .. }));
     let longest = ManoeuvreSettings { duration_s: Some(THRESHOLDS.longest * length_s), ..settings };
-    let sail = |all: &[Candidate], settings: &ManoeuvreSettings| {
+    let sail = |all: &[ManoeuvreCandidate], settings: &ManoeuvreSettings| {
         let manoeuvres: Vec<(Manoeuvre, &[f64])> =
             all.iter().map(|one| (one.manoeuvre, &[] as &[f64])).collect();
-        let sailed = sail_together(ship, &manoeuvres, settings);
-        let one = |(candidate, sailed): (&Candidate, _)| {
-            course(ship, *candidate, sailed, settings.run_in_s)
+        let sailed = simulate_manoeuvre_batch(ship, &manoeuvres, settings);
+        let one = |(candidate, sailed): (&ManoeuvreCandidate, _)| {
+            complete_candidate(ship, *candidate, sailed, settings.run_in_s)
         };
-        all.iter().zip(sailed.into_iter().map(tracked)).map(one).collect::<Vec<_>>()
+        all.iter().zip(sailed.into_iter().map(extract_track)).map(one).collect::<Vec<_>>()
     };
     let mut all = sail(&turns, &longest);
     all.extend(sail(&zigzags, &settings));
     all
 }
 
-fn tracked(
-    sailed: Result<sistership_simulation::manoeuvre::Sailed, sistership_simulation::Stopped>,
+fn extract_track(
+    sailed: Result<
+        sistership_simulation::manoeuvre::SimulatedManoeuvre,
+        sistership_simulation::SimulationStop,
+    >,
 ) -> Result<Trajectory, String> {
     sailed.map(|sailed| sailed.track).map_err(|stopped| stopped.to_string())
 }
 
-fn course(
+fn complete_candidate(
     ship: &Ship,
-    candidate: Candidate,
+    candidate: ManoeuvreCandidate,
     track: Result<Trajectory, String>,
     run_in_s: f64,
-) -> Result<Course, String> {
+) -> Result<SimulatedCandidate, String> {
     let name = |reason: String| format!("{}: {reason}", candidate.manoeuvre);
-    let track = cut(track.map_err(name)?);
+    let track = cut_track(track.map_err(name)?);
     let last = *track.last().ok_or_else(|| name("nothing was sailed".into()))?;
     let end_s = track.t_s.last().copied().unwrap_or_default();
     let full = ship.approach_speed_m_s();
@@ -71,15 +77,15 @@ fn course(
     let slowing_s =
         if candidate.speed == 1.0 { 0.0 } else { recovery_s(ship, slower, candidate.speed * full) };
     let takes_s = slowing_s + end_s + recovery_s(ship, last, full);
-    Ok(Course { candidate, manoeuvre_s: end_s - run_in_s, track, takes_s })
+    Ok(SimulatedCandidate { candidate, manoeuvre_s: end_s - run_in_s, track, takes_s })
 }
 
 fn straight_at(speed_m_s: f64) -> StateVector {
-    sistership_simulation::state::straight(speed_m_s)
+    sistership_simulation::state::straight_state(speed_m_s)
 }
 
 /// Cuts a track where the ship has turned by the heading change of a turning circle.
-fn cut(track: Trajectory) -> Trajectory {
+fn cut_track(track: Trajectory) -> Trajectory {
     let most = THRESHOLDS.turned_deg.to_radians();
     let end = track.states.iter().position(|state| state[at::PSI].abs() >= most);
     let mut kept = Trajectory::default();
@@ -97,7 +103,7 @@ fn recovery_s(ship: &Ship, from: StateVector, speed_m_s: f64) -> f64 {
     let most = given.helm_deg.to_radians();
     // Steady: speed and yaw rate are both near their values on a straight course.
     let is_steady = |state: &StateVector| {
-        (speed(state) / speed_m_s - 1.0).abs() < given.steady_speed
+        (horizontal_speed(state) / speed_m_s - 1.0).abs() < given.steady_speed
             && state[at::R].abs() * length_s < given.steady_rate
     };
     // Proportional and derivative steering to the heading at the end of the manoeuvre; ends when
@@ -105,10 +111,10 @@ fn recovery_s(ship: &Ship, from: StateVector, speed_m_s: f64) -> f64 {
     let bridge = |_: f64, state: &StateVector| {
         let [by_heading, by_rate] = given.helm;
         let error = by_heading * (state[at::PSI] - psi) + by_rate * state[at::R] * length_s;
-        let order = Order { delta_rad: (-error).clamp(-most, most), n_rps };
+        let order = HelmOrder { delta_rad: (-error).clamp(-most, most), n_rps };
         (!is_steady(state)).then_some(order)
     };
-    let run = Run {
+    let run = RunSettings {
         start: from,
         duration_s: given.recovery * length_s,
         step_s: given.interval * length_s,
@@ -116,7 +122,7 @@ fn recovery_s(ship: &Ship, from: StateVector, speed_m_s: f64) -> f64 {
     };
     let mut track = Trajectory::default();
     // A ship that leaves the physical range while it steadies takes the longest time allowed.
-    match ship.sail(run, &mut track, bridge) {
+    match ship.simulate_orders(run, &mut track, bridge) {
         Ok(()) => track.t_s.last().copied().unwrap_or_default(),
         Err(_) => run.duration_s,
     }

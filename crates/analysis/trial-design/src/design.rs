@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix};
 
 /// Information and duration of each candidate, and the targets of the design.
-pub(crate) struct Design {
+pub(crate) struct TrialDesign {
     /// Information of each candidate on the deviations.
     pub information: Vec<DMatrix<f64>>,
     /// Duration of each candidate, s.
@@ -14,15 +14,15 @@ pub(crate) struct Design {
     pub before: DMatrix<f64>,
 }
 
-impl Design {
+impl TrialDesign {
     /// Information with some candidates, each as often as it occurs.
-    pub fn with(&self, chosen: &[usize]) -> DMatrix<f64> {
+    pub fn information_with(&self, chosen: &[usize]) -> DMatrix<f64> {
         chosen.iter().fold(self.before.clone(), |sum, &place| sum + &self.information[place])
     }
 
     /// Standard deviations of the targets under information on the deviations; none where that is
     /// not positive.
-    pub fn deviations(&self, information: DMatrix<f64>) -> Option<Vec<f64>> {
+    pub fn target_deviations(&self, information: DMatrix<f64>) -> Option<Vec<f64>> {
         // With the Cholesky factor L of the information: the variance g' (L L')^-1 g is |L^-1 g|^2.
         let lower = Cholesky::new(information)?.unpack();
         let scaled = lower.solve_lower_triangular(&self.gradients.transpose())?;
@@ -30,8 +30,8 @@ impl Design {
     }
 
     /// Mean logarithm of the targets' deviations; infinite where the information is not positive.
-    pub fn score(&self, information: DMatrix<f64>) -> f64 {
-        let Some(deviations) = self.deviations(information) else { return f64::INFINITY };
+    pub fn log_mean_deviation(&self, information: DMatrix<f64>) -> f64 {
+        let Some(deviations) = self.target_deviations(information) else { return f64::INFINITY };
         // A mean of logarithms: units cancel in differences, so that metres and degrees need no
         // weights.
         deviations.iter().map(|d| d.ln()).sum::<f64>() / deviations.len() as f64
@@ -43,7 +43,9 @@ impl Design {
     }
 
     /// Share by which the bands are narrower in the geometric mean with some candidates.
-    pub fn narrower(&self, chosen: &[usize]) -> f64 {
-        1.0 - (self.score(self.with(chosen)) - self.score(self.before.clone())).exp()
+    pub fn relative_narrowing(&self, chosen: &[usize]) -> f64 {
+        1.0 - (self.log_mean_deviation(self.information_with(chosen))
+            - self.log_mean_deviation(self.before.clone()))
+        .exp()
     }
 }

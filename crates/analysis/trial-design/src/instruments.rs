@@ -1,12 +1,12 @@
 //! Instruments by which planned trials are recorded.
 
 use serde::{Deserialize, Serialize};
-use sistership_filtering::{Instrument, Noise};
+use sistership_filtering::{InstrumentNoise, NoiseLevel};
 use sistership_model::trial::Channel;
 
 /// Standard deviations of the noise of readings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Instruments {
+pub struct InstrumentAccuracy {
     /// Position, m.
     pub position_m: f64,
     /// Velocities, m/s.
@@ -17,7 +17,7 @@ pub struct Instruments {
     pub angle_rad: f64,
 }
 
-impl Instruments {
+impl InstrumentAccuracy {
     /// Instruments of a sea trial. Source: chosen; differential GNSS, gyro compass and rate gyro.
     pub const SEA_TRIAL: Self =
         Self { position_m: 0.5, velocity_m_s: 0.03, rate_rad_s: 3e-4, angle_rad: 1.5e-3 };
@@ -28,12 +28,12 @@ impl Instruments {
         Self { position_m: 0.02, velocity_m_s: 0.012, rate_rad_s: 4e-3, angle_rad: 3e-3 };
 
     /// Default instruments of a ship of this length, m: below ten metres it is a model.
-    pub fn of(lpp_m: f64) -> Self {
+    pub fn for_length(lpp_m: f64) -> Self {
         if lpp_m < 10.0 { Self::MODEL } else { Self::SEA_TRIAL }
     }
 
     /// Noise by channel, of which only the standard deviation is known.
-    pub(crate) fn noise(&self) -> Noise {
+    pub(crate) fn channel_noise(&self) -> InstrumentNoise {
         let all = [
             (Channel::X, self.position_m),
             (Channel::Y, self.position_m),
@@ -44,6 +44,6 @@ impl Instruments {
             (Channel::Psi, self.angle_rad),
             (Channel::Phi, self.angle_rad),
         ];
-        all.into_iter().map(|(channel, d)| (channel, Instrument::of_scatter(d))).collect()
+        all.into_iter().map(|(channel, d)| (channel, NoiseLevel::from_deviation(d))).collect()
     }
 }

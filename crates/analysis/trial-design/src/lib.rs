@@ -30,7 +30,7 @@ mod thresholds;
 mod unknowns;
 
 pub use error::PlanError;
-pub use instruments::Instruments;
-pub use outcome::{ExpectedBand, Plan, PlannedTrial, StandardProgramme};
-pub use plan::plan;
+pub use instruments::InstrumentAccuracy;
+pub use outcome::{ExpectedBand, PlannedTrial, StandardProgramme, TrialPlan};
+pub use plan::design_trials;
 pub use request::PlanRequest;

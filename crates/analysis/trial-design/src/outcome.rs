@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::instruments::Instruments;
+use crate::instruments::InstrumentAccuracy;
 
 /// Result of a trial design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Plan {
+pub struct TrialPlan {
     /// Name of the model.
     pub model: String,
     /// Available time, min.
@@ -23,7 +23,7 @@ pub struct Plan {
     pub standard: StandardProgramme,
     /// Expected noise of the instruments; absent where earlier trials determine it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub instruments: Option<Instruments>,
+    pub instruments: Option<InstrumentAccuracy>,
     /// Assumptions.
     pub remarks: Vec<String>,
 }

@@ -6,7 +6,7 @@ use sistership_model::law::Law;
 use sistership_model::{Effect, Model, Trial};
 
 use crate::error::PlanError;
-use crate::instruments::Instruments;
+use crate::instruments::InstrumentAccuracy;
 use crate::thresholds::THRESHOLDS;
 
 /// Inputs of a trial design.
@@ -26,7 +26,7 @@ pub struct PlanRequest<'a> {
     /// recorded like the first of these.
     pub sailed: &'a [&'a Trial],
     /// Instruments of planned trials, where none is recorded yet.
-    pub instruments: Instruments,
+    pub instruments: InstrumentAccuracy,
 }
 
 impl PlanRequest<'_> {
@@ -34,7 +34,7 @@ impl PlanRequest<'_> {
     ///
     /// # Errors
     /// Returns an error for a budget out of range, or an effect that the library does not have.
-    pub fn check(&self) -> Result<(), PlanError> {
+    pub fn check_inputs(&self) -> Result<(), PlanError> {
         if !(self.budget_s > 0.0 && self.budget_s <= THRESHOLDS.longest_budget_s) {
             return Err(PlanError::Budget);
         }

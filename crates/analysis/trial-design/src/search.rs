@@ -3,28 +3,28 @@
 
 use rayon::prelude::*;
 
-use crate::design::Design;
+use crate::design::TrialDesign;
 use crate::thresholds::THRESHOLDS;
 
 /// Best set that was found under a budget (s), most informative per minute first.
-pub(crate) fn best(design: &Design, budget_s: f64) -> Vec<usize> {
-    let mut chosen = filled(design, budget_s, Vec::new());
+pub(crate) fn best_design(design: &TrialDesign, budget_s: f64) -> Vec<usize> {
+    let mut chosen = fill_budget(design, budget_s, Vec::new());
     for _ in 0..THRESHOLDS.rounds {
-        if !exchanged(design, budget_s, &mut chosen) {
+        if !exchange_candidates(design, budget_s, &mut chosen) {
             break;
         }
         // An exchange for a shorter trial may leave time for a further one.
-        chosen = filled(design, budget_s, chosen);
+        chosen = fill_budget(design, budget_s, chosen);
     }
-    ordered(design, chosen)
+    order_by_gain(design, chosen)
 }
 
 /// Adds the candidate with the largest gain per minute until none fits.
-fn filled(design: &Design, budget_s: f64, mut chosen: Vec<usize>) -> Vec<usize> {
+fn fill_budget(design: &TrialDesign, budget_s: f64, mut chosen: Vec<usize>) -> Vec<usize> {
     let all: Vec<usize> = (0..design.takes_s.len()).collect();
     while chosen.len() < THRESHOLDS.most_trials {
         let left_s = budget_s - design.lasts_s(&chosen);
-        let Some(next) = next(design, &chosen, &all, left_s) else { break };
+        let Some(next) = best_next(design, &chosen, &all, left_s) else { break };
         chosen.push(all[next]);
     }
     chosen
@@ -32,12 +32,17 @@ fn filled(design: &Design, budget_s: f64, mut chosen: Vec<usize>) -> Vec<usize> 
 
 /// Index, among some candidates, of the one with the largest gain per minute in addition to those
 /// selected.
-fn next(design: &Design, chosen: &[usize], among: &[usize], left_s: f64) -> Option<usize> {
-    let now = design.with(chosen);
-    let score = design.score(now.clone());
+fn best_next(
+    design: &TrialDesign,
+    chosen: &[usize],
+    among: &[usize],
+    left_s: f64,
+) -> Option<usize> {
+    let now = design.information_with(chosen);
+    let score = design.log_mean_deviation(now.clone());
     let rate = |(place, &candidate): (usize, &usize)| {
         let takes_s = design.takes_s[candidate];
-        let gain = score - design.score(&now + &design.information[candidate]);
+        let gain = score - design.log_mean_deviation(&now + &design.information[candidate]);
         (takes_s <= left_s && gain > 0.0).then_some((gain / takes_s, place))
     };
     // Collected in order: ties are resolved in the same way on any number of threads.
@@ -47,21 +52,22 @@ fn next(design: &Design, chosen: &[usize], among: &[usize], left_s: f64) -> Opti
 
 /// Exchanges each selected candidate for the best that fits in its place; returns true if any was
 /// exchanged.
-fn exchanged(design: &Design, budget_s: f64, chosen: &mut [usize]) -> bool {
+fn exchange_candidates(design: &TrialDesign, budget_s: f64, chosen: &mut [usize]) -> bool {
     let mut any = false;
     for place in 0..chosen.len() {
         let others: Vec<usize> =
             (0..chosen.len()).filter(|other| *other != place).map(|other| chosen[other]).collect();
         // The time of the replaced trial is available again.
-        let (beside, left_s) = (design.with(&others), budget_s - design.lasts_s(&others));
+        let (beside, left_s) =
+            (design.information_with(&others), budget_s - design.lasts_s(&others));
         let score = |candidate: usize| {
             let fits = design.takes_s[candidate] <= left_s;
-            let score = || design.score(&beside + &design.information[candidate]);
+            let score = || design.log_mean_deviation(&beside + &design.information[candidate]);
             fits.then(|| (score(), candidate))
         };
         let scores: Vec<(f64, usize)> =
             (0..design.takes_s.len()).into_par_iter().filter_map(score).collect();
-        let now = design.score(&beside + &design.information[chosen[place]]);
+        let now = design.log_mean_deviation(&beside + &design.information[chosen[place]]);
         let best = scores.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((_, candidate)) = best.filter(|best| best.0 < now - THRESHOLDS.least_gain) {
             chosen[place] = candidate;
@@ -72,9 +78,9 @@ fn exchanged(design: &Design, budget_s: f64, chosen: &mut [usize]) -> bool {
 }
 
 /// Orders trials by information per minute, the most informative first.
-fn ordered(design: &Design, mut rest: Vec<usize>) -> Vec<usize> {
+fn order_by_gain(design: &TrialDesign, mut rest: Vec<usize>) -> Vec<usize> {
     let mut order = Vec::new();
-    while let Some(place) = next(design, &order, &rest, f64::INFINITY) {
+    while let Some(place) = best_next(design, &order, &rest, f64::INFINITY) {
         order.push(rest.swap_remove(place));
     }
     // Trials without a further gain stay at the end.
@@ -90,13 +96,13 @@ mod tests {
     use super::*;
 
     /// Candidates that each tell one direction so well, and the time that each takes.
-    fn design(told: &[(&[f64], f64, f64)], gradients: DMatrix<f64>) -> Design {
+    fn design(told: &[(&[f64], f64, f64)], gradients: DMatrix<f64>) -> TrialDesign {
         let one = |(direction, information, _): &(&[f64], f64, f64)| {
             let direction = DVector::from_column_slice(direction);
             &direction * direction.transpose() * *information
         };
         let size = gradients.ncols();
-        Design {
+        TrialDesign {
             information: told.iter().map(one).collect(),
             takes_s: told.iter().map(|(.., takes_s)| *takes_s).collect(),
             gradients,
@@ -105,8 +111,13 @@ mod tests {
     }
 
     /// The best score of all sets that fit, a candidate at most twice.
-    fn exhaustive(design: &Design, budget_s: f64, chosen: &mut Vec<usize>, from: usize) -> f64 {
-        let mut best = design.score(design.with(chosen));
+    fn exhaustive(
+        design: &TrialDesign,
+        budget_s: f64,
+        chosen: &mut Vec<usize>,
+        from: usize,
+    ) -> f64 {
+        let mut best = design.log_mean_deviation(design.information_with(chosen));
         for place in from..design.takes_s.len() {
             if design.lasts_s(chosen) + design.takes_s[place] <= budget_s {
                 chosen.push(place);
@@ -122,10 +133,10 @@ mod tests {
         let told: [(&[f64], f64, f64); 1] = [(&[1.0, 0.0], 3.0, 60.0)];
         let design = design(&told, DMatrix::from_row_slice(2, 2, &[2.0, 0.0, 2.0, 1.0]));
         // The first deviation is halved: 2/2, and sqrt(1 + 1) of sqrt(4 + 1).
-        let after = design.deviations(design.with(&[0])).unwrap();
+        let after = design.target_deviations(design.information_with(&[0])).unwrap();
         assert!((after[0] - 1.0).abs() < 1e-12 && (after[1] - 2.0_f64.sqrt()).abs() < 1e-12);
         let mean = 0.5 * (0.5_f64.ln() + (2.0_f64 / 5.0).ln() / 2.0);
-        assert!((1.0 - design.narrower(&[0]) - mean.exp()).abs() < 1e-12);
+        assert!((1.0 - design.relative_narrowing(&[0]) - mean.exp()).abs() < 1e-12);
     }
 
     #[test]
@@ -134,8 +145,8 @@ mod tests {
         let told: [(&[f64], f64, f64); 3] =
             [(&[1.0, 0.2], 6.0, 40.0), (&[1.0, 0.0], 7.0, 50.0), (&[0.0, 1.0], 7.0, 50.0)];
         let design = design(&told, DMatrix::identity(2, 2));
-        assert_eq!(next(&design, &[], &[0, 1, 2], 100.0), Some(0));
-        let mut chosen = best(&design, 100.0);
+        assert_eq!(best_next(&design, &[], &[0, 1, 2], 100.0), Some(0));
+        let mut chosen = best_design(&design, 100.0);
         chosen.sort_unstable();
         assert_eq!(chosen, [1, 2]);
     }
@@ -152,7 +163,8 @@ mod tests {
             .collect();
         let design = design(&told, DMatrix::identity(3, 3));
         for budget_s in [20.0, 45.0, 70.0] {
-            let found = design.score(design.with(&best(&design, budget_s)));
+            let found =
+                design.log_mean_deviation(design.information_with(&best_design(&design, budget_s)));
             let least = exhaustive(&design, budget_s, &mut Vec::new(), 0);
             assert!(found < least + 0.01, "{budget_s}: {found} above {least}");
         }

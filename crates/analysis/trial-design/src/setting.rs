@@ -1,19 +1,19 @@
 //! Context of a design: the ship, the channels of its trials, and the effects that they have to
 //! distinguish.
 
-use sistership_diagnosis::forms_of;
+use sistership_diagnosis::observable_forms;
 use sistership_filtering::EffectCandidate;
 use sistership_model::trial::Channel;
 use sistership_model::{Model, Trial};
 use sistership_simulation::Ship;
-use sistership_simulation::state::RECORDED;
+use sistership_simulation::state::RECORDED_CHANNELS;
 
 use crate::error::PlanError;
 use crate::request::PlanRequest;
 use crate::thresholds::THRESHOLDS;
 
 /// Context of a design.
-pub(crate) struct Setting {
+pub(crate) struct DesignContext {
     /// Model without the effects to be distinguished.
     pub bare: Model,
     /// Ship without any effect: external influences turn with the heading.
@@ -26,7 +26,7 @@ pub(crate) struct Setting {
     pub remarks: Vec<String>,
 }
 
-impl Setting {
+impl DesignContext {
     /// Prepares the context of a request.
     ///
     /// # Errors
@@ -35,11 +35,11 @@ impl Setting {
         let mut bare = request.model.clone();
         // Effects to be distinguished are unknown, so they are not part of the known model.
         bare.effects.retain(|own| !request.apart.contains(&own.name));
-        let ship = ship(request)?;
-        let like = like(request, &ship);
+        let ship = calm_ship(request)?;
+        let like = template_trial(request, &ship);
         let (mut effects, mut remarks) = (Vec::new(), Vec::new());
         for name in request.apart {
-            let forms = forms_of(name, request.model, request.law, request.library, &like);
+            let forms = observable_forms(name, request.model, request.law, request.library, &like);
             if forms.is_empty() {
                 remarks.push(format!(
                     "{name}: trials with these records do not show it; give some that do"
@@ -51,7 +51,7 @@ impl Setting {
     }
 }
 
-fn ship(request: &PlanRequest<'_>) -> Result<Ship, PlanError> {
+fn calm_ship(request: &PlanRequest<'_>) -> Result<Ship, PlanError> {
     let calm = Model { effects: Vec::new(), ..request.model.clone() };
     let mut ship = Ship::new(&calm, request.law)?;
     if !ship.has_rudder() {
@@ -63,12 +63,12 @@ fn ship(request: &PlanRequest<'_>) -> Result<Ship, PlanError> {
 
 /// Trial whose channels and interval planned trials have: the first recorded one, or all motions of
 /// the ship, its rudder and revolutions.
-fn like(request: &PlanRequest<'_>, ship: &Ship) -> Trial {
+fn template_trial(request: &PlanRequest<'_>, ship: &Ship) -> Trial {
     if let Some(first) = request.sailed.first() {
         return (*first).clone();
     }
     let interval_s = THRESHOLDS.interval * ship.lpp_m() / ship.approach_speed_m_s();
-    let motions = RECORDED.iter().map(|(channel, _)| *channel);
+    let motions = RECORDED_CHANNELS.iter().map(|(channel, _)| *channel);
     let moves =
         |channel: &Channel| ship.has_roll() || !matches!(channel, Channel::Phi | Channel::P);
     let channels = motions.filter(moves).chain([Channel::Delta, Channel::N]);

@@ -2,12 +2,12 @@
 //! by the deviations of the unknowns.
 
 use nalgebra::{DMatrix, DVector};
-use sistership_assessment::uncertainty::{Drawn, Sampling, figures};
+use sistership_assessment::uncertainty::{DrawFigures, Sampling, figures_by_name};
 use sistership_model::Model;
 use sistership_model::law::Law;
 
 use crate::thresholds::THRESHOLDS;
-use crate::unknowns::Unknowns;
+use crate::unknowns::UnknownDeviations;
 
 /// Figures that IMO MSC.137(76) judges, each to either side, and their units.
 const FIGURES: [(&str, &str); 11] = [
@@ -26,7 +26,7 @@ const FIGURES: [(&str, &str); 11] = [
 
 /// A target of a design.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Target {
+pub(crate) struct DesignTarget {
     /// Figure, or `effect: parameter`.
     pub name: String,
     /// Unit; empty where the name contains it.
@@ -38,32 +38,35 @@ pub(crate) struct Target {
 }
 
 /// Targets of a design, and the figures that the model does not reach.
-pub(crate) fn targets(
+pub(crate) fn design_targets(
     model: &Model,
     law: &Law,
-    unknowns: &Unknowns,
-) -> Option<(Vec<Target>, Vec<String>)> {
+    unknowns: &UnknownDeviations,
+) -> Option<(Vec<DesignTarget>, Vec<String>)> {
     let count = unknowns.coefficients.len();
     // The estimate first, then one deviation to either side of each coefficient.
-    let models: Vec<Model> = std::iter::once(unknowns.moved(model, 0, 0.0))
-        .chain((0..count).flat_map(|j| [1.0, -1.0].map(|side| unknowns.moved(model, j, side))))
+    let models: Vec<Model> = std::iter::once(unknowns.move_coefficients(model, 0, 0.0))
+        .chain(
+            (0..count)
+                .flat_map(|j| [1.0, -1.0].map(|side| unknowns.move_coefficients(model, j, side))),
+        )
         .collect();
     let sampling = Sampling { within_steps: true, figures_only: true, ..Sampling::default() };
-    let sailed = figures(&models[0], law, &models, sampling)?;
+    let sailed = figures_by_name(&models[0], law, &models, sampling)?;
     let (estimate, moved) = sailed.split_first()?;
     let of = |(name, unit): &(&'static str, &'static str)| {
         let value = *estimate.get(*name)?;
         let mut gradient = DVector::zeros(unknowns.root.nrows());
         for (j, pair) in moved.chunks_exact(2).enumerate() {
-            gradient[j] = secant(name, value, &pair[0], &pair[1]);
+            gradient[j] = secant_slope(name, value, &pair[0], &pair[1]);
         }
-        Some(Target { name: (*name).to_owned(), unit, value, gradient })
+        Some(DesignTarget { name: (*name).to_owned(), unit, value, gradient })
     };
-    let mut all: Vec<Target> = FIGURES.iter().filter_map(of).collect();
+    let mut all: Vec<DesignTarget> = FIGURES.iter().filter_map(of).collect();
     let unreached =
         FIGURES.iter().map(|(name, _)| *name).filter(|name| !estimate.contains_key(*name));
     let unreached = unreached.map(str::to_owned).collect();
-    all.extend(of_effects(unknowns));
+    all.extend(effect_targets(unknowns));
     // A figure that does not depend on the unknowns cannot be improved.
     all.retain(|target| target.gradient.norm() > THRESHOLDS.least_scatter * target.value.abs());
     Some((all, unreached))
@@ -73,7 +76,7 @@ pub(crate) fn targets(
 /// wide as a figure is curved is judged over its own width (as the sigma points of Julier and
 /// Uhlmann 2004, Proceedings of the IEEE 92, 401-422); over one side where the other does not reach
 /// it.
-fn secant(name: &str, value: f64, above: &Drawn, below: &Drawn) -> f64 {
+fn secant_slope(name: &str, value: f64, above: &DrawFigures, below: &DrawFigures) -> f64 {
     match (above.get(name), below.get(name)) {
         (Some(above), Some(below)) => 0.5 * (above - below),
         (Some(above), None) => above - value,
@@ -82,7 +85,7 @@ fn secant(name: &str, value: f64, above: &Drawn, below: &Drawn) -> f64 {
     }
 }
 
-fn of_effects(unknowns: &Unknowns) -> Vec<Target> {
+fn effect_targets(unknowns: &UnknownDeviations) -> Vec<DesignTarget> {
     let first = unknowns.coefficients.len();
     let size = unknowns.root.nrows();
     let parameters = unknowns.effects.iter().flat_map(|effect| {
@@ -93,13 +96,18 @@ fn of_effects(unknowns: &Unknowns) -> Vec<Target> {
         // A parameter of an effect is an unknown itself: its gradient is its own deviation.
         let mut gradient = DVector::zeros(size);
         gradient[first + k] = unknowns.root[(first + k, first + k)];
-        Target { name: format!("{}: {name}", effect.key()), unit: "", value, gradient }
+        DesignTarget {
+            name: format!("{}: {name}", effect.candidate_key()),
+            unit: "",
+            value,
+            gradient,
+        }
     };
     parameters.enumerate().map(one).collect()
 }
 
 /// Gradients of targets as one matrix, targets by deviations.
-pub(crate) fn gradients(targets: &[Target]) -> DMatrix<f64> {
+pub(crate) fn gradient_matrix(targets: &[DesignTarget]) -> DMatrix<f64> {
     let rows: Vec<_> = targets.iter().map(|target| target.gradient.transpose()).collect();
     DMatrix::from_rows(&rows)
 }

@@ -9,7 +9,7 @@ use crate::error::PlanError;
 use crate::thresholds::THRESHOLDS;
 
 /// Unknowns `x = R z` about the values of the model, `z` being independent with unit variances.
-pub(crate) struct Unknowns {
+pub(crate) struct UnknownDeviations {
     /// Names of the coefficients.
     pub coefficients: Vec<String>,
     /// Effects, in their order after the coefficients.
@@ -20,16 +20,16 @@ pub(crate) struct Unknowns {
     pub remark: Option<String>,
 }
 
-impl Unknowns {
+impl UnknownDeviations {
     /// Creates the unknowns from the posterior of a model; without one, each coefficient is
     /// independent within a share of its value.
     ///
     /// # Errors
     /// Returns an error if the posterior cannot be read.
     pub fn new(model: &Model, effects: Vec<EffectCandidate>) -> Result<Self, PlanError> {
-        let (coefficients, rows, remark) = match model.posterior() {
-            Some(posterior) => (posterior.names.clone(), posterior.root()?, None),
-            None => by_share(model),
+        let (coefficients, rows, remark) = match model.valid_posterior() {
+            Some(posterior) => (posterior.names.clone(), posterior.covariance_root()?, None),
+            None => share_prior(model),
         };
         let own: usize = effects.iter().map(|effect| effect.at.len()).sum();
         let count = coefficients.len();
@@ -50,7 +50,7 @@ impl Unknowns {
     }
 
     /// Model with its coefficients moved by `by` times one deviation.
-    pub fn moved(&self, model: &Model, deviation: usize, by: f64) -> Model {
+    pub fn move_coefficients(&self, model: &Model, deviation: usize, by: f64) -> Model {
         let mut moved = Model { posterior: None, uncertainty: None, ..model.clone() };
         // The moved model is no fit of trials: their validity range does not apply.
         moved.validity = None;
@@ -63,9 +63,9 @@ impl Unknowns {
     }
 }
 
-type Shares = (Vec<String>, Vec<Vec<f64>>, Option<String>);
+type SharePrior = (Vec<String>, Vec<Vec<f64>>, Option<String>);
 
-fn by_share(model: &Model) -> Shares {
+fn share_prior(model: &Model) -> SharePrior {
     let share = THRESHOLDS.unknown_share;
     let names: Vec<String> = model.coefficients.keys().cloned().collect();
     let row = |(place, name): (usize, &String)| {

@@ -5,33 +5,35 @@ use std::sync::Arc;
 
 use sistership_model::posterior::Posterior;
 use sistership_model::{Effect, Law, Model, Zoo};
-use sistership_trial_design::{Instruments, Plan, PlanError, PlanRequest, plan};
+use sistership_trial_design::{
+    InstrumentAccuracy, PlanError, PlanRequest, TrialPlan, design_trials,
+};
 
 /// The Mariner, its coefficients known within a share, and the library.
 fn mariner(share: f64) -> (Model, Arc<Law>, Vec<Arc<Effect>>) {
-    let zoo = Zoo::embedded().unwrap();
-    let mut model = zoo.model("mariner").unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let mut model = zoo.find_model("mariner").unwrap();
     let names: Vec<String> = model.coefficients.keys().cloned().collect();
     let values: Vec<f64> = names.iter().map(|name| model.coefficient(name)).collect();
     let deviations = values.iter().map(|value| share * value.abs()).collect();
     let identity = |i: usize, j: usize| f64::from(u8::from(i == j));
-    let root_correlation = Posterior::rows(names.len(), &identity);
+    let root_correlation = Posterior::format_rows(names.len(), &identity);
     model.posterior = Some(Posterior { names, values, deviations, root_correlation });
     let law = Arc::clone(zoo.law(&model.law).unwrap());
     (model, law, zoo.effects().cloned().collect())
 }
 
-fn planned(share: f64, budget_min: f64, apart: &[&str]) -> Result<Plan, PlanError> {
+fn planned(share: f64, budget_min: f64, apart: &[&str]) -> Result<TrialPlan, PlanError> {
     let (model, law, library) = mariner(share);
     let apart: Vec<String> = apart.iter().map(|name| (*name).to_owned()).collect();
-    plan(&PlanRequest {
+    design_trials(&PlanRequest {
         model: &model,
         law: &law,
         library: &library,
         budget_s: 60.0 * budget_min,
         apart: &apart,
         sailed: &[],
-        instruments: Instruments::SEA_TRIAL,
+        instruments: InstrumentAccuracy::SEA_TRIAL,
     })
 }
 

@@ -2,7 +2,7 @@
 
 /// Smallest block that is mapped separately and returned to the system when it is freed, bytes.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
-const MAPPED: libc::c_int = 1 << 20;
+const MMAP_THRESHOLD_BYTES: libc::c_int = 1 << 20;
 
 /// Makes glibc return large blocks at once. By default it raises the bound to 32 MiB as soon as a
 /// block of that size is freed, and then keeps such blocks in an arena for each thread: after eight
@@ -10,10 +10,10 @@ const MAPPED: libc::c_int = 1 << 20;
 /// do not include.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 #[allow(unsafe_code)]
-pub(crate) fn give_back() {
+pub(crate) fn return_large_blocks() {
     // SAFETY: `mallopt` is called before any thread is started, with a parameter and a value that
     // its manual allows. Where it refuses, the defaults stay.
-    unsafe { libc::mallopt(libc::M_MMAP_THRESHOLD, MAPPED) };
+    unsafe { libc::mallopt(libc::M_MMAP_THRESHOLD, MMAP_THRESHOLD_BYTES) };
 }
 
 /// Does nothing for other allocators.

@@ -7,13 +7,13 @@ pub fn close_names<'a>(name: &str, known: &'a [String]) -> Vec<&'a str> {
     let near = |known: &&String| {
         let contains = name.len() >= 3 && (known.contains(&name) || name.contains(known.as_str()));
         // One letter for each five may be wrong, and one in any case.
-        contains || distance(&name, known) <= 1 + name.chars().count() / 5
+        contains || edit_distance(&name, known) <= 1 + name.chars().count() / 5
     };
     known.iter().filter(near).map(String::as_str).take(5).collect()
 }
 
 /// Levenshtein distance: the number of letters to insert, delete or exchange.
-fn distance(a: &str, b: &str) -> usize {
+fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, from) in a.chars().enumerate() {
@@ -35,7 +35,11 @@ mod tests {
     #[test]
     fn distances() {
         assert_eq!(
-            (distance("kitten", "sitting"), distance("", "ab"), distance("ab", "ab")),
+            (
+                edit_distance("kitten", "sitting"),
+                edit_distance("", "ab"),
+                edit_distance("ab", "ab")
+            ),
             (3, 2, 0)
         );
     }

@@ -15,7 +15,7 @@ pub enum Failure {
 
 impl Failure {
     /// Returns the exit status.
-    pub fn status(&self) -> u8 {
+    pub fn exit_status(&self) -> u8 {
         match self {
             Self::Call(_) => 2,
             Self::Refused(_) | Self::Told => 1,
@@ -31,9 +31,9 @@ impl Failure {
     }
 
     /// Joins two failures; if one of them is a wrong call, the result is one.
-    fn and(self, other: Self) -> Self {
+    fn merge_failures(self, other: Self) -> Self {
         let lines: Vec<&str> = [&self, &other].into_iter().filter_map(Self::message).collect();
-        match (lines.is_empty(), self.status().max(other.status())) {
+        match (lines.is_empty(), self.exit_status().max(other.exit_status())) {
             (true, _) => Self::Told,
             (false, 2) => Self::Call(lines.join("\n")),
             (false, _) => Self::Refused(lines.join("\n")),
@@ -42,20 +42,25 @@ impl Failure {
 }
 
 /// Returns both values, or all failures, so that a person can correct all faults of a call at once.
-pub fn both<A, B>(a: Result<A, Failure>, b: Result<B, Failure>) -> Result<(A, B), Failure> {
+pub fn combine_results<A, B>(
+    a: Result<A, Failure>,
+    b: Result<B, Failure>,
+) -> Result<(A, B), Failure> {
     match (a, b) {
         (Ok(a), Ok(b)) => Ok((a, b)),
         (Err(failure), Ok(_)) | (Ok(_), Err(failure)) => Err(failure),
-        (Err(a), Err(b)) => Err(a.and(b)),
+        (Err(a), Err(b)) => Err(a.merge_failures(b)),
     }
 }
 
 /// Returns all values, or all failures.
-pub fn all<T>(each: impl Iterator<Item = Result<T, Failure>>) -> Result<Vec<T>, Failure> {
+pub fn collect_results<T>(
+    each: impl Iterator<Item = Result<T, Failure>>,
+) -> Result<Vec<T>, Failure> {
     let mut all = Ok(Vec::new());
     for one in each {
         // Items are evaluated after a failure, too, to collect every reason.
-        all = both(all, one).map(|(mut all, one)| {
+        all = combine_results(all, one).map(|(mut all, one)| {
             all.push(one);
             all
         });
@@ -80,19 +85,22 @@ mod tests {
 
     #[test]
     fn statuses_are_those_of_the_contract() {
-        assert_eq!(Failure::Call("x".into()).status(), 2);
+        assert_eq!(Failure::Call("x".into()).exit_status(), 2);
         assert_eq!(about_file(std::path::Path::new("a"), "b"), Failure::Refused("a: b".into()));
-        assert_eq!((Failure::Told.status(), Failure::Told.message()), (1, None));
+        assert_eq!((Failure::Told.exit_status(), Failure::Told.message()), (1, None));
     }
 
     #[test]
     fn every_reason_is_told() {
         let refused = |what: &str| Failure::Refused(what.to_owned());
-        let of = |all: [Result<u8, Failure>; 3]| super::all(all.into_iter());
+        let of = |all: [Result<u8, Failure>; 3]| super::collect_results(all.into_iter());
         assert_eq!(of([Ok(1), Ok(2), Ok(3)]), Ok(vec![1, 2, 3]));
         assert_eq!(of([Err(refused("a")), Ok(2), Err(refused("c"))]), Err(refused("a\nc")));
         let call = Failure::Call("b".into());
-        assert_eq!(both::<u8, u8>(Err(refused("a")), Err(call)), Err(Failure::Call("a\nb".into())));
+        assert_eq!(
+            combine_results::<u8, u8>(Err(refused("a")), Err(call)),
+            Err(Failure::Call("a\nb".into()))
+        );
         assert_eq!(of([Err(Failure::Told), Ok(1), Err(Failure::Told)]), Err(Failure::Told));
     }
 }

@@ -9,12 +9,12 @@ use crate::failure::{Failure, about_file};
 
 /// Output file whose place was checked to be writable before the work.
 #[derive(Debug)]
-pub struct PromisedFile {
+pub struct OutputFile {
     path: PathBuf,
     file: NamedTempFile,
 }
 
-impl PromisedFile {
+impl OutputFile {
     /// Checks that a file can be written, without changing an existing one.
     ///
     /// # Errors
@@ -32,7 +32,8 @@ impl PromisedFile {
         if place.exists() && !place.is_file() {
             return Err(about_file(path, "is not a file that can be replaced"));
         }
-        let file = beside(&place).map_err(|error| about_file(path, unwritable(&place, &error)))?;
+        let file = temporary_file(&place)
+            .map_err(|error| about_file(path, write_failure(&place, &error)))?;
         Ok(Self { path: place, file })
     }
 
@@ -49,7 +50,7 @@ impl PromisedFile {
     }
 }
 
-fn unwritable(place: &Path, error: &std::io::Error) -> String {
+fn write_failure(place: &Path, error: &std::io::Error) -> String {
     match place.parent() {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.exists() => {
             format!("there is no folder {}", folder.display())
@@ -60,7 +61,7 @@ fn unwritable(place: &Path, error: &std::io::Error) -> String {
 
 /// Creates a temporary file in the folder of another, with the permissions of a new file. In the
 /// same folder a rename is atomic.
-fn beside(path: &Path) -> std::io::Result<NamedTempFile> {
+fn temporary_file(path: &Path) -> std::io::Result<NamedTempFile> {
     let folder =
         path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
@@ -80,9 +81,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.yaml");
         std::fs::write(&path, "old").unwrap();
-        drop(PromisedFile::new(&path, &[]).unwrap());
+        drop(OutputFile::new(&path, &[]).unwrap());
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
-        PromisedFile::new(&path, &[]).unwrap().write(b"new").unwrap();
+        OutputFile::new(&path, &[]).unwrap().write(b"new").unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "new");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
@@ -93,7 +94,7 @@ mod tests {
         let path = folder.path().join("a.csv");
         std::fs::write(&path, "data").unwrap();
         let refused = |place: &Path| {
-            PromisedFile::new(place, std::slice::from_ref(&path))
+            OutputFile::new(place, std::slice::from_ref(&path))
                 .unwrap_err()
                 .message()
                 .unwrap()

@@ -7,9 +7,9 @@ use crate::files;
 
 /// File of the folder.
 #[derive(Debug)]
-pub struct PromisedTrack {
+pub struct TrackFile {
     /// The file.
-    pub file: files::PromisedFile,
+    pub file: files::OutputFile,
     /// Its path in messages.
     pub shown: String,
 }
@@ -18,17 +18,17 @@ pub struct PromisedTrack {
 ///
 /// # Errors
 /// Returns an error if the folder cannot be written, or if a file of it is among the inputs.
-pub fn promise(
+pub fn prepare_files(
     folder: &Path,
     trials: &[&str],
     inputs: &[PathBuf],
-) -> Result<Vec<PromisedTrack>, Failure> {
+) -> Result<Vec<TrackFile>, Failure> {
     std::fs::create_dir_all(folder)
         .map_err(|error| about_file(folder, format!("cannot be made a folder: {error}")))?;
     let one = |name: String| {
         let path = folder.join(name);
-        Ok(PromisedTrack {
-            file: files::PromisedFile::new(&path, inputs)?,
+        Ok(TrackFile {
+            file: files::OutputFile::new(&path, inputs)?,
             shown: path.display().to_string(),
         })
     };
@@ -70,7 +70,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.csv");
         std::fs::write(&path, "measured").unwrap();
-        let refused = promise(folder.path(), &["a.csv"], std::slice::from_ref(&path)).unwrap_err();
+        let refused =
+            prepare_files(folder.path(), &["a.csv"], std::slice::from_ref(&path)).unwrap_err();
         assert!(refused.message().unwrap().contains("will not be overwritten"));
     }
 }

@@ -33,21 +33,21 @@ use crate::failure::Failure;
 /// Runs the command of the process' arguments.
 pub fn run() -> ExitCode {
     // First of all, before any thread is started.
-    allocator::give_back();
+    allocator::return_large_blocks();
     let arguments = Arguments::parse();
     match dispatch(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             if let Some(message) = failure.message() {
-                output::note(&format!("error: {}", output::shortened(message)));
+                output::print_note(&format!("error: {}", output::shorten_lines(message)));
             }
-            ExitCode::from(failure.status())
+            ExitCode::from(failure.exit_status())
         }
     }
 }
 
 fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
-    let zoo = || zoo::load(&arguments.zoo);
+    let zoo = || zoo::load_zoo(&arguments.zoo);
     match &arguments.command {
         Command::Similar(similar) => commands::similar::run(&zoo()?, similar),
         Command::Check(check) => commands::check::run(check),
@@ -75,7 +75,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Keys(keys) => commands::keys::run(keys),
         Command::Fsck(fsck) => commands::fsck::run(fsck),
         Command::Gc(gc) => commands::gc::run(gc),
-        Command::Backup(backup) => commands::backup::backup(backup),
-        Command::Restore(restore) => commands::backup::restore(restore),
+        Command::Backup(backup) => commands::backup::run_backup(backup),
+        Command::Restore(restore) => commands::backup::run_restore(restore),
     }
 }

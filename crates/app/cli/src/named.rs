@@ -7,15 +7,15 @@ use sistership_model::{FileError, Law, Model, Vessel, Zoo};
 
 use crate::close::close_names;
 use crate::failure::{Failure, about_file};
-use crate::output::note;
+use crate::output::print_note;
 use crate::weights;
-use crate::zoo::text_of;
+use crate::zoo::read_text_file;
 
 /// Returns the vessel that `SHIP` names.
 ///
 /// # Errors
 /// Returns an error if it is neither a ship of the zoo nor a valid vessel file.
-pub fn ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
+pub fn resolve_ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
     if let Some(vessel) = zoo.vessel(name) {
         return Ok(Arc::clone(vessel));
     }
@@ -29,7 +29,7 @@ pub fn ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
             "`{name}` is a model; a ship is asked for here: `{ship}`"
         )));
     }
-    Err(unknown(name, zoo.vessels().map(|vessel| vessel.name().to_owned()).collect()))
+    Err(unknown_name(name, zoo.vessels().map(|vessel| vessel.name().to_owned()).collect()))
 }
 
 /// Reads the vessel of a file.
@@ -37,7 +37,7 @@ pub fn ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
 /// # Errors
 /// Returns an error if it is no vessel file, or cannot be parsed.
 pub fn vessel_file(zoo: &Zoo, path: &Path) -> Result<Arc<Vessel>, Failure> {
-    let text = text_of(path)?;
+    let text = read_text_file(path)?;
     match kind_of(&text) {
         DocumentKind::Named(kind) if kind == "model" => {
             Err(about_file(path, "is a model; a ship is asked for here: a file of `kind: vessel`"))
@@ -64,16 +64,16 @@ fn read_vessel(zoo: &Zoo, path: &Path, text: &str) -> Result<Vessel, FileError> 
 ///
 /// # Errors
 /// Returns an error if it is neither a model of the zoo nor a file with one.
-pub fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
+pub fn resolve_model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
     let ship = name.split_once('/').map_or(name, |(ship, _)| ship);
     let path = Path::new(name);
     // Names of the zoo have precedence over files, as for ships.
     let model = if zoo.vessel(ship).is_some() {
-        zoo.model(name)?
+        zoo.find_model(name)?
     } else if path.is_file() {
         model_file(zoo, path)?
     } else {
-        return Err(unknown(name, model_names(zoo, name.contains('/'))));
+        return Err(unknown_name(name, model_names(zoo, name.contains('/'))));
     };
     let law = law_of(zoo, &model)?;
     Ok((model, law))
@@ -84,12 +84,14 @@ pub fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
 ///
 /// # Errors
 /// Returns an error if it is neither a model of the zoo nor a file with one.
-pub fn foundation(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
-    let (model, law) = model(zoo, name)?;
+pub fn resolve_foundation(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
+    let (model, law) = resolve_model(zoo, name)?;
     if model.branch.is_some() {
-        note(&format!("{name}: its learned branch is left out; its law and coefficients are used"));
+        print_note(&format!(
+            "{name}: its learned branch is left out; its law and coefficients are used"
+        ));
     }
-    Ok((model.foundation(), law))
+    Ok((model.without_correction(), law))
 }
 
 /// Returns the law of a model.
@@ -103,12 +105,14 @@ pub fn law_of(zoo: &Zoo, model: &Model) -> Result<Arc<Law>, Failure> {
 
 fn model_file(zoo: &Zoo, path: &Path) -> Result<Model, Failure> {
     const WANTED: &str = "a model is of `kind: model`, or of `kind: vessel` with models";
-    let text = text_of(path)?;
+    let text = read_text_file(path)?;
     let shown = path.display().to_string();
     match kind_of(&text) {
         DocumentKind::Named(kind) if kind == "vessel" => {
             let vessel = read_vessel(zoo, path, &text)?;
-            Ok(zoo.published(&vessel, None).map_err(|error| FileError { file: shown, ..error })?)
+            Ok(zoo
+                .published_model(&vessel, None)
+                .map_err(|error| FileError { file: shown, ..error })?)
         }
         DocumentKind::Named(kind) if kind != "model" => {
             Err(about_file(path, format!("is of `kind: {kind}`; {WANTED}")))
@@ -118,7 +122,7 @@ fn model_file(zoo: &Zoo, path: &Path) -> Result<Model, Failure> {
             let law_of = |law: &str| zoo.law(law).map(|law| (**law).clone());
             let mut model = Model::parse(&shown, &text, &law_of)?;
             // Weights are looked for next to the model file.
-            weights::attach(path, &mut model)?;
+            weights::attach_weights(path, &mut model)?;
             Ok(model)
         }
     }
@@ -128,21 +132,21 @@ fn model_file(zoo: &Zoo, path: &Path) -> Result<Model, Failure> {
 ///
 /// # Errors
 /// Returns an error if the file has another kind or none.
-pub fn must_be(path: &Path, text: &str, kind: &str, what: &str) -> Result<(), Failure> {
+pub fn check_kind(path: &Path, text: &str, kind: &str, what: &str) -> Result<(), Failure> {
     match kind_of(text) {
         DocumentKind::Named(found) if found != kind => {
             Err(about_file(path, format!("is of `kind: {found}`; {what} is of `kind: {kind}`")))
         }
         DocumentKind::None => Err(about_file(
             path,
-            format!("is no {}: it does not begin with `kind: {kind}`", bare(what)),
+            format!("is no {}: it does not begin with `kind: {kind}`", without_article(what)),
         )),
         _ => Ok(()),
     }
 }
 
 /// Removes the article of a noun.
-fn bare(what: &str) -> &str {
+fn without_article(what: &str) -> &str {
     what.split_once(' ').map_or(what, |(_, noun)| noun)
 }
 
@@ -156,7 +160,7 @@ enum DocumentKind {
 }
 
 fn kind_of(text: &str) -> DocumentKind {
-    match sistership_model::yaml::read::<serde_yaml::Value>(text) {
+    match sistership_model::yaml::read_document::<serde_yaml::Value>(text) {
         Err(_) => DocumentKind::Broken,
         Ok(document) => document
             .get("kind")
@@ -179,7 +183,7 @@ fn model_names(zoo: &Zoo, full: bool) -> Vec<String> {
     zoo.vessels().filter(|vessel| !vessel.file.models.is_empty()).flat_map(of_ship).collect()
 }
 
-fn unknown(name: &str, known: Vec<String>) -> Failure {
+fn unknown_name(name: &str, known: Vec<String>) -> Failure {
     // Suggestions first; the whole list only if there are none.
     let close: Vec<String> =
         close_names(name, &known).into_iter().map(|known| format!("`{known}`")).collect();
@@ -202,35 +206,35 @@ mod tests {
 
     #[test]
     fn names_of_the_zoo_are_found_and_slips_corrected() {
-        let zoo = Zoo::embedded().unwrap();
-        assert_eq!(ship(&zoo, "mariner").unwrap().name(), "mariner");
-        assert_eq!(model(&zoo, "mariner").unwrap().0.law, "abkowitz");
-        assert!(message(ship(&zoo, "marinr")).contains("did you mean `mariner`?"));
-        assert!(message(ship(&zoo, "kvlcc")).contains("`kvlcc2` or `kvlcc2-7m`"));
-        assert!(message(ship(&zoo, "zzz")).contains("the zoo has"));
-        assert!(message(ship(&zoo, "mariner/abkowitz")).contains("is a model"));
-        assert!(message(model(&zoo, "marinr/abkowitz")).contains("`mariner/abkowitz`"));
-        assert!(message(model(&zoo, "esso-osaka-3m")).contains("particulars only"));
+        let zoo = Zoo::load_embedded().unwrap();
+        assert_eq!(resolve_ship(&zoo, "mariner").unwrap().name(), "mariner");
+        assert_eq!(resolve_model(&zoo, "mariner").unwrap().0.law, "abkowitz");
+        assert!(message(resolve_ship(&zoo, "marinr")).contains("did you mean `mariner`?"));
+        assert!(message(resolve_ship(&zoo, "kvlcc")).contains("`kvlcc2` or `kvlcc2-7m`"));
+        assert!(message(resolve_ship(&zoo, "zzz")).contains("the zoo has"));
+        assert!(message(resolve_ship(&zoo, "mariner/abkowitz")).contains("is a model"));
+        assert!(message(resolve_model(&zoo, "marinr/abkowitz")).contains("`mariner/abkowitz`"));
+        assert!(message(resolve_model(&zoo, "esso-osaka-3m")).contains("particulars only"));
     }
 
     #[test]
     fn files_are_read_by_their_kind() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("m.yaml");
         let file = path.to_str().unwrap();
         std::fs::write(&path, zoo.vessel_text("mariner").unwrap()).unwrap();
-        assert_eq!(model(&zoo, file).unwrap().0, zoo.model("mariner").unwrap());
-        std::fs::write(&path, serde_yaml::to_string(&zoo.model("mariner").unwrap()).unwrap())
+        assert_eq!(resolve_model(&zoo, file).unwrap().0, zoo.find_model("mariner").unwrap());
+        std::fs::write(&path, serde_yaml::to_string(&zoo.find_model("mariner").unwrap()).unwrap())
             .unwrap();
-        assert_eq!(model(&zoo, file).unwrap().0, zoo.model("mariner").unwrap());
-        assert!(message(ship(&zoo, file)).contains("is a model"));
+        assert_eq!(resolve_model(&zoo, file).unwrap().0, zoo.find_model("mariner").unwrap());
+        assert!(message(resolve_ship(&zoo, file)).contains("is a model"));
         std::fs::write(&path, "t_s,u_m_s\n0,1\n").unwrap();
         assert!(
-            message(ship(&zoo, file)).contains("is no ship's file")
-                && message(model(&zoo, file)).contains("is no model's file")
+            message(resolve_ship(&zoo, file)).contains("is no ship's file")
+                && message(resolve_model(&zoo, file)).contains("is no model's file")
         );
         std::fs::write(&path, "kind: vessel\nname: [\n").unwrap();
-        assert!(message(ship(&zoo, file)).contains("m.yaml:"));
+        assert!(message(resolve_ship(&zoo, file)).contains("m.yaml:"));
     }
 }

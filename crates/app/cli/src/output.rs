@@ -11,7 +11,7 @@ use crate::failure::Failure;
 /// # Errors
 /// Returns an error if standard output cannot be written. A reader that stopped reading (`| head`)
 /// is no error.
-pub fn print(
+pub fn print_result(
     json: bool,
     document: &impl Serialize,
     text: impl FnOnce() -> String,
@@ -34,17 +34,17 @@ pub fn print(
 }
 
 /// Prints a line on standard error. A failure is ignored: notes are no results.
-pub fn note(line: &str) {
+pub fn print_note(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
 /// `1 trial`, `2 trials`.
-pub fn count(number: usize, what: &str) -> String {
+pub fn format_count(number: usize, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
 /// Shortens long lines of a message, which may quote a file.
-pub fn shortened(message: &str) -> String {
+pub fn shorten_lines(message: &str) -> String {
     const MOST: usize = 1000;
     let short = |line: &str| match line.char_indices().nth(MOST) {
         Some((end, _)) => format!("{} ...", &line[..end]),
@@ -59,14 +59,14 @@ mod tests {
 
     #[test]
     fn endless_lines_are_cut() {
-        assert_eq!(shortened("a\nb"), "a\nb");
-        assert_eq!(shortened(&"ü".repeat(5000)).chars().count(), 1004);
+        assert_eq!(shorten_lines("a\nb"), "a\nb");
+        assert_eq!(shorten_lines(&"ü".repeat(5000)).chars().count(), 1004);
     }
 
     #[test]
     fn numbers_agree() {
         assert_eq!(
-            (count(1, "trial"), count(0, "trial")),
+            (format_count(1, "trial"), format_count(0, "trial")),
             ("1 trial".to_owned(), "0 trials".to_owned())
         );
     }

@@ -15,16 +15,16 @@ impl TextTable {
     }
 
     /// Creates a table with a header of any number of columns.
-    pub fn of<'a>(header: impl Iterator<Item = &'a str>) -> Self {
+    pub fn with_columns<'a>(header: impl Iterator<Item = &'a str>) -> Self {
         Self { rows: vec![header.map(str::to_owned).collect()] }
     }
 
     /// Adds a row.
-    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+    pub fn add_row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
     }
 
-    fn width(&self, column: usize) -> usize {
+    fn column_width(&self, column: usize) -> usize {
         self.rows
             .iter()
             .filter_map(|row| row.get(column))
@@ -47,8 +47,9 @@ impl fmt::Display for TextTable {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         // Rows may have fewer cells than the header; missing cells at the end are not printed.
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
-        let layout: Vec<(usize, bool)> =
-            (0..columns).map(|column| (self.width(column), self.is_numeric(column))).collect();
+        let layout: Vec<(usize, bool)> = (0..columns)
+            .map(|column| (self.column_width(column), self.is_numeric(column)))
+            .collect();
         for row in &self.rows {
             let cell = |(cell, (width, numeric)): (&String, &(usize, bool))| {
                 if *numeric { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
@@ -61,7 +62,7 @@ impl fmt::Display for TextTable {
 }
 
 /// Formats a number with four significant digits.
-pub fn number(value: f64) -> String {
+pub fn format_number(value: f64) -> String {
     if !value.is_finite() || value == f64::MAX {
         return "-".to_owned();
     }
@@ -78,8 +79,8 @@ pub fn number(value: f64) -> String {
 }
 
 /// Formats a number that may be unknown.
-pub fn optional(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), number)
+pub fn format_optional(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), format_number)
 }
 
 #[cfg(test)]
@@ -89,8 +90,8 @@ mod tests {
     #[test]
     fn columns_are_aligned_by_what_they_hold() {
         let mut table = TextTable::new(["ship", "correlation", "note"]);
-        table.row(["pcc".to_owned(), "-0.7".to_owned(), "a".to_owned()]);
-        table.row(["mariner".to_owned(), "-".to_owned(), String::new()]);
+        table.add_row(["pcc".to_owned(), "-0.7".to_owned(), "a".to_owned()]);
+        table.add_row(["mariner".to_owned(), "-".to_owned(), String::new()]);
         assert_eq!(
             table.to_string(),
             "  ship     correlation  note\n  pcc             -0.7  a\n  mariner            -\n"
@@ -99,8 +100,8 @@ mod tests {
 
     #[test]
     fn numbers_keep_four_digits() {
-        let written =
-            [0.0, 12.3456, 0.0012346, 1234.56, 5e-7, f64::MAX, f64::NAN, -0.5763].map(number);
+        let written = [0.0, 12.3456, 0.0012346, 1234.56, 5e-7, f64::MAX, f64::NAN, -0.5763]
+            .map(format_number);
         assert_eq!(written, ["0", "12.35", "0.001235", "1235", "5.000e-7", "-", "-", "-0.5763"]);
     }
 }

@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use sistership_model::trial::{Finding, Trial};
-use sistership_trials::{Loaded, load_path};
+use sistership_trials::{LoadedTrials, load_path};
 
 use crate::failure::Failure;
-use crate::output::{count, note};
+use crate::output::{format_count, print_note};
 
 /// Number of warnings of a file that are printed; the rest is counted.
-const TOLD: usize = 3;
+const MAX_PRINTED_WARNINGS: usize = 3;
 
 /// Trial with its origin.
 #[derive(Debug)]
@@ -30,7 +30,7 @@ pub struct ReadTrial {
 ///
 /// # Errors
 /// Returns an error with all refusals, by row and column.
-pub fn read(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
+pub fn read_trials(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
     let (mut read, mut refused) = (Vec::new(), Vec::new());
     for path in paths {
         let loaded = match load_path(path) {
@@ -56,32 +56,34 @@ pub fn read(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
     if !refused.is_empty() {
         return Err(Failure::Refused(refused.join("\n")));
     }
-    tell_warnings(&read);
-    name_apart(&mut read)?;
+    print_warnings(&read);
+    make_names_unique(&mut read)?;
     Ok(read)
 }
 
-fn files_of(path: &Path, loaded: &Loaded) -> Vec<(String, PathBuf, bool)> {
+fn files_of(path: &Path, loaded: &LoadedTrials) -> Vec<(String, PathBuf, bool)> {
     let folder = path.parent().unwrap_or(Path::new(""));
     match &loaded.manifest {
         Some(manifest) => manifest
             .trials
             .iter()
-            .map(|trial| (trial.label(), folder.join(&trial.file), trial.is_stretch()))
+            .map(|trial| (trial.trial_label(), folder.join(&trial.file), trial.is_segment()))
             .collect(),
         None => vec![(path.display().to_string(), path.to_path_buf(), false)],
     }
 }
 
 /// Prints the first warnings of each file; a warning that several files share is printed once.
-fn tell_warnings(read: &[ReadTrial]) {
+fn print_warnings(read: &[ReadTrial]) {
     let mut told: Vec<(String, &str, usize)> = Vec::new();
     for read in read {
         let warnings = &read.trial.warnings;
-        let more = warnings.len().saturating_sub(TOLD);
-        let further = (more > 0)
-            .then(|| format!("{}; `sistership check` lists them", count(more, "further warning")));
-        for message in warnings.iter().take(TOLD).map(place).chain(further) {
+        let more = warnings.len().saturating_sub(MAX_PRINTED_WARNINGS);
+        let further = (more > 0).then(|| {
+            format!("{}; `sistership check` lists them", format_count(more, "further warning"))
+        });
+        for message in warnings.iter().take(MAX_PRINTED_WARNINGS).map(format_finding).chain(further)
+        {
             match told.iter_mut().find(|(known, ..)| *known == message) {
                 Some((.., others)) => *others += 1,
                 None => told.push((message, &read.file, 0)),
@@ -89,14 +91,17 @@ fn tell_warnings(read: &[ReadTrial]) {
         }
     }
     for (message, file, others) in told {
-        let others =
-            if others > 0 { format!(" and {}", count(others, "other")) } else { String::new() };
-        note(&format!("warning: {file}{others}: {message}"));
+        let others = if others > 0 {
+            format!(" and {}", format_count(others, "other"))
+        } else {
+            String::new()
+        };
+        print_note(&format!("warning: {file}{others}: {message}"));
     }
 }
 
 /// Formats a finding with its row and column.
-pub fn place(finding: &Finding) -> String {
+pub fn format_finding(finding: &Finding) -> String {
     let row = finding.row.map_or(String::new(), |row| format!("row {row}: "));
     let column =
         finding.column.as_ref().map_or(String::new(), |column| format!("column `{column}`: "));
@@ -105,7 +110,7 @@ pub fn place(finding: &Finding) -> String {
 
 /// Makes names unique by the folder of the file; refuses a file that is given twice, because its
 /// data would count twice.
-fn name_apart(read: &mut [ReadTrial]) -> Result<(), Failure> {
+fn make_names_unique(read: &mut [ReadTrial]) -> Result<(), Failure> {
     for index in 1..read.len() {
         let (earlier, rest) = read.split_at_mut(index);
         let this = &mut rest[0];
@@ -142,12 +147,12 @@ fn with_folder(path: &Path, name: &str) -> String {
 }
 
 /// Returns references to the trials.
-pub fn trials(read: &[ReadTrial]) -> Vec<&Trial> {
+pub fn trial_refs(read: &[ReadTrial]) -> Vec<&Trial> {
     read.iter().map(|read| &read.trial).collect()
 }
 
 /// Returns the paths of everything that was read, which must not be overwritten.
-pub fn inputs(read: &[ReadTrial], paths: &[PathBuf]) -> Vec<PathBuf> {
+pub fn input_paths(read: &[ReadTrial], paths: &[PathBuf]) -> Vec<PathBuf> {
     read.iter().map(|read| read.path.clone()).chain(paths.iter().cloned()).collect()
 }
 
@@ -160,7 +165,9 @@ pub fn remark_other_ship(read: &[ReadTrial], ship: &str) {
         .collect();
     others.dedup();
     others.iter().for_each(|other| {
-        note(&format!("warning: the manifest says the trials are of `{other}`, not of `{ship}`"))
+        print_note(&format!(
+            "warning: the manifest says the trials are of `{other}`, not of `{ship}`"
+        ))
     });
 }
 
@@ -177,13 +184,13 @@ mod tests {
             std::fs::create_dir(path.parent().unwrap()).unwrap();
             std::fs::write(path, "t_s,u_m_s\n0,1\n1,2\n2,3\n").unwrap();
         }
-        let read = read(&paths).unwrap();
+        let read = read_trials(&paths).unwrap();
         assert_eq!(
-            trials(&read).iter().map(|trial| trial.name.as_str()).collect::<Vec<_>>(),
+            trial_refs(&read).iter().map(|trial| trial.name.as_str()).collect::<Vec<_>>(),
             ["t.csv", "b/t.csv"]
         );
         let twice = [paths[0].clone(), paths[0].clone()];
-        assert!(super::read(&twice).unwrap_err().message().unwrap().contains("given twice"));
+        assert!(super::read_trials(&twice).unwrap_err().message().unwrap().contains("given twice"));
     }
 
     #[test]
@@ -191,7 +198,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let paths = ["a.csv", "b.csv"].map(|name| folder.path().join(name));
         paths.iter().for_each(|path| std::fs::write(path, "t_s,u_m_s\n0,1\n0,2\n").unwrap());
-        let failure = read(&paths).unwrap_err();
+        let failure = read_trials(&paths).unwrap_err();
         let message = failure.message().unwrap();
         assert!(
             message.contains("a.csv is refused") && message.contains("b.csv is refused"),

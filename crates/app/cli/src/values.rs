@@ -4,9 +4,9 @@ use std::net::SocketAddr;
 use std::time::Duration;
 
 use clap::ValueEnum;
-use sistership_export::{FORMATS, Format, by_name};
-use sistership_identification::refine::{Method, Prior};
-use sistership_priors::similarity::Definition;
+use sistership_export::{FORMATS, ModelFormat, by_name};
+use sistership_identification::refine::{EstimationMethod, Prior};
+use sistership_priors::similarity::VectorDefinition;
 use sistership_simulation::Method as Integrator;
 
 /// Error of a value.
@@ -67,7 +67,7 @@ pub enum ValueError {
 
 /// Integration methods.
 #[derive(Debug, Clone, Copy, Default, ValueEnum)]
-pub enum Integration {
+pub enum IntegrationMethod {
     /// Classical Runge-Kutta of fourth order.
     #[default]
     Rk4,
@@ -75,11 +75,11 @@ pub enum Integration {
     Euler,
 }
 
-impl From<Integration> for Integrator {
-    fn from(method: Integration) -> Self {
+impl From<IntegrationMethod> for Integrator {
+    fn from(method: IntegrationMethod) -> Self {
         match method {
-            Integration::Rk4 => Self::Rk4,
-            Integration::Euler => Self::Euler,
+            IntegrationMethod::Rk4 => Self::Rk4,
+            IntegrationMethod::Euler => Self::Euler,
         }
     }
 }
@@ -137,9 +137,9 @@ pub fn number(text: &str) -> Result<f64, ValueError> {
 }
 
 /// Returns the estimator with this name.
-pub fn method(name: &str) -> Result<Method, ValueError> {
-    let known = || Method::ALL.map(|method| format!("`{}`", method.name())).join(", ");
-    Method::by_name(name).ok_or_else(|| ValueError::UnknownName { known: known() })
+pub fn method(name: &str) -> Result<EstimationMethod, ValueError> {
+    let known = || EstimationMethod::ALL.map(|method| format!("`{}`", method.name())).join(", ");
+    EstimationMethod::by_name(name).ok_or_else(|| ValueError::UnknownName { known: known() })
 }
 
 /// Returns the prior with this name.
@@ -149,16 +149,17 @@ pub fn prior(name: &str) -> Result<Prior, ValueError> {
 }
 
 /// Returns the definition of the characteristic vector with this name.
-pub fn definition(name: &str) -> Result<Definition, ValueError> {
-    let known: Vec<&str> = Definition::ALL.into_iter().map(Definition::name).collect();
-    Definition::by_name(name).ok_or_else(|| ValueError::UnknownName { known: known.join(" and ") })
+pub fn definition(name: &str) -> Result<VectorDefinition, ValueError> {
+    let known: Vec<&str> = VectorDefinition::ALL.into_iter().map(VectorDefinition::name).collect();
+    VectorDefinition::by_name(name)
+        .ok_or_else(|| ValueError::UnknownName { known: known.join(" and ") })
 }
 
 /// Format of an export.
 #[derive(Debug, Clone, Copy)]
 pub enum ExportFormat {
     /// A model for another tool.
-    Model(&'static dyn Format),
+    Model(&'static dyn ModelFormat),
     /// A ship for another store.
     Bundle,
 }
@@ -237,7 +238,7 @@ mod tests {
 
     #[test]
     fn definitions_have_names() {
-        assert_eq!(definition("mei-2019"), Ok(Definition::Mei2019));
+        assert_eq!(definition("mei-2019"), Ok(VectorDefinition::Mei2019));
         assert!(definition("mei").is_err_and(|error| error.to_string().contains("kanazawa-2023")));
     }
 

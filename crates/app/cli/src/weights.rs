@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use sistership_model::Model;
-use sistership_model::branch::Branch;
+use sistership_model::branch::CorrectionDocument;
 
 use crate::failure::{Failure, about_file};
-use crate::table::number;
+use crate::table::format_number;
 
 /// Returns the path of the weights of a model file: `model.weights.json` for `model.yaml`.
-pub fn beside(model: &Path) -> PathBuf {
+pub fn weights_path(model: &Path) -> PathBuf {
     model.with_extension("weights.json")
 }
 
@@ -19,8 +19,8 @@ pub fn beside(model: &Path) -> PathBuf {
 /// # Errors
 /// Returns an error that names the file if it is missing, or if its content is not what the model
 /// names.
-pub fn attach(file: &Path, model: &mut Model) -> Result<(), Failure> {
-    let Some(bytes) = read_beside(file, model)? else { return Ok(()) };
+pub fn attach_weights(file: &Path, model: &mut Model) -> Result<(), Failure> {
+    let Some(bytes) = read_weights(file, model)? else { return Ok(()) };
     // The hash of the weights is checked against the one that the model names.
     sistership_learned::attach(model, &bytes).map_err(|error| about_file(file, error))
 }
@@ -29,11 +29,11 @@ pub fn attach(file: &Path, model: &mut Model) -> Result<(), Failure> {
 ///
 /// # Errors
 /// Returns an error that names the file that cannot be read.
-pub fn read_beside(file: &Path, model: &Model) -> Result<Option<Vec<u8>>, Failure> {
+pub fn read_weights(file: &Path, model: &Model) -> Result<Option<Vec<u8>>, Failure> {
     if model.branch.is_none() {
         return Ok(None);
     }
-    let weights = beside(file);
+    let weights = weights_path(file);
     let unread = |error: std::io::Error| {
         let message = format!(
             "branch.weights_sha256: the weights of its learned branch should be beside it in {}, \
@@ -48,23 +48,23 @@ pub fn read_beside(file: &Path, model: &Model) -> Result<Option<Vec<u8>>, Failur
 
 /// Description of a learned correction in documents.
 #[derive(Debug, Serialize)]
-pub struct BranchWords<'a> {
+pub struct CorrectionSummary<'a> {
     /// Kind of the learner.
     pub kind: &'a str,
     /// Combination with the law.
     pub mode: &'a str,
 }
 
-impl<'a> BranchWords<'a> {
+impl<'a> CorrectionSummary<'a> {
     /// Describes a learned correction.
-    pub fn of(branch: &'a Branch) -> Self {
+    pub fn from_branch(branch: &'a CorrectionDocument) -> Self {
         Self { kind: branch.recipe.learner.name(), mode: branch.mode.name() }
     }
 
     /// Formats a line, with its share in a simulation if that is known.
-    pub fn line(&self, share: Option<f64>) -> String {
+    pub fn to_line(&self, share: Option<f64>) -> String {
         let counted = share.map_or(String::new(), |share| {
-            format!("; it counted for {} % of the simulated time", number(100.0 * share))
+            format!("; it counted for {} % of the simulated time", format_number(100.0 * share))
         });
         format!("learned branch: {}, {}{counted}\n", self.kind, self.mode)
     }

@@ -7,10 +7,10 @@ use crate::parse::parse;
 ///
 /// # Errors
 /// Returns the fault of the formula, or the name that it should not use.
-pub fn constant(text: &str) -> Result<f64, FormulaError> {
+pub fn evaluate_constant(text: &str) -> Result<f64, FormulaError> {
     let expr = parse(text)?;
     let value = expr.value(&|_| None);
-    value.filter(|v| v.is_finite()).ok_or_else(|| match expr.names().first() {
+    value.filter(|v| v.is_finite()).ok_or_else(|| match expr.mentioned_names().first() {
         Some(name) => {
             FormulaError::NotConstant { formula: text.to_owned(), name: (*name).to_owned() }
         }

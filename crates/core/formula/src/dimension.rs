@@ -17,20 +17,20 @@ pub fn dimension_of(
         Expr::Number(_) => Ok(Dimension::NONE),
         Expr::Name(name) => lookup(name).ok_or_else(|| FormulaError::Name(name.clone())),
         Expr::Negate(a) => of(a),
-        Expr::Add(a, b) | Expr::Subtract(a, b) => same(a, of(a)?, b, of(b)?),
+        Expr::Add(a, b) | Expr::Subtract(a, b) => common_dimension(a, of(a)?, b, of(b)?),
         Expr::Multiply(a, b) => Ok(of(a)? + of(b)?),
         Expr::Divide(a, b) => Ok(of(a)? - of(b)?),
-        Expr::Power(a, b) => power(of(a)?, b, of(b)?),
-        Expr::Call(function, arguments) => call(*function, arguments, lookup),
+        Expr::Power(a, b) => power_dimension(of(a)?, b, of(b)?),
+        Expr::Call(function, arguments) => call_dimension(*function, arguments, lookup),
         Expr::If(_, parts) => {
             // The compared sides must agree, and so must the alternatives.
-            same(&parts[0], of(&parts[0])?, &parts[1], of(&parts[1])?)?;
-            same(&parts[2], of(&parts[2])?, &parts[3], of(&parts[3])?)
+            common_dimension(&parts[0], of(&parts[0])?, &parts[1], of(&parts[1])?)?;
+            common_dimension(&parts[2], of(&parts[2])?, &parts[3], of(&parts[3])?)
         }
     }
 }
 
-fn power(
+fn power_dimension(
     base: Dimension,
     exponent: &Expr,
     of_exponent: Dimension,
@@ -46,7 +46,7 @@ fn power(
     }
 }
 
-fn call(
+fn call_dimension(
     function: Function,
     arguments: &[Expr],
     lookup: &dyn Fn(&str) -> Option<Dimension>,
@@ -57,8 +57,12 @@ fn call(
         Function::Sqrt => Ok(first.pow(0.5)),
         Function::Sign => Ok(Dimension::NONE),
         Function::Min | Function::Max | Function::Atan2 => {
-            let common =
-                same(&arguments[0], first, &arguments[1], dimension_of(&arguments[1], lookup)?)?;
+            let common = common_dimension(
+                &arguments[0],
+                first,
+                &arguments[1],
+                dimension_of(&arguments[1], lookup)?,
+            )?;
             Ok(if function == Function::Atan2 { Dimension::NONE } else { common })
         }
         _ if first == Dimension::NONE => Ok(first),
@@ -68,7 +72,12 @@ fn call(
 
 /// Returns the dimension of two sides of a sum or comparison, which must agree; a literal zero
 /// agrees with any.
-fn same(a: &Expr, of_a: Dimension, b: &Expr, of_b: Dimension) -> Result<Dimension, FormulaError> {
+fn common_dimension(
+    a: &Expr,
+    of_a: Dimension,
+    b: &Expr,
+    of_b: Dimension,
+) -> Result<Dimension, FormulaError> {
     let zero = |e: &Expr| matches!(e, Expr::Number(number) if *number == 0.0);
     if of_a == of_b || zero(b) {
         Ok(of_a)

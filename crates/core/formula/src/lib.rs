@@ -10,9 +10,9 @@ mod parse;
 mod syntax;
 pub mod units;
 
-pub use constant::constant;
+pub use constant::evaluate_constant;
 pub use dimension::dimension_of;
 pub use error::FormulaError;
-pub use limits::{MAX_DEPTH, MAX_LENGTH, MAX_NESTING, MAX_OPERATORS, head};
+pub use limits::{MAX_DEPTH, MAX_LENGTH, MAX_NESTING, MAX_OPERATORS, text_head};
 pub use parse::{parse, parse_condition};
-pub use syntax::{Comparison, Expr, Function, builtin};
+pub use syntax::{Comparison, Expr, Function, builtin_constant};

@@ -20,17 +20,21 @@ pub const MAX_NESTING: usize = 48;
 pub const MAX_DEPTH: usize = 512;
 
 /// Refuses a formula that is too long or too deep to be parsed.
-pub fn check(text: &str) -> Result<(), FormulaError> {
+pub fn check_limits(text: &str) -> Result<(), FormulaError> {
     if text.len() > MAX_LENGTH {
         return Err(FormulaError::Long { length: text.len(), most: MAX_LENGTH });
     }
-    let Measure { nesting, operators } = Measure::of(text.as_bytes());
+    let FormulaMeasure { nesting, operators } = FormulaMeasure::from_text(text.as_bytes());
     if nesting > MAX_NESTING {
-        return Err(FormulaError::Nested { head: head(text), found: nesting, most: MAX_NESTING });
+        return Err(FormulaError::Nested {
+            head: text_head(text),
+            found: nesting,
+            most: MAX_NESTING,
+        });
     }
     if operators > MAX_OPERATORS {
         return Err(FormulaError::Operators {
-            head: head(text),
+            head: text_head(text),
             found: operators,
             most: MAX_OPERATORS,
         });
@@ -39,18 +43,18 @@ pub fn check(text: &str) -> Result<(), FormulaError> {
 }
 
 /// Returns the beginning of a long text, for a message.
-pub fn head(text: &str) -> String {
+pub fn text_head(text: &str) -> String {
     text.chars().take(24).collect()
 }
 
 #[derive(Default)]
-struct Measure {
+struct FormulaMeasure {
     nesting: usize,
     operators: usize,
 }
 
-impl Measure {
-    fn of(text: &[u8]) -> Self {
+impl FormulaMeasure {
+    fn from_text(text: &[u8]) -> Self {
         let mut found = Self::default();
         // For each open parenthesis, the number of signs and powers that wait for their operand;
         // their sum and the open parentheses are the current depth.
@@ -73,9 +77,9 @@ impl Measure {
                         waiting.push(0);
                     }
                 }
-                b'+' | b'-' if in_number(text, at) => {}
-                b'^' => wait(&mut waiting, &mut depth),
-                b'+' | b'-' if !is_operand => wait(&mut waiting, &mut depth),
+                b'+' | b'-' if is_exponent_sign(text, at) => {}
+                b'^' => add_pending(&mut waiting, &mut depth),
+                b'+' | b'-' if !is_operand => add_pending(&mut waiting, &mut depth),
                 // A binary operator completes the operands that signs and powers waited for.
                 b'+' | b'-' | b'*' | b'/' | b',' | b'<' | b'>' => {
                     let done = waiting.last_mut().map_or(0, std::mem::take);
@@ -91,7 +95,7 @@ impl Measure {
     }
 }
 
-fn wait(waiting: &mut [usize], depth: &mut usize) {
+fn add_pending(waiting: &mut [usize], depth: &mut usize) {
     if let Some(last) = waiting.last_mut() {
         *last += 1;
         *depth += 1;
@@ -99,7 +103,7 @@ fn wait(waiting: &mut [usize], depth: &mut usize) {
 }
 
 /// Returns true if the sign at a position may belong to a number's exponent, as in `1e-3`.
-fn in_number(text: &[u8], at: usize) -> bool {
+fn is_exponent_sign(text: &[u8], at: usize) -> bool {
     let before = |back: usize| at.checked_sub(back).map(|place| text[place]);
     matches!(before(1), Some(b'e' | b'E'))
         && before(2).is_some_and(|b| b.is_ascii_digit() || b == b'.')
@@ -145,8 +149,11 @@ mod tests {
                 for n in [most / 2, most] {
                     let expr = parse(&make(n)).unwrap_or_else(|e| panic!("{n} of {what}: {e}"));
                     assert_eq!(expr.clone(), expr);
-                    let _ =
-                        (expr.value(&|_| Some(1.0)), expr.names().len(), expr.renamed(&|_| None));
+                    let _ = (
+                        expr.value(&|_| Some(1.0)),
+                        expr.mentioned_names().len(),
+                        expr.replace_names(&|_| None),
+                    );
                 }
                 for n in [most + 2, 10 * most, 1_000_000 / 8] {
                     let refused = parse(&make(n)).unwrap_err().to_string();
@@ -162,7 +169,7 @@ mod tests {
 
     #[test]
     fn what_is_wide_is_not_deep() {
-        let nesting = |text: &str| Measure::of(text.as_bytes()).nesting;
+        let nesting = |text: &str| FormulaMeasure::from_text(text.as_bytes()).nesting;
         assert_eq!(nesting("u^2 + v^2*r^2 - (u^3)/(v^2)"), 2);
         assert_eq!(nesting("-u*-v + 1e-3 - 2E-5"), 1);
         assert_eq!(nesting("2^1e-3^x"), 2);

@@ -12,7 +12,7 @@ use winnow::token::{any, one_of, take_while};
 use crate::error::FormulaError;
 use crate::syntax::{Comparison, Expr, Function};
 
-type Result<T> = winnow::Result<T, ErrMode<ContextError>>;
+type ParseResult<T> = winnow::Result<T, ErrMode<ContextError>>;
 
 /// Parses one formula.
 ///
@@ -20,8 +20,8 @@ type Result<T> = winnow::Result<T, ErrMode<ContextError>>;
 /// Returns an error with the position of the first fault and the expected input; or an error for a
 /// formula that exceeds [`crate::MAX_LENGTH`], [`crate::MAX_NESTING`] or [`crate::MAX_OPERATORS`].
 pub fn parse(text: &str) -> std::result::Result<Expr, FormulaError> {
-    crate::limits::check(text)?;
-    let parsed = delimited(multispace0, sum, multispace0).parse(text);
+    crate::limits::check_limits(text)?;
+    let parsed = delimited(multispace0, parse_sum, multispace0).parse(text);
     parsed.map_err(|error| {
         // The error has a byte offset; the message shows the next characters.
         let rest: String =
@@ -41,7 +41,7 @@ pub fn parse(text: &str) -> std::result::Result<Expr, FormulaError> {
 pub fn parse_condition(text: &str) -> std::result::Result<Expr, FormulaError> {
     match text.find(['<', '>']) {
         Some(_) => {
-            crate::limits::check(text)?;
+            crate::limits::check_limits(text)?;
             parse(&format!("if({text}, 1, 0)"))
                 .map_err(|_| FormulaError::Condition(text.to_owned()))
         }
@@ -55,8 +55,8 @@ fn boxed(a: Expr, b: Expr, make: fn(Box<Expr>, Box<Expr>) -> Expr) -> Expr {
 
 /// Parses an expression. Binding powers: sums 1, products 3, unary minus 5, powers 7 (right
 /// associative), so that `-u^2` is `-(u^2)`.
-fn sum(input: &mut &str) -> Result<Expr> {
-    expression(delimited(multispace0, operand, multispace0))
+fn parse_sum(input: &mut &str) -> ParseResult<Expr> {
+    expression(delimited(multispace0, parse_operand, multispace0))
         .prefix(preceded(
             multispace0,
             dispatch! { any;
@@ -76,67 +76,68 @@ fn sum(input: &mut &str) -> Result<Expr> {
         .parse_next(input)
 }
 
-fn operand(input: &mut &str) -> Result<Expr> {
+fn parse_operand(input: &mut &str) -> ParseResult<Expr> {
     alt((
-        number,
-        delimited('(', sum, cut_err(')').context(expected("a closing parenthesis"))),
-        name_or_call,
+        parse_number,
+        delimited('(', parse_sum, cut_err(')').context(expected_context("a closing parenthesis"))),
+        parse_name_or_call,
     ))
-    .context(expected("a number, a name or a parenthesis"))
+    .context(expected_context("a number, a name or a parenthesis"))
     .parse_next(input)
 }
 
-fn expected(what: &'static str) -> StrContext {
+fn expected_context(what: &'static str) -> StrContext {
     StrContext::Expected(StrContextValue::Description(what))
 }
 
-fn number(input: &mut &str) -> Result<Expr> {
+fn parse_number(input: &mut &str) -> ParseResult<Expr> {
     // `float` would also accept a sign, `inf` and `nan`: here a sign is an operator, and the others
     // are names.
     preceded(peek(one_of(('0'..='9', '.'))), float).map(Expr::Number).parse_next(input)
 }
 
-fn identifier<'a>(input: &mut &'a str) -> Result<&'a str> {
+fn parse_identifier<'a>(input: &mut &'a str) -> ParseResult<&'a str> {
     (one_of(('a'..='z', 'A'..='Z', '_')), take_while(0.., ('a'..='z', 'A'..='Z', '0'..='9', '_')))
         .take()
         .parse_next(input)
 }
 
-fn name_or_call(input: &mut &str) -> Result<Expr> {
-    let name = identifier.parse_next(input)?;
+fn parse_name_or_call(input: &mut &str) -> ParseResult<Expr> {
+    let name = parse_identifier.parse_next(input)?;
     // A name is a call only if a parenthesis follows.
     if peek((multispace0::<_, ErrMode<ContextError>>, '(')).parse_next(input).is_err() {
         return Ok(Expr::Name(name.to_owned()));
     }
     if name == "if" {
-        return cut_err(condition).parse_next(input);
+        return cut_err(parse_alternatives).parse_next(input);
     }
     // After an opening parenthesis no other alternative can match: `cut_err` keeps this error.
     let Some((function, count)) = Function::by_name(name) else {
-        return cut_err(fail.context(expected("a known function"))).parse_next(input);
+        return cut_err(fail.context(expected_context("a known function"))).parse_next(input);
     };
     let arguments: Vec<Expr> =
-        cut_err(delimited((multispace0, '('), separated(1.., sum, ','), ')')).parse_next(input)?;
+        cut_err(delimited((multispace0, '('), separated(1.., parse_sum, ','), ')'))
+            .parse_next(input)?;
     if arguments.len() != count {
-        return cut_err(fail.context(expected("as many arguments as the function takes")))
+        return cut_err(fail.context(expected_context("as many arguments as the function takes")))
             .parse_next(input);
     }
     Ok(Expr::Call(function, arguments))
 }
 
 /// Parses the arguments of `if`: `(a < b, c, d)`.
-fn condition(input: &mut &str) -> Result<Expr> {
+fn parse_alternatives(input: &mut &str) -> ParseResult<Expr> {
     let compare = alt((
         "<=".value(Comparison::LessOrEqual),
         ">=".value(Comparison::GreaterOrEqual),
         "<".value(Comparison::Less),
         ">".value(Comparison::Greater),
     ))
-    .context(expected("a comparison"));
+    .context(expected_context("a comparison"));
     let (left, comparison, right) =
-        preceded((multispace0, '('), (sum, compare, sum)).parse_next(input)?;
-    let (then, otherwise) = (preceded(',', sum), preceded(',', terminated(sum, ')')))
-        .context(expected("two alternatives"))
+        preceded((multispace0, '('), (parse_sum, compare, parse_sum)).parse_next(input)?;
+    let (then, otherwise) = (preceded(',', parse_sum), preceded(',', terminated(parse_sum, ')')))
+        .context(expected_context("two alternatives"))
         .parse_next(input)?;
     Ok(Expr::If(comparison, Box::new([left, right, then, otherwise])))
 }

@@ -146,16 +146,16 @@ impl Expr {
     }
 
     /// Returns every name in the expression.
-    pub fn names(&self) -> BTreeSet<&str> {
+    pub fn mentioned_names(&self) -> BTreeSet<&str> {
         match self {
             Self::Name(name) => BTreeSet::from([name.as_str()]),
-            other => other.children().into_iter().flat_map(Expr::names).collect(),
+            other => other.children().into_iter().flat_map(Expr::mentioned_names).collect(),
         }
     }
 
     /// Returns the expression with some names replaced by expressions.
-    pub fn renamed(&self, by: &dyn Fn(&str) -> Option<Expr>) -> Expr {
-        let of = |e: &Expr| Box::new(e.renamed(by));
+    pub fn replace_names(&self, by: &dyn Fn(&str) -> Option<Expr>) -> Expr {
+        let of = |e: &Expr| Box::new(e.replace_names(by));
         match self {
             Self::Number(number) => Self::Number(*number),
             Self::Name(name) => by(name).unwrap_or_else(|| self.clone()),
@@ -166,10 +166,10 @@ impl Expr {
             Self::Divide(a, b) => Self::Divide(of(a), of(b)),
             Self::Power(a, b) => Self::Power(of(a), of(b)),
             Self::Call(function, arguments) => {
-                Self::Call(*function, arguments.iter().map(|e| e.renamed(by)).collect())
+                Self::Call(*function, arguments.iter().map(|e| e.replace_names(by)).collect())
             }
             Self::If(comparison, parts) => {
-                Self::If(*comparison, Box::new(parts.each_ref().map(|e| e.renamed(by))))
+                Self::If(*comparison, Box::new(parts.each_ref().map(|e| e.replace_names(by))))
             }
         }
     }
@@ -194,13 +194,13 @@ impl Expr {
     }
 
     /// Number of numbers, names and operators.
-    pub fn size(&self) -> usize {
-        1 + self.children().into_iter().map(Expr::size).sum::<usize>()
+    pub fn node_count(&self) -> usize {
+        1 + self.children().into_iter().map(Expr::node_count).sum::<usize>()
     }
 
     /// Returns the depth of operators, where `of_name` returns that of a name; `None` if it exceeds
     /// `most`, in which case the search stops at that depth.
-    pub fn depth(
+    pub fn depth_within(
         &self,
         most: usize,
         of_name: &dyn Fn(&str, usize) -> Option<usize>,
@@ -210,7 +210,8 @@ impl Expr {
             Self::Name(name) => of_name(name, most).filter(|depth| *depth <= most),
             other => {
                 let below = most.checked_sub(1)?;
-                let depths = other.children().into_iter().map(|child| child.depth(below, of_name));
+                let depths =
+                    other.children().into_iter().map(|child| child.depth_within(below, of_name));
                 depths
                     .collect::<Option<Vec<usize>>>()
                     .map(|depths| 1 + depths.into_iter().max().unwrap_or(0))
@@ -229,13 +230,13 @@ impl Expr {
         Some(match self {
             Self::Number(number) => *number,
             // A lookup has precedence over the built-in constants.
-            Self::Name(name) => lookup(name).or_else(|| Some(builtin(name)?.0))?,
+            Self::Name(name) => lookup(name).or_else(|| Some(builtin_constant(name)?.0))?,
             Self::Negate(a) => -of(a)?,
             Self::Add(a, b) => of(a)? + of(b)?,
             Self::Subtract(a, b) => of(a)? - of(b)?,
             Self::Multiply(a, b) => of(a)? * of(b)?,
             Self::Divide(a, b) => of(a)? / of(b)?,
-            Self::Power(a, b) => power(of(a)?, of(b)?),
+            Self::Power(a, b) => evaluate_power(of(a)?, of(b)?),
             Self::Call(function, arguments) => {
                 let second = arguments.get(1).map_or(Some(0.0), of)?;
                 function.apply(of(&arguments[0])?, second)
@@ -264,7 +265,7 @@ impl Drop for Expr {
 
 /// Returns a built-in constant with its dimension: `pi`, and `g`, the standard acceleration of
 /// gravity in m/s2.
-pub fn builtin(name: &str) -> Option<(f64, Dimension)> {
+pub fn builtin_constant(name: &str) -> Option<(f64, Dimension)> {
     match name {
         "pi" => Some((std::f64::consts::PI, Dimension::NONE)),
         "g" => Some((9.806_65, Dimension::new(0.0, 1.0, -2.0))),
@@ -274,6 +275,6 @@ pub fn builtin(name: &str) -> Option<(f64, Dimension)> {
 
 /// Evaluates `a ^ b`, by repeated multiplication for a whole exponent, as every other evaluator of
 /// formulas does.
-fn power(a: f64, b: f64) -> f64 {
+fn evaluate_power(a: f64, b: f64) -> f64 {
     if b.fract() == 0.0 && b.abs() <= 16.0 { a.powi(b as i32) } else { a.powf(b) }
 }

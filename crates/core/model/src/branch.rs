@@ -5,17 +5,17 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::coefficient::Axis;
-use crate::learned::Attached;
+use crate::learned::AttachedWeights;
 use crate::validity::{RangeError, Region};
 
 /// Learned correction of a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Branch {
+pub struct CorrectionDocument {
     /// Combination with the law of motion, the foundation.
-    pub mode: BranchMode,
+    pub mode: CorrectionMode,
     /// The accelerations that it changes, each once.
-    pub outputs: Vec<BranchOutput>,
+    pub outputs: Vec<CorrectionOutput>,
     /// SHA-256 of the weights.
     pub weights_sha256: String,
     /// The motion that its training covered.
@@ -24,17 +24,17 @@ pub struct Branch {
     /// domain.
     pub fade: f64,
     /// Settings of its training.
-    pub recipe: BranchRecipe,
+    pub recipe: CorrectionRecipe,
     /// The weights, if they have been attached; not part of the document.
     #[serde(skip)]
     #[schemars(skip)]
-    pub learned: Attached,
+    pub learned: AttachedWeights,
 }
 
 /// Combination of a learned correction with its foundation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum BranchMode {
+pub enum CorrectionMode {
     /// It gives the accelerations, without inputs from the foundation: Eq. 2.5.
     Convert,
     /// It gives the accelerations, with those of the foundation among its inputs: Eq. 2.6.
@@ -46,11 +46,11 @@ pub enum BranchMode {
 /// An acceleration that a learned correction changes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct BranchOutput {
+pub struct CorrectionOutput {
     /// The axis: X, Y or N.
     pub axis: Axis,
     /// The inputs from which it is calculated, in the order of the weights.
-    pub inputs: Vec<BranchInput>,
+    pub inputs: Vec<CorrectionInput>,
     /// Acceleration for an output of the weights of one, m/s2 (rad/s2).
     pub scale: f64,
     /// Least and greatest value in its training, m/s2 (rad/s2); outputs are limited to this range.
@@ -60,7 +60,7 @@ pub struct BranchOutput {
 /// An input of a learned correction: the weights take `(value - centre) / scale`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct BranchInput {
+pub struct CorrectionInput {
     /// The signal.
     pub signal: Signal,
     /// Mean over the training, SI and radians.
@@ -106,7 +106,7 @@ impl Signal {
 /// trials they determine its bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct BranchRecipe {
+pub struct CorrectionRecipe {
     /// The learning algorithm with its settings.
     pub learner: Learner,
     /// Seed of the random numbers.
@@ -184,7 +184,7 @@ impl Learner {
     }
 }
 
-impl BranchMode {
+impl CorrectionMode {
     /// Every mode.
     pub const ALL: [Self; 3] = [Self::Convert, Self::Serial, Self::Parallel];
 
@@ -198,16 +198,16 @@ impl BranchMode {
     }
 }
 
-impl Branch {
+impl CorrectionDocument {
     /// Description in words: `random forest, parallel`.
-    pub fn words(&self) -> String {
+    pub fn describe(&self) -> String {
         format!("{}, {}", self.recipe.learner.name(), self.mode.name())
     }
 }
 
 /// Reason for which a learned correction cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum BranchError {
+pub enum CorrectionError {
     /// The outputs are not one to three different axes among X, Y and N.
     #[error("outputs: give each of the axes X, Y and N at most once, and one at least")]
     Outputs,
@@ -246,14 +246,14 @@ pub enum BranchError {
 
 /// Largest fade distance, in half ranges; `sistership-learned` also requires that the faded region
 /// lies within the physical range of simulations.
-pub const MOST_FADE: f64 = 3.0;
+pub const MAX_FADE: f64 = 3.0;
 
-impl Branch {
+impl CorrectionDocument {
     /// Checks that the parts of the document are consistent.
     ///
     /// # Errors
     /// Returns an error that names the field at fault.
-    pub fn check(&self) -> Result<(), BranchError> {
+    pub fn check_document(&self) -> Result<(), CorrectionError> {
         let axes = [Axis::X, Axis::Y, Axis::N];
         let of = |axis: Axis| self.outputs.iter().filter(|output| output.axis == axis).count();
         let known: usize = axes.iter().map(|axis| of(*axis)).sum();
@@ -261,27 +261,27 @@ impl Branch {
             || known != self.outputs.len()
             || axes.iter().any(|axis| of(*axis) > 1)
         {
-            return Err(BranchError::Outputs);
+            return Err(CorrectionError::Outputs);
         }
-        self.outputs.iter().try_for_each(|output| output.check(self.mode))?;
+        self.outputs.iter().try_for_each(|output| output.check_output(self.mode))?;
         let is_hex = self.weights_sha256.bytes().all(|byte| byte.is_ascii_hexdigit());
         if self.weights_sha256.len() != 64 || !is_hex {
-            return Err(BranchError::Hash);
+            return Err(CorrectionError::Hash);
         }
-        if !(self.fade > 0.0 && self.fade <= MOST_FADE) {
-            return Err(BranchError::Fade(self.fade));
+        if !(self.fade > 0.0 && self.fade <= MAX_FADE) {
+            return Err(CorrectionError::Fade(self.fade));
         }
         if ["u", "v", "r"].iter().any(|name| !self.domain.ranges.contains_key(*name)) {
-            return Err(BranchError::Domain);
+            return Err(CorrectionError::Domain);
         }
-        self.domain.check()?;
-        self.recipe.check()
+        self.domain.check_bounds()?;
+        self.recipe.check_settings()
     }
 }
 
-impl BranchOutput {
-    fn check(&self, mode: BranchMode) -> Result<(), BranchError> {
-        let refuse = |reason| Err(BranchError::Input { axis: self.axis, reason });
+impl CorrectionOutput {
+    fn check_output(&self, mode: CorrectionMode) -> Result<(), CorrectionError> {
+        let refuse = |reason| Err(CorrectionError::Input { axis: self.axis, reason });
         if self.inputs.is_empty() {
             return refuse("give one at least");
         }
@@ -290,41 +290,41 @@ impl BranchOutput {
             return refuse("centre should be a number and scale above 0");
         }
         // Accelerations of the foundation are inputs of the serial mode by definition (Eq. 2.6).
-        let of_foundation = |input: &BranchInput| input.signal.is_of_foundation();
-        if mode == BranchMode::Convert && self.inputs.iter().any(of_foundation) {
+        let of_foundation = |input: &CorrectionInput| input.signal.is_of_foundation();
+        if mode == CorrectionMode::Convert && self.inputs.iter().any(of_foundation) {
             return refuse("in mode `convert` none may be of the foundation");
         }
-        if mode == BranchMode::Serial && !self.inputs.iter().any(of_foundation) {
+        if mode == CorrectionMode::Serial && !self.inputs.iter().any(of_foundation) {
             return refuse("in mode `serial` one should be of the foundation");
         }
         let [low, high] = self.range;
         if !(positive(self.scale) && low.is_finite() && high.is_finite() && low <= high) {
-            return Err(BranchError::Scale(self.axis));
+            return Err(CorrectionError::Scale(self.axis));
         }
         Ok(())
     }
 }
 
-impl BranchRecipe {
+impl CorrectionRecipe {
     /// Checks the settings.
     ///
     /// # Errors
     /// Returns an error that names the first setting that is out of range.
-    pub fn check(&self) -> Result<(), BranchError> {
-        let refuse = |field, reason| Err(BranchError::Recipe { field, reason });
+    pub fn check_settings(&self) -> Result<(), CorrectionError> {
+        let refuse = |field, reason| Err(CorrectionError::Recipe { field, reason });
         if !(self.window_s > 0.0 && self.window_s.is_finite()) {
             return refuse("window_s", "should be above 0 s");
         }
         if !(self.hop_s > 0.0 && self.hop_s.is_finite()) {
             return refuse("hop_s", "should be above 0 s");
         }
-        self.learner.check().map_or(Ok(()), |(field, reason)| refuse(field, reason))
+        self.learner.first_invalid_setting().map_or(Ok(()), |(field, reason)| refuse(field, reason))
     }
 }
 
 impl Learner {
     /// Returns the first setting that is out of range, with the permitted range.
-    fn check(&self) -> Option<(&'static str, &'static str)> {
+    fn first_invalid_setting(&self) -> Option<(&'static str, &'static str)> {
         let few = |n: usize, most: usize| (1..=most).contains(&n);
         let share = |x: f64| x > 0.0 && x <= 1.0;
         let wrong = match self {

@@ -5,11 +5,13 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
-const TEXT: &str = include_str!("../../../../models/categories.yaml");
+const CATEGORIES_TEXT: &str = include_str!("../../../../models/categories.yaml");
 
 static GROUPS: LazyLock<Vec<CategoryGroup>> = LazyLock::new(|| {
     // The file is embedded; if it could not be read, there would be no groups.
-    serde_yaml::from_str::<CategoriesFile>(TEXT).map(|file| file.groups).unwrap_or_default()
+    serde_yaml::from_str::<CategoriesFile>(CATEGORIES_TEXT)
+        .map(|file| file.groups)
+        .unwrap_or_default()
 });
 
 #[derive(Deserialize)]
@@ -37,13 +39,13 @@ pub struct CategoryGroup {
 }
 
 /// Returns the group of a category; `None` for a category without a group.
-pub fn group_of(category: &str) -> Option<&'static CategoryGroup> {
+pub fn category_group(category: &str) -> Option<&'static CategoryGroup> {
     GROUPS.iter().find(|group| group.categories.contains(category))
 }
 
 /// Returns true if ships of two categories are compared with each other.
-pub fn comparable(one: &str, other: &str) -> bool {
-    one == other || group_of(one).is_some_and(|group| group.categories.contains(other))
+pub fn are_comparable(one: &str, other: &str) -> bool {
+    one == other || category_group(one).is_some_and(|group| group.categories.contains(other))
 }
 
 /// Returns every category that belongs to a group.
@@ -59,18 +61,18 @@ mod tests {
 
     #[test]
     fn full_form_ships_are_compared_with_each_other() {
-        assert!(comparable("tanker", "bulk-carrier"));
-        assert!(comparable("hovercraft", "hovercraft"));
-        assert!(!comparable("tanker", "dry-cargo"));
-        assert!(!comparable("hovercraft", "tanker"));
+        assert!(are_comparable("tanker", "bulk-carrier"));
+        assert!(are_comparable("hovercraft", "hovercraft"));
+        assert!(!are_comparable("tanker", "dry-cargo"));
+        assert!(!are_comparable("hovercraft", "tanker"));
     }
 
     #[test]
     fn a_category_stands_in_one_group_and_the_zoo_has_no_other() {
         let known = known_categories();
         assert_eq!(known.len(), known.iter().collect::<BTreeSet<_>>().len());
-        for vessel in Zoo::embedded().unwrap().vessels() {
-            assert!(group_of(&vessel.file.category).is_some(), "{}", vessel.name());
+        for vessel in Zoo::load_embedded().unwrap().vessels() {
+            assert!(category_group(&vessel.file.category).is_some(), "{}", vessel.name());
         }
     }
 }

@@ -39,7 +39,7 @@ impl Axis {
     pub const ALL: [Self; 4] = [Self::X, Self::Y, Self::K, Self::N];
 
     /// Velocity that the axis accelerates.
-    pub fn velocity(self) -> &'static str {
+    pub fn velocity_name(self) -> &'static str {
         match self {
             Self::X => "u",
             Self::Y => "v",
@@ -65,7 +65,7 @@ pub const STANDARD_FACTORS: [&str; 7] = ["u", "v", "r", "phi", "p", "delta", "n"
 
 /// One factor of a name.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Factor {
+pub struct NameFactor {
     /// Index in the law's order of factors.
     rank: usize,
     /// True for an absolute value, `|x|`.
@@ -80,7 +80,7 @@ pub struct CoefficientName {
     /// The axis on which it acts.
     pub axis: Axis,
     /// Factors that multiply it, in canonical order; empty for a constant such as `Y_0`.
-    pub factors: Vec<Factor>,
+    pub factors: Vec<NameFactor>,
     /// Submodel under whose conditions it is added to the coefficient of the same factors, if any.
     pub submodel: Option<String>,
 }
@@ -159,7 +159,7 @@ impl CoefficientName {
         // The message quotes only the beginning of a long name.
         if name.len() > MAX_NAME {
             return Err(NameError::Long {
-                head: sistership_formula::head(name),
+                head: sistership_formula::text_head(name),
                 length: name.len(),
             });
         }
@@ -171,7 +171,7 @@ impl CoefficientName {
         let wrong = |fault| NameError::Factors { name: name.to_owned(), fault };
         // `0` means no factors, as in `Y_0`.
         let mut factors =
-            if rest == "0" { Vec::new() } else { split(rest, extra).map_err(wrong)? };
+            if rest == "0" { Vec::new() } else { parse_factors(rest, extra).map_err(wrong)? };
         let as_written = factors.clone();
         // Comparison with the sorted factors accepts one spelling only, so that equal terms have
         // equal names.
@@ -202,7 +202,7 @@ impl fmt::Display for CoefficientName {
     }
 }
 
-fn split(mut rest: &str, extra: &[&str]) -> Result<Vec<Factor>, FactorsError> {
+fn parse_factors(mut rest: &str, extra: &[&str]) -> Result<Vec<NameFactor>, FactorsError> {
     let mut factors = Vec::new();
     while !rest.is_empty() {
         let absolute = rest.starts_with('|');
@@ -214,7 +214,7 @@ fn split(mut rest: &str, extra: &[&str]) -> Result<Vec<Factor>, FactorsError> {
             rest =
                 rest.strip_prefix('|').ok_or_else(|| FactorsError::OpenBar(symbol.to_owned()))?;
         }
-        factors.push(Factor { rank, absolute, symbol: symbol.to_owned() });
+        factors.push(NameFactor { rank, absolute, symbol: symbol.to_owned() });
         if factors.len() > MAX_FACTORS {
             return Err(FactorsError::Many);
         }

@@ -11,11 +11,11 @@ pub const DEEP_M: f64 = 12_000.0;
 
 /// Tolerance between a value and the range of the trials, relative to the value: the last digit of
 /// an anemometer.
-const SLACK: f64 = 0.01;
+const RELATIVE_TOLERANCE: f64 = 0.01;
 
 /// Environment of a prediction; absent values mean calm air, no current and deep water.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Environment {
+pub struct PredictionEnvironment {
     /// True wind speed, m/s.
     pub wind_speed_m_s: Option<f64>,
     /// Speed of the water over the ground, m/s.
@@ -75,10 +75,10 @@ const DEPTH: EnvironmentInput = EnvironmentInput {
     basis: "what shallow water changes follows from the law's formulas, not from trials",
 };
 
-impl Environment {
+impl PredictionEnvironment {
     /// Returns the inputs that the model's trials did not cover. Still air and still or deep water
     /// do not count; neither does an input of an effect that was found in trials.
-    pub fn uncovered(&self, model: &Model) -> Vec<UncoveredInput> {
+    pub fn uncovered_inputs(&self, model: &Model) -> Vec<UncoveredInput> {
         // Zero wind or current is no input of the prediction.
         let positive = |value: Option<f64>| value.filter(|value| *value > 0.0);
         let asked = [
@@ -87,30 +87,31 @@ impl Environment {
             (DEPTH, self.depth_m),
         ];
         let all = asked.into_iter().filter_map(|(input, value)| Some((input, value?)));
-        all.filter_map(|(input, value)| input.uncovered(value, model)).collect()
+        all.filter_map(|(input, value)| input.check_coverage(value, model)).collect()
     }
 }
 
 impl EnvironmentInput {
-    fn uncovered(&self, value: f64, model: &Model) -> Option<UncoveredInput> {
-        let covered = model.validity.as_ref().and_then(|region| self.covered(region));
+    fn check_coverage(&self, value: f64, model: &Model) -> Option<UncoveredInput> {
+        let covered = model.validity.as_ref().and_then(|region| self.covered_range(region));
         let is_inside = covered.is_some_and(|[low, high]| {
-            (low - SLACK * value.abs()..=high + SLACK * value.abs()).contains(&value)
+            (low - RELATIVE_TOLERANCE * value.abs()..=high + RELATIVE_TOLERANCE * value.abs())
+                .contains(&value)
         });
         // Without a recorded range, an effect that was found in trials counts as coverage.
         let carries = model.effects.iter().any(|effect| effect.name == self.effect);
         if is_inside || (covered.is_none() && carries) {
             return None;
         }
-        let message = self.message(value, covered, model.validity.is_some());
+        let message = self.coverage_message(value, covered, model.validity.is_some());
         Some(UncoveredInput { input: self.name.to_owned(), value, covered, message })
     }
 
-    fn covered(&self, region: &Region) -> Option<[f64; 2]> {
+    fn covered_range(&self, region: &Region) -> Option<[f64; 2]> {
         self.recorded.iter().find_map(|name| region.environment.get(*name)).copied()
     }
 
-    fn message(&self, value: f64, covered: Option<[f64; 2]>, has_trials: bool) -> String {
+    fn coverage_message(&self, value: f64, covered: Option<[f64; 2]>, has_trials: bool) -> String {
         let Self { words, unit, basis, .. } = self;
         let trials = match covered {
             Some([low, high]) if high >= DEEP_M => {
@@ -130,19 +131,19 @@ mod tests {
     use super::*;
     use crate::zoo::Zoo;
 
-    fn names(environment: Environment, recorded: &[(&str, [f64; 2])]) -> Vec<String> {
-        let mut model = Zoo::embedded().unwrap().model("mariner").unwrap();
+    fn names(environment: PredictionEnvironment, recorded: &[(&str, [f64; 2])]) -> Vec<String> {
+        let mut model = Zoo::load_embedded().unwrap().find_model("mariner").unwrap();
         let columns = [("u".to_owned(), vec![5.0, 6.0])].into();
-        let mut region = Region::of(&columns).unwrap();
+        let mut region = Region::from_samples(&columns).unwrap();
         region.environment =
             recorded.iter().map(|&(name, range)| (name.to_owned(), range)).collect();
         model.validity = Some(region);
-        environment.uncovered(&model).into_iter().map(|one| one.message).collect()
+        environment.uncovered_inputs(&model).into_iter().map(|one| one.message).collect()
     }
 
     #[test]
     fn what_no_trial_recorded_is_named() {
-        let storm = Environment {
+        let storm = PredictionEnvironment {
             wind_speed_m_s: Some(25.0),
             current_speed_m_s: Some(1.0),
             depth_m: Some(12.0),
@@ -150,18 +151,25 @@ mod tests {
         let all = names(storm, &[]);
         assert_eq!(all.len(), 3, "{all:?}");
         assert!(all[0].starts_with("wind of 25.0 m/s: no trial of the model recorded any"));
-        assert_eq!(names(Environment::default(), &[]), Vec::<String>::new());
-        let calm = Environment { wind_speed_m_s: Some(0.0), ..Environment::default() };
+        assert_eq!(names(PredictionEnvironment::default(), &[]), Vec::<String>::new());
+        let calm =
+            PredictionEnvironment { wind_speed_m_s: Some(0.0), ..PredictionEnvironment::default() };
         assert_eq!(names(calm, &[]), Vec::<String>::new());
     }
 
     #[test]
     fn a_value_within_what_was_recorded_is_not_named() {
-        let wind = |speed| Environment { wind_speed_m_s: Some(speed), ..Environment::default() };
+        let wind = |speed| PredictionEnvironment {
+            wind_speed_m_s: Some(speed),
+            ..PredictionEnvironment::default()
+        };
         let recorded = [("wind_speed", [2.0, 8.0])];
         assert!(names(wind(8.05), &recorded).is_empty());
         assert!(names(wind(25.0), &recorded)[0].contains("the trials had 2.0 to 8.0 m/s"));
-        let depth = |depth| Environment { depth_m: Some(depth), ..Environment::default() };
+        let depth = |depth| PredictionEnvironment {
+            depth_m: Some(depth),
+            ..PredictionEnvironment::default()
+        };
         assert!(names(depth(40.0), &[("depth", [15.0, DEEP_M])]).is_empty());
         let shallow = names(depth(9.0), &[("depth", [15.0, DEEP_M])]);
         assert!(shallow[0].contains("the trials had 15.0 m and deeper"), "{shallow:?}");

@@ -5,7 +5,7 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 
-use crate::yaml::MOST_FAULTS;
+use crate::yaml::MAX_FAULTS;
 
 /// Error of a model file: file, line and field, and the reason.
 #[derive(Debug, Clone, Default, PartialEq, Eq, thiserror::Error)]
@@ -39,7 +39,7 @@ impl fmt::Display for FileError {
 
 impl FileError {
     /// Converts an error of the YAML reader.
-    pub fn of_yaml(file: &str, error: crate::yaml::YamlError) -> Self {
+    pub fn from_yaml(file: &str, error: crate::yaml::YamlError) -> Self {
         Self {
             file: file.to_owned(),
             line: error.line,
@@ -50,48 +50,48 @@ impl FileError {
     }
 
     /// Combines several errors into one, at most [`MOST_FAULTS`] of them; `None` if there are none.
-    pub fn of_all(all: impl Iterator<Item = Self>) -> Option<Self> {
-        let mut all = all.take(MOST_FAULTS);
+    pub fn from_faults(all: impl Iterator<Item = Self>) -> Option<Self> {
+        let mut all = all.take(MAX_FAULTS);
         let first = all.next()?;
         Some(Self { further: all.collect(), ..first })
     }
 }
 
 /// Context that turns messages about fields into errors with file and line.
-pub(crate) struct Blame<'a> {
+pub(crate) struct ErrorContext<'a> {
     file: &'a str,
     text: &'a str,
 }
 
-impl<'a> Blame<'a> {
+impl<'a> ErrorContext<'a> {
     pub(crate) fn new(file: &'a str, text: &'a str) -> Self {
         Self { file, text }
     }
 
     /// Deserialises the text. If its shape is wrong, the error lists all faults that the schema
     /// finds, otherwise the fault of the parser with its line and column.
-    pub(crate) fn read<T: DeserializeOwned + JsonSchema>(&self) -> Result<T, FileError> {
-        crate::yaml::read(self.text).map_err(|error| {
-            let of_parser = FileError::of_yaml(self.file, error);
-            let faults = crate::yaml::faults::<T>(self.text).into_iter();
-            FileError::of_all(faults.map(|(field, message)| self.at(&field, message)))
+    pub(crate) fn deserialize<T: DeserializeOwned + JsonSchema>(&self) -> Result<T, FileError> {
+        crate::yaml::read_document(self.text).map_err(|error| {
+            let of_parser = FileError::from_yaml(self.file, error);
+            let faults = crate::yaml::find_faults::<T>(self.text).into_iter();
+            FileError::from_faults(faults.map(|(field, message)| self.field_error(&field, message)))
                 .unwrap_or(of_parser)
         })
     }
 
     /// Creates an error at a dotted field; the line is that of the path's keys, each searched below
     /// the one before.
-    pub(crate) fn at(&self, field: &str, message: impl ToString) -> FileError {
+    pub(crate) fn field_error(&self, field: &str, message: impl ToString) -> FileError {
         FileError {
             file: self.file.to_owned(),
-            line: self.line_of(field),
+            line: self.field_line(field),
             field: field.to_owned(),
             message: message.to_string(),
             further: Vec::new(),
         }
     }
 
-    fn line_of(&self, field: &str) -> Option<usize> {
+    fn field_line(&self, field: &str) -> Option<usize> {
         let mut found = None;
         for key in field.split('.') {
             // A key may be on the line of the one before, in braces.

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::particulars::{Particulars, range};
+use crate::particulars::{Particulars, plausible_range};
 
 /// Beginning of the source of a particular from a regression, whose name follows.
 pub const ESTIMATED: &str = "estimated: ";
@@ -11,7 +11,7 @@ pub const ESTIMATED: &str = "estimated: ";
 pub const SCALED: &str = "scaled from ";
 
 /// Quantile of the normal distribution for 97.5 %.
-const NORMAL: f64 = 1.96;
+const NORMAL_QUANTILE: f64 = 1.96;
 
 /// A particular that the ship does not state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,7 +29,7 @@ pub struct EstimatedParticular {
 
 impl EstimatedParticular {
     /// Description, such as `x_g_m -2.32 (95 % -6.7 to 2.1; estimated: zoo-medians)`.
-    pub fn words(&self) -> String {
+    pub fn describe(&self) -> String {
         let band = self.band.map(|[low, high]| format!("95 % {low:.4} to {high:.4}; "));
         format!("{} {:.4} ({}{})", self.name, self.value, band.unwrap_or_default(), self.source)
     }
@@ -42,16 +42,16 @@ pub fn estimated_particulars(particulars: &Particulars) -> Vec<EstimatedParticul
     let one = |(name, quantity): (&String, &crate::quantity::Quantity)| EstimatedParticular {
         name: name.clone(),
         value: quantity.value,
-        band: quantity.standard_error.map(|error| band(name, quantity.value, error)),
+        band: quantity.standard_error.map(|error| estimate_band(name, quantity.value, error)),
         source: quantity.source.clone(),
     };
     estimates.map(one).collect()
 }
 
 /// Returns a sentence that names the estimated particulars; `None` if every particular is stated.
-pub fn estimated_words(particulars: &Particulars) -> Option<String> {
+pub fn describe_estimates(particulars: &Particulars) -> Option<String> {
     let all = estimated_particulars(particulars);
-    let words: Vec<String> = all.iter().map(EstimatedParticular::words).collect();
+    let words: Vec<String> = all.iter().map(EstimatedParticular::describe).collect();
     let sentence = format!(
         "particulars that the ship does not state are estimated: {}; state them where they are \
          known",
@@ -61,9 +61,9 @@ pub fn estimated_words(particulars: &Particulars) -> Option<String> {
 }
 
 /// Band of an estimate, within the plausible range of the particular.
-fn band(name: &str, value: f64, error: f64) -> [f64; 2] {
-    let (low, high) = range(name).unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-    [(value - NORMAL * error).max(low), (value + NORMAL * error).min(high)]
+fn estimate_band(name: &str, value: f64, error: f64) -> [f64; 2] {
+    let (low, high) = plausible_range(name).unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    [(value - NORMAL_QUANTILE * error).max(low), (value + NORMAL_QUANTILE * error).min(high)]
 }
 
 #[cfg(test)]
@@ -87,7 +87,7 @@ mod tests {
         let names: Vec<&str> = found.iter().map(|one| one.name.as_str()).collect();
         assert_eq!(names, ["rudder_area_m2", "x_g_m"]);
         assert_eq!(found[0].band, Some([1e-5, 2.96]), "no rudder has a negative area");
-        let words = estimated_words(&particulars).unwrap_or_default();
+        let words = describe_estimates(&particulars).unwrap_or_default();
         assert!(words.contains("x_g_m -1.0000 (95 % -4.9200 to 2.9200; estimated"), "{words}");
     }
 }

@@ -38,7 +38,7 @@ pub enum FreeRunningKind {
 
 impl FreeRunningKind {
     /// Name of the kind for readers.
-    pub fn words(self) -> &'static str {
+    pub fn display_name(self) -> &'static str {
         match self {
             Self::SeaTrial => "sea trial",
             Self::ModelTest => "model test",
@@ -93,16 +93,16 @@ pub struct PublishedZigzag {
 }
 
 /// Largest rudder angle of a trial, deg.
-const MOST_RUDDER_DEG: f64 = 90.0;
+const MAX_RUDDER_DEG: f64 = 90.0;
 /// Largest plausible figure of a turn, ship lengths.
-const MOST_LENGTHS: f64 = 50.0;
+const MAX_LENGTHS: f64 = 50.0;
 
 impl FreeRunning {
     /// Checks that its source is listed and that its figures are plausible.
     ///
     /// # Errors
     /// Returns the field at fault and its remedy.
-    pub fn check(&self, sources: &[&str]) -> Result<(), (String, String)> {
+    pub fn check_figures(&self, sources: &[&str]) -> Result<(), (String, String)> {
         let wrong = |field: &str, message: &str| Err((field.to_owned(), message.to_owned()));
         if !sources.contains(&self.source.as_str()) {
             let message = format!("`{}` is not listed under `sources`", self.source);
@@ -114,8 +114,8 @@ impl FreeRunning {
         if self.turns.is_empty() && self.zigzags.is_empty() {
             return wrong("turns", "give at least one turn or zigzag");
         }
-        self.turns.iter().try_for_each(PublishedTurn::check)?;
-        self.zigzags.iter().try_for_each(PublishedZigzag::check)
+        self.turns.iter().try_for_each(PublishedTurn::check_figures)?;
+        self.zigzags.iter().try_for_each(PublishedZigzag::check_figures)
     }
 }
 
@@ -144,7 +144,7 @@ fn check_uncertainty(field: &str, value: f64) -> Result<(), (String, String)> {
 
 impl PublishedTurn {
     /// Figures by name, ship lengths.
-    pub fn figures(&self) -> [(&'static str, Option<f64>); 4] {
+    pub fn named_figures(&self) -> [(&'static str, Option<f64>); 4] {
         [
             ("advance", self.advance),
             ("transfer", self.transfer),
@@ -153,33 +153,33 @@ impl PublishedTurn {
         ]
     }
 
-    fn check(&self) -> Result<(), (String, String)> {
-        check_angle("turns.rudder_deg", self.rudder_deg, MOST_RUDDER_DEG)?;
+    fn check_figures(&self) -> Result<(), (String, String)> {
+        check_angle("turns.rudder_deg", self.rudder_deg, MAX_RUDDER_DEG)?;
         check_uncertainty("turns.uncertainty", self.uncertainty)?;
         let range = |(name, value): (&str, _)| {
-            check_range(&format!("turns.{}", name.replace(' ', "_")), value, MOST_LENGTHS)
+            check_range(&format!("turns.{}", name.replace(' ', "_")), value, MAX_LENGTHS)
         };
-        self.figures().into_iter().try_for_each(range)
+        self.named_figures().into_iter().try_for_each(range)
     }
 }
 
 impl PublishedZigzag {
     /// Figures by name, deg.
-    pub fn figures(&self) -> [(&'static str, Option<f64>); 2] {
+    pub fn named_figures(&self) -> [(&'static str, Option<f64>); 2] {
         [
             ("first overshoot", self.first_overshoot_deg),
             ("second overshoot", self.second_overshoot_deg),
         ]
     }
 
-    fn check(&self) -> Result<(), (String, String)> {
-        check_angle("zigzags.rudder_deg", self.rudder_deg, MOST_RUDDER_DEG)?;
-        check_angle("zigzags.switch_deg", self.switch_deg, MOST_RUDDER_DEG)?;
+    fn check_figures(&self) -> Result<(), (String, String)> {
+        check_angle("zigzags.rudder_deg", self.rudder_deg, MAX_RUDDER_DEG)?;
+        check_angle("zigzags.switch_deg", self.switch_deg, MAX_RUDDER_DEG)?;
         check_uncertainty("zigzags.uncertainty_deg", self.uncertainty_deg)?;
         let range = |(name, value): (&str, _)| {
             check_range(&format!("zigzags.{}_deg", name.replace(' ', "_")), value, 180.0)
         };
-        self.figures().into_iter().try_for_each(range)
+        self.named_figures().into_iter().try_for_each(range)
     }
 }
 
@@ -189,19 +189,22 @@ mod tests {
     use super::*;
 
     fn trial(text: &str) -> FreeRunning {
-        crate::yaml::read(text).unwrap()
+        crate::yaml::read_document(text).unwrap()
     }
 
     #[test]
     fn figures_that_cannot_be_are_refused_by_field() {
         let good = "source: a\nkind: sea_trial\nturns: [{ rudder_deg: -35.0, uncertainty: 0.1, \
             advance: 3.1 }]\n";
-        assert_eq!(trial(good).check(&["a"]), Ok(()));
-        let refused = |from: &str, to: &str| trial(&good.replace(from, to)).check(&["a"]);
+        assert_eq!(trial(good).check_figures(&["a"]), Ok(()));
+        let refused = |from: &str, to: &str| trial(&good.replace(from, to)).check_figures(&["a"]);
         assert_eq!(refused("source: a", "source: b").unwrap_err().0, "source");
         assert_eq!(refused("-35.0", "0.0").unwrap_err().0, "turns.rudder_deg");
         assert_eq!(refused("0.1", "0.0").unwrap_err().0, "turns.uncertainty");
         assert_eq!(refused("3.1", "310.0").unwrap_err().0, "turns.advance");
-        assert_eq!(trial("source: a\nkind: model_test\n").check(&["a"]).unwrap_err().0, "turns");
+        assert_eq!(
+            trial("source: a\nkind: model_test\n").check_figures(&["a"]).unwrap_err().0,
+            "turns"
+        );
     }
 }

@@ -7,7 +7,7 @@ use sistership_formula::Expr;
 
 /// Inputs of a learned correction at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Instant {
+pub struct CorrectionInstant {
     /// u, v, r: m/s, m/s, rad/s.
     pub velocities: [f64; 3],
     /// Rudder angle, rad; 0 for a law without one.
@@ -47,46 +47,46 @@ pub struct AdditionFormulas {
 ///
 /// An implementation must keep its additions bounded, and return zero outside the range of its
 /// training.
-pub trait LearnedBranch: fmt::Debug + Send + Sync {
+pub trait CorrectionModel: fmt::Debug + Send + Sync {
     /// Returns the additions to the rates of u, v, r: m/s2, m/s2, rad/s2.
-    fn addition(&self, instant: &Instant) -> [f64; 3];
+    fn rate_additions(&self, instant: &CorrectionInstant) -> [f64; 3];
 
     /// Returns the derivatives of [`LearnedBranch::addition`].
-    fn gradient(&self, instant: &Instant) -> AdditionGradient;
+    fn addition_gradient(&self, instant: &CorrectionInstant) -> AdditionGradient;
 
     /// Returns [`LearnedBranch::addition`] as formulas.
-    fn formulas(&self) -> AdditionFormulas;
+    fn addition_formulas(&self) -> AdditionFormulas;
 
     /// Returns the share of the correction, from 0 (the foundation acts alone) to 1.
-    fn share(&self, instant: &Instant) -> f64;
+    fn active_share(&self, instant: &CorrectionInstant) -> f64;
 }
 
 /// Weights of a learned correction, checked against its document and ready for evaluation; empty in
 /// a document that was just read. `sistership-learned` attaches them. A model with a learned
 /// correction but without its weights cannot be simulated.
 #[derive(Clone, Default)]
-pub struct Attached(Option<Arc<dyn LearnedBranch>>);
+pub struct AttachedWeights(Option<Arc<dyn CorrectionModel>>);
 
-impl Attached {
+impl AttachedWeights {
     /// Attaches weights that match the document.
-    pub fn new(learned: Arc<dyn LearnedBranch>) -> Self {
+    pub fn new(learned: Arc<dyn CorrectionModel>) -> Self {
         Self(Some(learned))
     }
 
     /// The weights, if they have been attached.
-    pub fn get(&self) -> Option<&Arc<dyn LearnedBranch>> {
+    pub fn get(&self) -> Option<&Arc<dyn CorrectionModel>> {
         self.0.as_ref()
     }
 }
 
 /// All are equal, because documents are compared by the hash of their weights.
-impl PartialEq for Attached {
+impl PartialEq for AttachedWeights {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-impl fmt::Debug for Attached {
+impl fmt::Debug for AttachedWeights {
     /// Writes only the presence of weights, which are many numbers.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Attached").field(&self.0.is_some()).finish()

@@ -86,7 +86,7 @@ pub struct ManifestTrial {
 
 impl ManifestTrial {
     /// Creates an entry for a whole file.
-    pub fn of(file: impl Into<String>) -> Self {
+    pub fn from_file_name(file: impl Into<String>) -> Self {
         Self {
             file: file.into(),
             from: None,
@@ -98,15 +98,15 @@ impl ManifestTrial {
     }
 
     /// Returns true if only a part of the file is read.
-    pub fn is_stretch(&self) -> bool {
+    pub fn is_segment(&self) -> bool {
         self.from.is_some() || self.to.is_some()
     }
 
     /// Name of the trial: its file, with the times of a segment in the notation of media fragments
     /// (W3C 2012), `log.csv#t=3600,5400`.
-    pub fn label(&self) -> String {
+    pub fn trial_label(&self) -> String {
         let text = |time: &Option<FileTime>| time.as_ref().map_or(String::new(), |t| t.to_string());
-        match self.is_stretch() {
+        match self.is_segment() {
             true => format!("{}#t={},{}", self.file, text(&self.from), text(&self.to)),
             false => self.file.clone(),
         }
@@ -144,7 +144,7 @@ pub struct TrialConventions {
     /// Convention of the wind.
     pub wind: WindConvention,
     /// Treatment of rows in which a mapped value is missing or not a number.
-    pub missing: Missing,
+    pub missing: MissingValues,
     /// Longest gap that `missing: bridge` fills, s; 4 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bridge_s: Option<f64>,
@@ -210,7 +210,7 @@ pub enum WindDirection {
 /// Treatment of rows in which a value is missing or not a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Missing {
+pub enum MissingValues {
     /// Refuse the file and name the row.
     #[default]
     Refuse,

@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::branch::Branch;
-use crate::effect::{AppliedEffect, Form, dress, qualified};
-use crate::error::{Blame, FileError};
-use crate::law::limits::most;
+use crate::branch::CorrectionDocument;
+use crate::effect::{AppliedEffect, EffectForm, apply_effects, qualified_name};
+use crate::error::{ErrorContext, FileError};
+use crate::law::limits::check_count;
 use crate::law::{Law, MAX_COEFFICIENTS, MAX_EFFECTS};
 use crate::manifest::RudderSign;
 use crate::particulars::{self, Particulars};
@@ -75,7 +75,7 @@ pub struct Model {
     /// Learned correction of the law; its weights are stored separately, under the hash that it
     /// names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub branch: Option<Branch>,
+    pub branch: Option<CorrectionDocument>,
 }
 
 /// The word `model`.
@@ -87,7 +87,7 @@ pub enum ModelKind {
 }
 
 /// Source key of parameters that follow from particulars by the law's own formula.
-pub const DERIVED: &str = "derived-from-particulars";
+pub const DERIVED_SOURCE: &str = "derived-from-particulars";
 
 impl Model {
     /// Reads and checks a model document against its law.
@@ -99,13 +99,13 @@ impl Model {
         text: &str,
         law_of: &dyn Fn(&str) -> Option<Law>,
     ) -> Result<Self, FileError> {
-        let blame = Blame::new(file, text);
-        let model: Self = blame.read()?;
+        let blame = ErrorContext::new(file, text);
+        let model: Self = blame.deserialize()?;
         let law = law_of(&model.law)
-            .ok_or_else(|| blame.at("law", format!("there is no law `{}`", model.law)))?;
-        particulars::check(&model.particulars)
-            .map_err(|(name, e)| blame.at(&format!("particulars.{name}"), e))?;
-        model.check(&law).map_err(|(field, e)| blame.at(&field, e))?;
+            .ok_or_else(|| blame.field_error("law", format!("there is no law `{}`", model.law)))?;
+        particulars::check_particulars(&model.particulars)
+            .map_err(|(name, e)| blame.field_error(&format!("particulars.{name}"), e))?;
+        model.check_against(&law).map_err(|(field, e)| blame.field_error(&field, e))?;
         Ok(model)
     }
 
@@ -114,16 +114,20 @@ impl Model {
     ///
     /// # Errors
     /// Returns an error that names the model, parameter or coefficient that is missing or unknown.
-    pub fn published(vessel: &Vessel, name: Option<&str>, law: &Law) -> Result<Self, FileError> {
+    pub fn from_published(
+        vessel: &Vessel,
+        name: Option<&str>,
+        law: &Law,
+    ) -> Result<Self, FileError> {
         // The text of the vessel is not available here, so that errors have no line.
-        let blame = Blame::new(vessel.name(), "");
-        let raw = published_file(vessel, name).map_err(|e| blame.at("models", e))?;
+        let blame = ErrorContext::new(vessel.name(), "");
+        let raw = find_published_file(vessel, name).map_err(|e| blame.field_error("models", e))?;
         let path = |section: &str| format!("models.{}.{section}", raw.name);
         let keys = vessel.source_keys();
         let section = |what: &str, section: &crate::quantity::Section| {
             section
-                .resolve(&keys)
-                .map_err(|(name, e)| blame.at(&format!("{}.{name}", path(what)), e))
+                .resolve_values(&keys)
+                .map_err(|(name, e)| blame.field_error(&format!("{}.{name}", path(what)), e))
         };
         let mut model = Self {
             kind: ModelKind::Model,
@@ -148,10 +152,10 @@ impl Model {
         };
         // Parameters are completed before the check, and the check precedes the change of signs,
         // which needs known names.
-        model.fill_parameters(law);
+        model.complete_parameters(law);
         model
-            .check(law)
-            .map_err(|(field, e)| blame.at(&format!("models.{}.{field}", raw.name), e))?;
+            .check_against(law)
+            .map_err(|(field, e)| blame.field_error(&format!("models.{}.{field}", raw.name), e))?;
         if vessel.file.conventions.rudder_positive == RudderSign::PortTurn {
             model.flip_rudder(law);
         }
@@ -162,7 +166,7 @@ impl Model {
     /// particulars of that ship, and every parameter that the law derives from particulars
     /// recomputed for it. `approach_speed_m_s` replaces the speed about which the law is expanded,
     /// which belongs to the trials.
-    pub fn transferred(
+    pub fn transfer_to(
         &self,
         law: &Law,
         ship: &str,
@@ -181,7 +185,7 @@ impl Model {
         (model.propulsion, model.branch) = (None, None);
         for name in law.parameters.keys() {
             if let Some(value) = law.derived_parameter(name, particulars) {
-                model.parameters.insert(name.clone(), Quantity::new(value, DERIVED));
+                model.parameters.insert(name.clone(), Quantity::new(value, DERIVED_SOURCE));
             }
         }
         if let Some(speed) = approach_speed_m_s {
@@ -191,7 +195,7 @@ impl Model {
     }
 
     /// Returns the model without its learned correction.
-    pub fn foundation(&self) -> Self {
+    pub fn without_correction(&self) -> Self {
         Self { branch: None, ..self.clone() }
     }
 
@@ -210,9 +214,9 @@ impl Model {
 
     /// Joint uncertainty of the coefficients; `None` if they have changed since they were
     /// estimated.
-    pub fn posterior(&self) -> Option<&Posterior> {
+    pub fn valid_posterior(&self) -> Option<&Posterior> {
         self.posterior.as_ref().filter(|p| {
-            p.is_about(|name| self.coefficients.get(name).map(|quantity| quantity.value))
+            p.belongs_to(|name| self.coefficients.get(name).map(|quantity| quantity.value))
         })
     }
 
@@ -220,10 +224,10 @@ impl Model {
     ///
     /// # Errors
     /// Returns the field at fault and the reason.
-    pub fn check(&self, law: &Law) -> Result<(), (String, String)> {
-        most("coefficients", self.coefficients.len(), MAX_COEFFICIENTS)?;
+    pub fn check_against(&self, law: &Law) -> Result<(), (String, String)> {
+        check_count("coefficients", self.coefficients.len(), MAX_COEFFICIENTS)?;
         for name in self.coefficients.keys() {
-            law.regressor(name)
+            law.scaled_regressor(name)
                 .map_err(|e| (format!("coefficients.values.{name}"), e.to_string()))?;
         }
         let unknown = self.parameters.keys().find(|name| !law.parameters.contains_key(*name));
@@ -245,24 +249,27 @@ impl Model {
         if let Some((name, parameter)) =
             law.parameters.iter().find(|(name, _)| !self.parameters.contains_key(*name))
         {
-            return Err((format!("parameters.values.{name}"), missing_parameter(name, parameter)));
+            return Err((
+                format!("parameters.values.{name}"),
+                missing_parameter_message(name, parameter),
+            ));
         }
         if let Some(uncertainty) = &self.uncertainty {
-            uncertainty.check().map_err(|e| ("uncertainty".to_owned(), e.to_string()))?;
+            uncertainty.check_lists().map_err(|e| ("uncertainty".to_owned(), e.to_string()))?;
         }
         if let Some(posterior) = &self.posterior {
-            posterior.check().map_err(|e| ("posterior".to_owned(), e.to_string()))?;
+            posterior.check_lists().map_err(|e| ("posterior".to_owned(), e.to_string()))?;
         }
         if let Some(region) = &self.validity {
-            region.check().map_err(|e| ("validity".to_owned(), e.to_string()))?;
+            region.check_bounds().map_err(|e| ("validity".to_owned(), e.to_string()))?;
         }
         if let Some(branch) = &self.branch {
-            branch.check().map_err(|e| ("branch".to_owned(), e.to_string()))?;
+            branch.check_document().map_err(|e| ("branch".to_owned(), e.to_string()))?;
         }
         law.with_effects(self).map(|_| ())
     }
 
-    fn fill_parameters(&mut self, law: &Law) {
+    fn complete_parameters(&mut self, law: &Law) {
         for (name, parameter) in &law.parameters {
             if self.parameters.contains_key(name) {
                 continue;
@@ -271,14 +278,14 @@ impl Model {
             let value = if parameter.is_approach_speed { self.speed_m_s } else { None };
             let value = value.or_else(|| law.derived_parameter(name, &self.particulars));
             if let Some(value) = value {
-                self.parameters.insert(name.clone(), Quantity::new(value, DERIVED));
+                self.parameters.insert(name.clone(), Quantity::new(value, DERIVED_SOURCE));
             }
         }
     }
 
     /// Converts coefficients with positive rudder to port to canonical signs.
     fn flip_rudder(&mut self, law: &Law) {
-        let odd = law.odd_in_rudder().collect();
+        let odd = law.odd_factors_in_rudder().collect();
         for (name, quantity) in &mut self.coefficients {
             if law.is_odd_in(name, &odd) {
                 quantity.value = -quantity.value;
@@ -293,20 +300,20 @@ impl Law {
     /// # Errors
     /// Returns the field of the model at fault and the reason.
     pub fn with_effects(&self, model: &Model) -> Result<Self, (String, String)> {
-        most("effects", model.effects.len(), MAX_EFFECTS)?;
+        check_count("effects", model.effects.len(), MAX_EFFECTS)?;
         let mut forms = Vec::new();
         for effect in &model.effects {
             let field = |(field, message): (String, String)| {
                 (format!("effects.{}.{field}", effect.name), message)
             };
-            forms.push((effect, effect.checked().map_err(field)?));
+            forms.push((effect, effect.checked_form().map_err(field)?));
         }
-        let listed: Vec<(&str, &Form)> =
+        let listed: Vec<(&str, &EffectForm)> =
             forms.iter().map(|(effect, form)| (effect.name.as_str(), form)).collect();
         // Propulsion comes first: effects act on the law that includes it.
         let propelled = model.propulsion.as_ref().map(|own| self.with_propulsion(own));
         let propelled = propelled.transpose()?;
-        let mut law = propelled.as_ref().unwrap_or(self).dressed(model, &listed);
+        let mut law = propelled.as_ref().unwrap_or(self).with_forms(model, &listed);
         if !listed.is_empty() || model.propulsion.is_some() {
             law.check_depth().map_err(|message| ("effects".to_owned(), message))?;
         }
@@ -315,7 +322,7 @@ impl Law {
             for (name, quantity) in &effect.parameters {
                 law.dressing
                     .parameters
-                    .insert(qualified(&effect.name, &effect.form.name, name), quantity.value);
+                    .insert(qualified_name(&effect.name, &effect.form.name, name), quantity.value);
             }
         }
         Ok(law)
@@ -323,23 +330,23 @@ impl Law {
 
     /// Returns this law with forms of effects at the absence of each; `model` gives the
     /// particulars.
-    pub fn dressed(&self, model: &Model, forms: &[(&str, &Form)]) -> Self {
-        dress(self, &model.particulars, model.speed_m_s, forms)
+    pub fn with_forms(&self, model: &Model, forms: &[(&str, &EffectForm)]) -> Self {
+        apply_effects(self, &model.particulars, model.speed_m_s, forms)
     }
 }
 
-fn missing_parameter(name: &str, parameter: &crate::law::Parameter) -> String {
+fn missing_parameter_message(name: &str, parameter: &crate::law::LawParameter) -> String {
     let derivation = match &parameter.from {
         Some(from) => format!(
             " or the particulars it follows from: {}",
-            from.names().into_iter().collect::<Vec<_>>().join(", ")
+            from.mentioned_names().into_iter().collect::<Vec<_>>().join(", ")
         ),
         None => String::new(),
     };
     format!("give `{name}` ({}, unit {}){derivation}", parameter.meaning, parameter.unit)
 }
 
-fn published_file<'a>(
+fn find_published_file<'a>(
     vessel: &'a Vessel,
     name: Option<&str>,
 ) -> Result<&'a PublishedModelFile, String> {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::quantity::Quantity;
-use crate::yaml::MOST_FAULTS;
+use crate::yaml::MAX_FAULTS;
 use sistership_formula::units::Dimension;
 
 /// Particulars by name, in SI.
@@ -15,7 +15,7 @@ const DENSITY: Dimension = Dimension::new(1.0, -3.0, 0.0);
 const MASS: Dimension = Dimension::new(1.0, 0.0, 0.0);
 
 /// Name, dimension, least and greatest plausible value.
-const KNOWN: &[(&str, Dimension, f64, f64)] = &[
+const KNOWN_PARTICULARS: &[(&str, Dimension, f64, f64)] = &[
     ("lpp_m", Dimension::LENGTH, 0.3, 600.0),
     ("loa_m", Dimension::LENGTH, 0.3, 700.0),
     ("beam_m", Dimension::LENGTH, 0.03, 100.0),
@@ -49,33 +49,37 @@ const KNOWN: &[(&str, Dimension, f64, f64)] = &[
 const DEFAULTS: &[(&str, f64)] = &[("water_density_kg_m3", 1025.0)];
 
 /// Dimension of a particular.
-pub fn dimension(name: &str) -> Option<Dimension> {
-    KNOWN.iter().find(|(known, ..)| *known == name).map(|&(_, dimension, ..)| dimension)
+pub fn particular_dimension(name: &str) -> Option<Dimension> {
+    KNOWN_PARTICULARS.iter().find(|(known, ..)| *known == name).map(|&(_, dimension, ..)| dimension)
 }
 
 /// Least and greatest plausible value of a particular.
-pub fn range(name: &str) -> Option<(f64, f64)> {
-    KNOWN.iter().find(|(known, ..)| *known == name).map(|&(_, _, low, high)| (low, high))
+pub fn plausible_range(name: &str) -> Option<(f64, f64)> {
+    KNOWN_PARTICULARS
+        .iter()
+        .find(|(known, ..)| *known == name)
+        .map(|&(_, _, low, high)| (low, high))
 }
 
 /// Names of all particulars.
-pub fn names() -> impl Iterator<Item = &'static str> {
-    KNOWN.iter().map(|&(name, ..)| name)
+pub fn particular_names() -> impl Iterator<Item = &'static str> {
+    KNOWN_PARTICULARS.iter().map(|&(name, ..)| name)
 }
 
 /// Checks names and ranges, and the consistency of the figures of one ship.
 ///
 /// # Errors
 /// Returns the particular at fault and its plausible range.
-pub fn check(particulars: &Particulars) -> Result<(), (String, String)> {
-    faults(particulars).into_iter().next().map_or(Ok(()), Err)
+pub fn check_particulars(particulars: &Particulars) -> Result<(), (String, String)> {
+    find_faults(particulars).into_iter().next().map_or(Ok(()), Err)
 }
 
 /// Returns the particulars at fault with their plausible ranges, at most [`MOST_FAULTS`].
-pub fn faults(particulars: &Particulars) -> Vec<(String, String)> {
+pub fn find_faults(particulars: &Particulars) -> Vec<(String, String)> {
     let one = |(name, quantity): (&String, &Quantity)| {
-        let Some(&(_, _, low, high)) = KNOWN.iter().find(|(known, ..)| known == name) else {
-            let known: Vec<&str> = names().collect();
+        let Some(&(_, _, low, high)) = KNOWN_PARTICULARS.iter().find(|(known, ..)| known == name)
+        else {
+            let known: Vec<&str> = particular_names().collect();
             return Some((
                 name.clone(),
                 format!("unknown particular; known: {}", known.join(", ")),
@@ -87,7 +91,7 @@ pub fn faults(particulars: &Particulars) -> Vec<(String, String)> {
         (!is_possible).then(|| (name.clone(), message()))
     };
     let found: Vec<(String, String)> =
-        particulars.iter().filter_map(one).take(MOST_FAULTS).collect();
+        particulars.iter().filter_map(one).take(MAX_FAULTS).collect();
     // The consistency of several figures is checked only if each is plausible.
     match found.is_empty() {
         true => check_block_coefficient(particulars).err().into_iter().collect(),
@@ -118,20 +122,20 @@ fn check_block_coefficient(particulars: &Particulars) -> Result<(), (String, Str
 }
 
 /// Value of a particular: stated, derived from others, or by default.
-pub fn value(particulars: &Particulars, name: &str) -> Option<f64> {
+pub fn particular_value(particulars: &Particulars, name: &str) -> Option<f64> {
     let default =
         |name: &str| DEFAULTS.iter().find(|(known, _)| *known == name).map(|&(_, value)| value);
-    given(particulars, name).or_else(|| default(name))
+    stated_value(particulars, name).or_else(|| default(name))
 }
 
 /// Value of a particular: stated, or derived from stated ones.
-pub fn given(particulars: &Particulars, name: &str) -> Option<f64> {
+pub fn stated_value(particulars: &Particulars, name: &str) -> Option<f64> {
     let stated = |name: &str| particulars.get(name).map(|q| q.value);
-    stated(name).or_else(|| derived(name, &stated))
+    stated(name).or_else(|| derived_value(name, &stated))
 }
 
 /// Value that follows from other particulars.
-fn derived(name: &str, stated: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
+fn derived_value(name: &str, stated: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
     let density = stated("water_density_kg_m3").unwrap_or(DEFAULTS[0].1);
     let box_volume = || Some(stated("lpp_m")? * stated("beam_m")? * stated("draught_m")?);
     let from_block = || Some(stated("block_coefficient")? * box_volume()?);
@@ -166,14 +170,14 @@ mod tests {
     #[test]
     fn mass_follows_from_displacement_and_density() {
         let ship = ship(&[("displacement_m3", 2.0), ("water_density_kg_m3", 1000.0)]);
-        assert_eq!(value(&ship, "mass_kg"), Some(2000.0));
-        assert_eq!(value(&ship, "lpp_m"), None);
+        assert_eq!(particular_value(&ship, "mass_kg"), Some(2000.0));
+        assert_eq!(particular_value(&ship, "lpp_m"), None);
     }
 
     #[test]
     fn nonsense_is_refused_by_name() {
-        assert_eq!(check(&ship(&[("lenght_m", 3.0)])).unwrap_err().0, "lenght_m");
-        assert!(check(&ship(&[("lpp_m", 17500.0)])).unwrap_err().1.contains("unit"));
+        assert_eq!(check_particulars(&ship(&[("lenght_m", 3.0)])).unwrap_err().0, "lenght_m");
+        assert!(check_particulars(&ship(&[("lpp_m", 17500.0)])).unwrap_err().1.contains("unit"));
         let contradictory = ship(&[
             ("lpp_m", 100.0),
             ("beam_m", 20.0),
@@ -181,6 +185,6 @@ mod tests {
             ("displacement_m3", 5000.0),
             ("block_coefficient", 0.8),
         ]);
-        assert!(check(&contradictory).unwrap_err().1.contains("contradicts"));
+        assert!(check_particulars(&contradictory).unwrap_err().1.contains("contradicts"));
     }
 }

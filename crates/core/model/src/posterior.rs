@@ -41,7 +41,7 @@ pub enum PosteriorError {
 
 impl Posterior {
     /// Formats a lower triangle row by row; `entry(i, j)` for `j <= i`.
-    pub fn rows(size: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
+    pub fn format_rows(size: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
         let row = |i: usize| {
             (0..=i).map(|j| format!("{:.5e}", entry(i, j))).collect::<Vec<_>>().join(" ")
         };
@@ -53,8 +53,8 @@ impl Posterior {
     /// # Errors
     /// Returns an error that names the row of a wrong length, or with an entry that is not a
     /// number.
-    pub fn root(&self) -> Result<Vec<Vec<f64>>, TriangleError> {
-        let rows = triangle::read(
+    pub fn covariance_root(&self) -> Result<Vec<Vec<f64>>, TriangleError> {
+        let rows = triangle::read_rows(
             "root_correlation",
             &self.root_correlation,
             self.names.len(),
@@ -67,12 +67,12 @@ impl Posterior {
     }
 
     /// Returns true if it belongs to coefficients with these values.
-    pub fn is_about(&self, value: impl Fn(&str) -> Option<f64>) -> bool {
+    pub fn belongs_to(&self, value: impl Fn(&str) -> Option<f64>) -> bool {
         self.names.iter().zip(&self.values).all(|(name, about)| value(name) == Some(*about))
     }
 
     /// Standard deviations by name.
-    pub fn deviations(&self) -> BTreeMap<&str, f64> {
+    pub fn deviations_by_name(&self) -> BTreeMap<&str, f64> {
         self.names.iter().map(String::as_str).zip(self.deviations.iter().copied()).collect()
     }
 
@@ -80,7 +80,7 @@ impl Posterior {
     ///
     /// # Errors
     /// Returns an error that names the inconsistent lists.
-    pub fn check(&self) -> Result<(), PosteriorError> {
+    pub fn check_lists(&self) -> Result<(), PosteriorError> {
         let size = self.names.len();
         if self.values.len() != size || self.deviations.len() != size {
             return Err(PosteriorError::Lists);
@@ -88,7 +88,7 @@ impl Posterior {
         if !self.deviations.iter().all(|d| *d >= 0.0 && d.is_finite()) {
             return Err(PosteriorError::Deviations);
         }
-        self.root()?;
+        self.covariance_root()?;
         Ok(())
     }
 }
@@ -103,13 +103,13 @@ mod tests {
             names: vec!["Y_v".into(), "N_v".into()],
             values: vec![-1.0, 2.0],
             deviations: vec![0.1, 0.2],
-            root_correlation: Posterior::rows(2, &|i, j| [[1.0, 0.0], [0.6, 0.8]][i][j]),
+            root_correlation: Posterior::format_rows(2, &|i, j| [[1.0, 0.0], [0.6, 0.8]][i][j]),
         }
     }
 
     #[test]
     fn the_root_is_in_the_units_of_the_coefficients() {
-        let root = posterior().root().unwrap();
+        let root = posterior().covariance_root().unwrap();
         assert!(
             (root[0][0] - 0.1).abs() < 1e-12
                 && (root[1][0] - 0.12).abs() < 1e-12
@@ -119,17 +119,19 @@ mod tests {
 
     #[test]
     fn lists_that_do_not_go_together_are_named() {
-        assert_eq!(posterior().check(), Ok(()));
+        assert_eq!(posterior().check_lists(), Ok(()));
         let short = Posterior { root_correlation: vec!["1".into(), "0.6".into()], ..posterior() };
-        assert!(short.check().unwrap_err().to_string().contains("row 2"));
-        assert!(Posterior { deviations: vec![0.1], ..posterior() }.check().is_err());
-        assert!(Posterior { deviations: vec![0.1, f64::NAN], ..posterior() }.check().is_err());
+        assert!(short.check_lists().unwrap_err().to_string().contains("row 2"));
+        assert!(Posterior { deviations: vec![0.1], ..posterior() }.check_lists().is_err());
+        assert!(
+            Posterior { deviations: vec![0.1, f64::NAN], ..posterior() }.check_lists().is_err()
+        );
     }
 
     #[test]
     fn other_coefficients_have_lost_it() {
         let posterior = posterior();
-        assert!(posterior.is_about(|name| Some(if name == "Y_v" { -1.0 } else { 2.0 })));
-        assert!(!posterior.is_about(|_| Some(-1.0)) && !posterior.is_about(|_| None));
+        assert!(posterior.belongs_to(|name| Some(if name == "Y_v" { -1.0 } else { 2.0 })));
+        assert!(!posterior.belongs_to(|_| Some(-1.0)) && !posterior.belongs_to(|_| None));
     }
 }

@@ -17,9 +17,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::coefficient::Axis;
-use crate::effect::qualified;
+use crate::effect::qualified_name;
 use crate::error::FileError;
-use crate::law::{Input, Law, Parameter, Straight};
+use crate::law::{Law, LawInput, LawParameter, StraightAhead};
 use crate::quantity::Quantity;
 use crate::source::Source;
 use sistership_formula::units::{Dimension, Unit};
@@ -69,23 +69,23 @@ struct ParameterFile {
 
 /// Formulas of the balance, parsed.
 #[derive(Debug)]
-struct Balance {
-    parameters: IndexMap<String, Parameter>,
+struct SurgeBalance {
+    parameters: IndexMap<String, LawParameter>,
     sees: Vec<(String, Expr)>,
     values: IndexMap<String, Expr>,
     weight: Expr,
     surge: Expr,
 }
 
-static BALANCE: LazyLock<Result<Balance, FileError>> = LazyLock::new(|| {
+static BALANCE: LazyLock<Result<SurgeBalance, FileError>> = LazyLock::new(|| {
     let text = include_str!("../../../../models/propulsion/open-water.yaml");
-    Balance::parse("propulsion/open-water.yaml", text)
+    SurgeBalance::parse("propulsion/open-water.yaml", text)
 });
 
-impl Balance {
+impl SurgeBalance {
     fn parse(file: &str, text: &str) -> Result<Self, FileError> {
         let raw: BalanceFile =
-            crate::yaml::read(text).map_err(|error| FileError::of_yaml(file, error))?;
+            crate::yaml::read_document(text).map_err(|error| FileError::from_yaml(file, error))?;
         let refused = |field: &str, message: String| FileError {
             file: file.to_owned(),
             field: field.to_owned(),
@@ -99,20 +99,20 @@ impl Balance {
             let (unit, dimension) = (raw.unit.clone(), unit.dimension);
             let meaning = raw.meaning.clone();
             let known =
-                Parameter { dimension, unit, meaning, from: None, is_approach_speed: false };
+                LawParameter { dimension, unit, meaning, from: None, is_approach_speed: false };
             Ok((name.clone(), known))
         };
         Ok(Self {
             parameters: raw.parameters.iter().map(parameter).collect::<Result<_, _>>()?,
-            sees: named(&raw.sees, &formula)?,
-            values: named(&raw.values, &formula)?,
+            sees: parse_named(&raw.sees, &formula)?,
+            values: parse_named(&raw.values, &formula)?,
             weight: formula("weight", &raw.weight)?,
             surge: formula("surge", &raw.surge)?,
         })
     }
 }
 
-fn named<'a, C: FromIterator<(String, Expr)>>(
+fn parse_named<'a, C: FromIterator<(String, Expr)>>(
     raw: impl IntoIterator<Item = (&'a String, &'a String)>,
     formula: &dyn Fn(&str, &str) -> Result<Expr, FileError>,
 ) -> Result<C, FileError> {
@@ -120,22 +120,22 @@ fn named<'a, C: FromIterator<(String, Expr)>>(
 }
 
 /// Input of the revolutions in a law.
-const REVOLUTIONS: &str = "n";
+const REVOLUTIONS_INPUT: &str = "n";
 /// States that are zero straight ahead.
-const ACROSS: [&str; 4] = ["v", "r", "p", "phi"];
+const LATERAL_STATES: [&str; 4] = ["v", "r", "p", "phi"];
 /// Inputs that are zero in still air, and the prefix of those that are zero with the rudder
 /// amidships.
-const WIND: [&str; 2] = ["wind_speed", "apparent_wind_speed"];
-const RUDDER: &str = "delta";
+const WIND_INPUTS: [&str; 2] = ["wind_speed", "apparent_wind_speed"];
+const RUDDER_PREFIX: &str = "delta";
 /// Name of the value that is the share of the balance.
-const BEYOND: &str = "beyond";
+const SHARE_VALUE: &str = "beyond";
 
 /// Returns the name in a law of a name of the balance.
-fn own(name: &str) -> String {
-    qualified("propulsion", "open-water", name)
+fn qualified_own_name(name: &str) -> String {
+    qualified_name("propulsion", "open-water", name)
 }
 
-fn balance() -> Result<&'static Balance, (String, String)> {
+fn surge_balance() -> Result<&'static SurgeBalance, (String, String)> {
     BALANCE.as_ref().map_err(|error| ("propulsion".to_owned(), error.to_string()))
 }
 
@@ -149,9 +149,9 @@ impl Propulsion {
     ///
     /// # Errors
     /// Returns the field at fault and the reason.
-    pub fn check(&self) -> Result<(), (String, String)> {
+    pub fn check_parameters(&self) -> Result<(), (String, String)> {
         let field = |name: &str| format!("propulsion.parameters.{name}");
-        let known = &balance()?.parameters;
+        let known = &surge_balance()?.parameters;
         if let Some(name) = self.parameters.keys().find(|name| !known.contains_key(*name)) {
             return Err((field(name), "the balance has no such parameter".into()));
         }
@@ -169,33 +169,36 @@ impl Law {
     /// # Errors
     /// Returns the field of the model at fault and the reason.
     pub fn with_propulsion(&self, propulsion: &Propulsion) -> Result<Self, (String, String)> {
-        propulsion.check()?;
-        let balance = balance()?;
+        propulsion.check_parameters()?;
+        let balance = surge_balance()?;
         let mut law = self.clone();
         add_inputs(&mut law, balance, propulsion);
         for (name, _) in &balance.sees {
-            law.rename_in_forces(name, &own(&format!("seen.{name}")));
+            law.rename_in_forces(name, &qualified_own_name(&format!("seen.{name}")));
         }
         // The values straight ahead are copied after the renaming, so that they use the limited
         // revolutions.
-        let renamed = straight_values(&mut law);
+        let renamed = add_straight_values(&mut law);
         for (name, expr) in &balance.sees {
-            law.add_value(own(&format!("seen.{name}")), of_law(expr, balance));
+            law.add_value(
+                qualified_own_name(&format!("seen.{name}")),
+                qualify_names(expr, balance),
+            );
         }
         for (name, expr) in &balance.values {
-            law.add_value(own(name), of_law(expr, balance));
+            law.add_value(qualified_own_name(name), qualify_names(expr, balance));
         }
-        law.add_value(own("weight"), of_law(&balance.weight, balance));
+        law.add_value(qualified_own_name("weight"), qualify_names(&balance.weight, balance));
         let one = Box::new(Expr::Number(1.0));
-        let beyond = Expr::Subtract(one, Box::new(Expr::Name(own("weight"))));
-        law.add_value(own(BEYOND), beyond);
-        let straight = Straight { renamed, beyond: own(BEYOND) };
+        let beyond = Expr::Subtract(one, Box::new(Expr::Name(qualified_own_name("weight"))));
+        law.add_value(qualified_own_name(SHARE_VALUE), beyond);
+        let straight = StraightAhead { renamed, beyond: qualified_own_name(SHARE_VALUE) };
         for axis in law.axes.values_mut() {
-            axis.rest = straight.blended(axis.rest.clone(), &Expr::Number(1.0));
+            axis.rest = straight.subtract_share(axis.rest.clone(), &Expr::Number(1.0));
         }
         // Only surge receives the balance in exchange for the removed forces.
         if let Some(axis) = law.axes.get_mut(&Axis::X) {
-            let surge = Box::new(of_law(&balance.surge, balance));
+            let surge = Box::new(qualify_names(&balance.surge, balance));
             axis.rest = Expr::Add(Box::new(axis.rest.clone()), surge);
         }
         law.dressing.straight = Some(straight);
@@ -205,42 +208,43 @@ impl Law {
 
 /// Adds the revolutions as an input, with those of self-propulsion as the default, and the
 /// parameters.
-fn add_inputs(law: &mut Law, balance: &Balance, propulsion: &Propulsion) {
+fn add_inputs(law: &mut Law, balance: &SurgeBalance, propulsion: &Propulsion) {
     let default = propulsion.value("revolutions");
-    let revolutions = Input { dimension: Dimension::RATE, default };
-    law.inputs.entry(REVOLUTIONS.to_owned()).or_insert(revolutions);
+    let revolutions = LawInput { dimension: Dimension::RATE, default };
+    law.inputs.entry(REVOLUTIONS_INPUT.to_owned()).or_insert(revolutions);
     for (name, parameter) in &balance.parameters {
-        law.parameters.insert(own(name), parameter.clone());
+        law.parameters.insert(qualified_own_name(name), parameter.clone());
         let value = propulsion.value(name).unwrap_or(0.0);
-        law.dressing.parameters.insert(own(name), value);
+        law.dressing.parameters.insert(qualified_own_name(name), value);
     }
 }
 
 /// Returns a formula of the balance with its names in a law.
-fn of_law(expr: &Expr, balance: &Balance) -> Expr {
+fn qualify_names(expr: &Expr, balance: &SurgeBalance) -> Expr {
     let is_own = |name: &str| {
         balance.parameters.contains_key(name)
             || balance.values.contains_key(name)
             || name == "weight"
     };
-    expr.renamed(&|name| is_own(name).then(|| Expr::Name(own(name))))
+    expr.replace_names(&|name| is_own(name).then(|| Expr::Name(qualified_own_name(name))))
 }
 
 /// Adds the values straight ahead that differ from the original ones; returns the replacements of
 /// names.
-fn straight_values(law: &mut Law) -> BTreeMap<String, Expr> {
-    let is_still = |name: &&String| name.starts_with(RUDDER) || WIND.contains(&name.as_str());
+fn add_straight_values(law: &mut Law) -> BTreeMap<String, Expr> {
+    let is_still =
+        |name: &&String| name.starts_with(RUDDER_PREFIX) || WIND_INPUTS.contains(&name.as_str());
     let inputs = law.inputs.keys().filter(is_still).cloned();
-    let still = ACROSS.iter().map(|name| (*name).to_owned()).chain(inputs);
+    let still = LATERAL_STATES.iter().map(|name| (*name).to_owned()).chain(inputs);
     let mut renamed: BTreeMap<String, Expr> = still.map(|name| (name, Expr::Number(0.0))).collect();
     let values: Vec<(String, Expr)> =
         law.values.iter().map(|(name, expr)| (name.clone(), expr.clone())).collect();
     for (name, expr) in values {
         // Values are in the order of dependence, so that replaced names propagate in one pass.
-        let names: BTreeSet<&str> = expr.names();
+        let names: BTreeSet<&str> = expr.mentioned_names();
         if names.iter().any(|name| renamed.contains_key(*name)) {
-            let straight = own(&format!("straight.{name}"));
-            law.add_value(straight.clone(), expr.renamed(&|name| renamed.get(name).cloned()));
+            let straight = qualified_own_name(&format!("straight.{name}"));
+            law.add_value(straight.clone(), expr.replace_names(&|name| renamed.get(name).cloned()));
             renamed.insert(name, Expr::Name(straight));
         }
     }

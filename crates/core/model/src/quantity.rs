@@ -34,19 +34,19 @@ impl Quantity {
 /// A value in a file.
 #[derive(Debug, Clone, Deserialize, Serialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Written {
+pub enum ValueEntry {
     /// A number.
     Number(f64),
     /// A constant expression such as `"0.605/304.8"`.
     Expression(String),
     /// A value with its own source or remark.
-    Full(WrittenInFull),
+    Full(ValueWithSource),
 }
 
 /// A value with its own source or remark.
 #[derive(Debug, Clone, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct WrittenInFull {
+pub struct ValueWithSource {
     value: NumberOrExpression,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     source: Option<String>,
@@ -72,7 +72,7 @@ pub struct Section {
     pub source: Option<String>,
     /// The values by name.
     #[serde(default)]
-    pub values: BTreeMap<String, Written>,
+    pub values: BTreeMap<String, ValueEntry>,
 }
 
 impl Section {
@@ -81,7 +81,7 @@ impl Section {
     /// # Errors
     /// Returns an error that names the value that is not a finite number, has no source, or cites
     /// one that the file does not list.
-    pub fn resolve(
+    pub fn resolve_values(
         &self,
         sources: &[&str],
     ) -> Result<BTreeMap<String, Quantity>, (String, String)> {
@@ -96,7 +96,7 @@ impl Section {
     ) -> (BTreeMap<String, Quantity>, Vec<(String, String)>) {
         let (mut values, mut refused) = (BTreeMap::new(), Vec::new());
         for (name, written) in &self.values {
-            match resolve(written, self.source.as_deref(), sources) {
+            match resolve_entry(written, self.source.as_deref(), sources) {
                 Ok(quantity) => {
                     values.insert(name.clone(), quantity);
                 }
@@ -120,18 +120,18 @@ enum QuantityError {
     Unlisted(String),
 }
 
-fn resolve(
-    written: &Written,
+fn resolve_entry(
+    written: &ValueEntry,
     default_source: Option<&str>,
     sources: &[&str],
 ) -> Result<Quantity, QuantityError> {
     let (value, source, note, standard_error) = match written {
-        Written::Number(number) => (*number, None, None, None),
-        Written::Expression(text) => (formula::constant(text)?, None, None, None),
-        Written::Full(full) => {
+        ValueEntry::Number(number) => (*number, None, None, None),
+        ValueEntry::Expression(text) => (formula::evaluate_constant(text)?, None, None, None),
+        ValueEntry::Full(full) => {
             let value = match &full.value {
                 NumberOrExpression::Number(number) => *number,
-                NumberOrExpression::Expression(text) => formula::constant(text)?,
+                NumberOrExpression::Expression(text) => formula::evaluate_constant(text)?,
             };
             (value, full.source.as_deref(), full.note.clone(), full.standard_error)
         }

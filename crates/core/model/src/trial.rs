@@ -81,28 +81,28 @@ const CHANNELS: [(Channel, &str, &str, Dimension); 17] = [
 
 impl Channel {
     /// Every channel.
-    pub fn all() -> impl Iterator<Item = Self> {
+    pub fn all_channels() -> impl Iterator<Item = Self> {
         CHANNELS.iter().map(|&(channel, ..)| channel)
     }
 
-    fn row(self) -> &'static (Self, &'static str, &'static str, Dimension) {
+    fn table_row(self) -> &'static (Self, &'static str, &'static str, Dimension) {
         // The table is in the order of the enum.
         &CHANNELS[self as usize]
     }
 
     /// Name in manifests and formulas.
     pub fn name(self) -> &'static str {
-        self.row().1
+        self.table_row().1
     }
 
     /// Canonical column name, which includes the unit.
-    pub fn column(self) -> &'static str {
-        self.row().2
+    pub fn column_name(self) -> &'static str {
+        self.table_row().2
     }
 
     /// Dimension of its values.
     pub fn dimension(self) -> Dimension {
-        self.row().3
+        self.table_row().3
     }
 
     /// Returns the channel with a name in manifests.
@@ -203,9 +203,9 @@ mod tests {
 
     #[test]
     fn the_channel_table_is_in_the_order_of_the_enum() {
-        for channel in Channel::all() {
+        for channel in Channel::all_channels() {
             assert_eq!(Channel::by_name(channel.name()), Some(channel));
-            assert_eq!(Channel::by_column(channel.column()), Some(channel));
+            assert_eq!(Channel::by_column(channel.column_name()), Some(channel));
         }
     }
 

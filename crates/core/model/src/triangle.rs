@@ -27,7 +27,7 @@ pub enum TriangleError {
 
 /// Reads as many rows as there are names; `length` returns the required length of a row by its
 /// index.
-pub fn read(
+pub fn read_rows(
     field: &'static str,
     rows: &[String],
     names: usize,

@@ -111,7 +111,7 @@ pub enum UncertaintyError {
 
 impl Uncertainty {
     /// Formats R row by row; `entry(i, j)` for `j >= i`.
-    pub fn rows(size: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
+    pub fn format_rows(size: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
         let row = |i: usize| {
             (i..size).map(|j| format!("{:.7e}", entry(i, j))).collect::<Vec<_>>().join(" ")
         };
@@ -123,16 +123,16 @@ impl Uncertainty {
     /// # Errors
     /// Returns an error that names the row of a wrong length, or with an entry that is not a
     /// number.
-    pub fn root(&self) -> Result<Vec<Vec<f64>>, TriangleError> {
+    pub fn information_root(&self) -> Result<Vec<Vec<f64>>, TriangleError> {
         let size = self.names.len();
-        triangle::read("root_information", &self.root_information, size, |place| size - place)
+        triangle::read_rows("root_information", &self.root_information, size, |place| size - place)
     }
 
     /// Checks that the lists are consistent.
     ///
     /// # Errors
     /// Returns an error that names the inconsistent lists.
-    pub fn check(&self) -> Result<(), UncertaintyError> {
+    pub fn check_lists(&self) -> Result<(), UncertaintyError> {
         let size = self.names.len();
         if self.scales.len() != size || self.offset.len() != size {
             return Err(UncertaintyError::Lists);
@@ -150,7 +150,7 @@ impl Uncertainty {
         }) {
             return Err(UncertaintyError::Discrepancy);
         }
-        self.root()?;
+        self.information_root()?;
         Ok(())
     }
 }

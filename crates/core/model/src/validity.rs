@@ -41,7 +41,7 @@ pub struct Excursion {
 impl Region {
     /// Returns the smallest region that contains samples, given by channel; `None` if there is no
     /// sample.
-    pub fn of(columns: &BTreeMap<String, Vec<f64>>) -> Option<Self> {
+    pub fn from_samples(columns: &BTreeMap<String, Vec<f64>>) -> Option<Self> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
                 [low.min(x), high.max(x)]
@@ -56,7 +56,7 @@ impl Region {
             return None;
         }
         let scaled = |name: &String| {
-            columns[name].iter().map(|x| scale(*x, ranges[name])).collect::<Vec<f64>>()
+            columns[name].iter().map(|x| scale_to_range(*x, ranges[name])).collect::<Vec<f64>>()
         };
         let of_pair = |(a, b): (&String, &String)| {
             let (first, second) = (scaled(a), scaled(b));
@@ -64,30 +64,30 @@ impl Region {
                 |sign: f64| range(&mut first.iter().zip(&second).map(|(x, y)| x + sign * y));
             [(format!("{a}+{b}"), along(1.0)), (format!("{a}-{b}"), along(-1.0))]
         };
-        let pairs = pairs(&ranges).flat_map(of_pair).collect();
+        let pairs = name_pairs(&ranges).flat_map(of_pair).collect();
         Some(Self { ranges, pairs, environment: BTreeMap::new() })
     }
 
     /// Returns the distance of a point from the region, in half ranges, with its direction; `None`
     /// if it is inside. Channels that the point lacks do not count.
-    pub fn beyond(&self, value: &dyn Fn(&str) -> Option<f64>) -> Option<(String, f64)> {
+    pub fn distance_beyond(&self, value: &dyn Fn(&str) -> Option<f64>) -> Option<(String, f64)> {
         let resolved = ResolvedRegion::new(self);
-        let (along, beyond) = resolved.furthest(value, &mut Vec::new())?;
-        Some((resolved.name(along), beyond))
+        let (along, beyond) = resolved.furthest_direction(value, &mut Vec::new())?;
+        Some((resolved.direction_name(along), beyond))
     }
 
     /// Returns the excursion of a motion; `None` if it stays inside. `value(k, name)` is a channel
     /// at sample `k`.
-    pub fn excursion(
+    pub fn find_excursion(
         &self,
         t_s: &[f64],
         value: &dyn Fn(usize, &str) -> Option<f64>,
     ) -> Option<Excursion> {
         let (resolved, mut room) = (ResolvedRegion::new(self), Vec::new());
-        let mut furthest: Option<(f64, Along, f64)> = None;
+        let mut furthest: Option<(f64, Direction, f64)> = None;
         let mut count = 0_usize;
         for (k, t) in t_s.iter().enumerate() {
-            let found = resolved.furthest(&|name| value(k, name), &mut room);
+            let found = resolved.furthest_direction(&|name| value(k, name), &mut room);
             let Some((along, beyond)) = found else { continue };
             count += 1;
             // The first sample outside fixes the time; later ones may increase the distance.
@@ -98,36 +98,39 @@ impl Region {
         }
         let (first_s, along, beyond) = furthest?;
         let share = count as f64 / t_s.len() as f64;
-        Some(Excursion { first_s, share, along: resolved.name(along), beyond })
+        Some(Excursion { first_s, share, along: resolved.direction_name(along), beyond })
     }
 
     /// Bounded directions, for repeated evaluation.
-    pub fn faces(&self) -> Vec<Face<'_>> {
-        let single = self
-            .ranges
-            .keys()
-            .map(|name| Face { terms: vec![self.term(name, 1.0)], bounds: [-1.0, 1.0] });
-        let together = pairs(&self.ranges).flat_map(|(a, b)| {
+    pub fn half_spaces(&self) -> Vec<HalfSpace<'_>> {
+        let single = self.ranges.keys().map(|name| HalfSpace {
+            terms: vec![self.half_space_term(name, 1.0)],
+            bounds: [-1.0, 1.0],
+        });
+        let together = name_pairs(&self.ranges).flat_map(|(a, b)| {
             let of = |sign: char, factor: f64| {
                 // A pair without bounds does not limit the region.
                 let bounds = *self.pairs.get(&format!("{a}{sign}{b}"))?;
-                Some(Face { terms: vec![self.term(a, 1.0), self.term(b, factor)], bounds })
+                Some(HalfSpace {
+                    terms: vec![self.half_space_term(a, 1.0), self.half_space_term(b, factor)],
+                    bounds,
+                })
             };
             [of('+', 1.0), of('-', -1.0)].into_iter().flatten().collect::<Vec<_>>()
         });
         single.chain(together).collect()
     }
 
-    fn term<'a>(&self, channel: &'a str, sign: f64) -> FaceTerm<'a> {
+    fn half_space_term<'a>(&self, channel: &'a str, sign: f64) -> HalfSpaceTerm<'a> {
         let (centre, half) = centre_and_half(self.ranges[channel]);
-        FaceTerm { channel, centre, factor: sign / half }
+        HalfSpaceTerm { channel, centre, factor: sign / half }
     }
 
     /// Checks that bounds are in order.
     ///
     /// # Errors
     /// Returns an error that names the channel.
-    pub fn check(&self) -> Result<(), RangeError> {
+    pub fn check_bounds(&self) -> Result<(), RangeError> {
         let wrong = |(_, [low, high]): &(&String, &[f64; 2])| {
             !(low.is_finite() && high.is_finite() && low <= high)
         };
@@ -153,7 +156,7 @@ struct ResolvedPair {
 
 /// Direction: a channel, or the sum or the difference of two, by their indices.
 #[derive(Debug, Clone, Copy)]
-enum Along {
+enum Direction {
     One(usize),
     Two(usize, char, usize),
 }
@@ -178,41 +181,46 @@ impl<'a> ResolvedRegion<'a> {
 
     /// Returns the largest distance of a point, with its direction; `scaled` is a workspace for its
     /// channels.
-    fn furthest(
+    fn furthest_direction(
         &self,
         value: &dyn Fn(&str) -> Option<f64>,
         scaled: &mut Vec<Option<f64>>,
-    ) -> Option<(Along, f64)> {
+    ) -> Option<(Direction, f64)> {
         let scale = |&(name, centre, half): &(&str, f64, f64)| Some((value(name)? - centre) / half);
         scaled.clear();
         scaled.extend(self.channels.iter().map(scale));
         let single = scaled.iter().enumerate();
         // A channel is scaled so that its range is [-1, 1].
-        let single = single.filter_map(|(i, x)| Some((Along::One(i), excess((*x)?, [-1.0, 1.0]))));
+        let single = single
+            .filter_map(|(i, x)| Some((Direction::One(i), distance_outside((*x)?, [-1.0, 1.0]))));
         let together = self.pairs.iter().filter_map(|pair| {
             let ([i, j], [sum, difference]) = (pair.places, pair.bounds);
             let (x, y) = (scaled[i]?, scaled[j]?);
-            let far = |at: f64, bounds: Option<[f64; 2]>| bounds.map_or(0.0, |b| excess(at, b));
+            let far =
+                |at: f64, bounds: Option<[f64; 2]>| bounds.map_or(0.0, |b| distance_outside(at, b));
             let (sum, difference) = (far(x + y, sum), far(x - y, difference));
             Some(if sum >= difference {
-                (Along::Two(i, '+', j), sum)
+                (Direction::Two(i, '+', j), sum)
             } else {
-                (Along::Two(i, '-', j), difference)
+                (Direction::Two(i, '-', j), difference)
             })
         });
         // At equal distance a single channel is named rather than a pair.
-        single.chain(together).filter(|(_, beyond)| *beyond > SLACK).fold(None, |furthest, one| {
-            match furthest {
+        single.chain(together).filter(|(_, beyond)| *beyond > EXCURSION_TOLERANCE).fold(
+            None,
+            |furthest, one| match furthest {
                 Some((_, beyond)) if one.1 <= beyond => furthest,
                 _ => Some(one),
-            }
-        })
+            },
+        )
     }
 
-    fn name(&self, along: Along) -> String {
+    fn direction_name(&self, along: Direction) -> String {
         match along {
-            Along::One(i) => self.channels[i].0.to_owned(),
-            Along::Two(i, sign, j) => format!("{}{sign}{}", self.channels[i].0, self.channels[j].0),
+            Direction::One(i) => self.channels[i].0.to_owned(),
+            Direction::Two(i, sign, j) => {
+                format!("{}{sign}{}", self.channels[i].0, self.channels[j].0)
+            }
         }
     }
 }
@@ -231,16 +239,16 @@ pub struct RangeError {
 
 /// Direction in which a region is bounded: a channel, or a sum or difference of two.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Face<'a> {
+pub struct HalfSpace<'a> {
     /// Terms of the sum, each scaled to its range.
-    pub terms: Vec<FaceTerm<'a>>,
+    pub terms: Vec<HalfSpaceTerm<'a>>,
     /// Least and greatest sum inside.
     pub bounds: [f64; 2],
 }
 
 /// Scaled channel, `factor (value - centre)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FaceTerm<'a> {
+pub struct HalfSpaceTerm<'a> {
     /// The channel.
     pub channel: &'a str,
     /// Middle of its range.
@@ -251,7 +259,7 @@ pub struct FaceTerm<'a> {
 
 impl Excursion {
     /// Description in words.
-    pub fn words(&self) -> String {
+    pub fn describe(&self) -> String {
         let Self { first_s, share, along, beyond } = self;
         let percent = 100.0 * share;
         format!(
@@ -264,13 +272,13 @@ impl Excursion {
 
 /// Tolerance of an excursion, in half ranges: a hard turn at 35 deg where the rudder was recorded
 /// at 34.9 is none.
-pub const SLACK: f64 = 0.005;
+pub const EXCURSION_TOLERANCE: f64 = 0.005;
 /// Half range of a channel that did not vary, relative to its value: a speed that was constant
 /// within a per cent.
-const STILL: f64 = 0.01;
+const CONSTANT_HALF_RANGE: f64 = 0.01;
 
 /// Scales a value to -1 at the low and 1 at the high end of a range.
-fn scale(x: f64, range: [f64; 2]) -> f64 {
+fn scale_to_range(x: f64, range: [f64; 2]) -> f64 {
     let (centre, half) = centre_and_half(range);
     (x - centre) / half
 }
@@ -278,16 +286,16 @@ fn scale(x: f64, range: [f64; 2]) -> f64 {
 /// Returns the middle of a range and half its width; 1 for a channel that was constantly zero.
 fn centre_and_half([low, high]: [f64; 2]) -> (f64, f64) {
     let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let half = half.max(STILL * centre.abs());
+    let half = half.max(CONSTANT_HALF_RANGE * centre.abs());
     (centre, if half > 0.0 { half } else { 1.0 })
 }
 
-fn excess(x: f64, [low, high]: [f64; 2]) -> f64 {
+fn distance_outside(x: f64, [low, high]: [f64; 2]) -> f64 {
     (low - x).max(x - high).max(0.0)
 }
 
 /// Returns every pair of names.
-fn pairs(ranges: &BTreeMap<String, [f64; 2]>) -> impl Iterator<Item = (&String, &String)> {
+fn name_pairs(ranges: &BTreeMap<String, [f64; 2]>) -> impl Iterator<Item = (&String, &String)> {
     ranges.keys().enumerate().flat_map(|(i, a)| ranges.keys().skip(i + 1).map(move |b| (a, b)))
 }
 
@@ -304,12 +312,14 @@ mod tests {
             ("v", t().map(|t| 0.5 * (2.0 * t).sin()).collect()),
             ("r", t().map(|t| -0.01 * (2.0 * t).sin()).collect()),
         ];
-        Region::of(&columns.map(|(name, column): (_, Vec<f64>)| (name.to_owned(), column)).into())
-            .unwrap()
+        Region::from_samples(
+            &columns.map(|(name, column): (_, Vec<f64>)| (name.to_owned(), column)).into(),
+        )
+        .unwrap()
     }
 
     fn beyond(u: f64, v: f64, r: f64) -> Option<(String, f64)> {
-        region().beyond(&|name| match name {
+        region().distance_beyond(&|name| match name {
             "u" => Some(u),
             "v" => Some(v),
             "r" => Some(r),
@@ -345,15 +355,15 @@ mod tests {
     #[test]
     fn an_excursion_says_when_how_long_and_how_far() {
         let t_s: Vec<f64> = (0..10).map(f64::from).collect();
-        let inside = region().excursion(&t_s, &|_, name| (name == "u").then_some(5.0));
+        let inside = region().find_excursion(&t_s, &|_, name| (name == "u").then_some(5.0));
         assert_eq!(inside, None);
         let out = region()
-            .excursion(&t_s, &|k, name| {
+            .find_excursion(&t_s, &|k, name| {
                 (name == "u").then_some(if k < 4 { 5.0 } else { 4.0 + k as f64 })
             })
             .unwrap();
         assert_eq!((out.first_s, out.share, out.along.as_str()), (4.0, 0.6, "u"));
-        assert!(out.beyond > 5.0 && out.words().contains("from 4 s on, 60 % of the time"));
+        assert!(out.beyond > 5.0 && out.describe().contains("from 4 s on, 60 % of the time"));
     }
 
     #[test]
@@ -365,22 +375,22 @@ mod tests {
                 "v" => v,
                 _ => r,
             };
-            let one = |face: Face<'_>| {
-                let term = |t: &FaceTerm<'_>| t.factor * (value(t.channel) - t.centre);
+            let one = |face: HalfSpace<'_>| {
+                let term = |t: &HalfSpaceTerm<'_>| t.factor * (value(t.channel) - t.centre);
                 let sum: f64 = face.terms.iter().map(term).sum();
-                excess(sum, face.bounds)
+                distance_outside(sum, face.bounds)
             };
-            let furthest = region.faces().into_iter().map(one).fold(0.0, f64::max);
-            let (_, beyond) = region.beyond(&|name| Some(value(name))).unwrap();
+            let furthest = region.half_spaces().into_iter().map(one).fold(0.0, f64::max);
+            let (_, beyond) = region.distance_beyond(&|name| Some(value(name))).unwrap();
             assert!((furthest - beyond).abs() < 1e-12, "{furthest} {beyond}");
         }
     }
 
     #[test]
     fn a_constant_channel_has_a_range_of_a_per_cent() {
-        let region = Region::of(&[("n".to_owned(), vec![2.0; 5])].into()).unwrap();
-        assert_eq!(region.beyond(&|_| Some(2.01)), None);
-        assert!(region.beyond(&|_| Some(2.1)).is_some());
-        assert_eq!(Region::of(&BTreeMap::new()), None);
+        let region = Region::from_samples(&[("n".to_owned(), vec![2.0; 5])].into()).unwrap();
+        assert_eq!(region.distance_beyond(&|_| Some(2.01)), None);
+        assert!(region.distance_beyond(&|_| Some(2.1)).is_some());
+        assert_eq!(Region::from_samples(&BTreeMap::new()), None);
     }
 }

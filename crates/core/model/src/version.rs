@@ -11,7 +11,7 @@ pub const FORMAT: &str = "sistership-version/1";
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 // Only few recipes are in memory at a time.
 #[allow(clippy::large_enum_variant)]
-pub enum Recipe {
+pub enum VersionRecipe {
     /// Taken from the ship's own file.
     Published {
         /// The published model's name among the ship's.
@@ -95,7 +95,7 @@ pub struct RecipeTrial {
 }
 
 /// Returns the SHA-256 of some bytes, in hexadecimal.
-pub fn sha256(bytes: &[u8]) -> String {
+pub fn sha256_hex(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Blame, FileError};
+use crate::error::{ErrorContext, FileError};
 use crate::free_running::FreeRunning;
 use crate::manifest::RudderSign;
 use crate::name::check_slug;
@@ -82,7 +82,7 @@ pub struct QuotedVectorFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
     /// The components by name.
-    pub values: BTreeMap<String, crate::quantity::Written>,
+    pub values: BTreeMap<String, crate::quantity::ValueEntry>,
 }
 
 /// A published or estimated model as its file writes it, in the signs of the source.
@@ -171,8 +171,8 @@ impl Vessel {
     /// # Errors
     /// Returns an error with file, line and field of every fault.
     pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
-        let blame = Blame::new(file, text);
-        Self::check(blame.read()?, &blame)
+        let blame = ErrorContext::new(file, text);
+        Self::check_file(blame.deserialize()?, &blame)
     }
 
     /// Checks a vessel that was given as a document; `name` is its name in errors.
@@ -180,23 +180,23 @@ impl Vessel {
     /// # Errors
     /// The errors of [`Vessel::parse`].
     pub fn from_file(name: &str, raw: VesselFile) -> Result<Self, FileError> {
-        Self::check(raw, &Blame::new(name, ""))
+        Self::check_file(raw, &ErrorContext::new(name, ""))
     }
 
-    fn check(raw: VesselFile, blame: &Blame<'_>) -> Result<Self, FileError> {
+    fn check_file(raw: VesselFile, blame: &ErrorContext<'_>) -> Result<Self, FileError> {
         let keys: Vec<&str> = raw.sources.keys().map(String::as_str).collect();
         // All sections are checked before the result, so that one answer lists every fault.
-        let mut faults = head(&raw);
+        let mut faults = check_header(&raw);
         let mut add = |section: &str, found: Vec<FieldError>| {
             let at = |(name, message)| (format!("{section}.{name}"), message);
             faults.extend(found.into_iter().map(at));
         };
-        add("licences", of_licences(&raw.licences, &keys));
+        add("licences", check_licences(&raw.licences, &keys));
         let (particulars, unread) = raw.particulars.resolve_all(&keys);
         add("particulars.values", unread);
-        add("particulars.values", particulars::faults(&particulars));
+        add("particulars.values", particulars::find_faults(&particulars));
         // A faulty section is replaced by an empty one, so that the other checks continue.
-        let quoted_vectors = quoted(&raw, &keys).unwrap_or_else(|fault| {
+        let quoted_vectors = read_quoted_vectors(&raw, &keys).unwrap_or_else(|fault| {
             add("quoted_vectors", vec![fault]);
             BTreeMap::new()
         });
@@ -205,11 +205,11 @@ impl Vessel {
             add("models", found.err().into_iter().collect());
         }
         for (index, trials) in raw.free_running.iter().enumerate() {
-            let found = trials.check(&keys);
+            let found = trials.check_figures(&keys);
             add(&format!("free_running.{index}"), found.err().into_iter().collect());
         }
-        let at = |(field, message): &FieldError| blame.at(field, message);
-        match FileError::of_all(faults.iter().map(at)) {
+        let at = |(field, message): &FieldError| blame.field_error(field, message);
+        match FileError::from_faults(faults.iter().map(at)) {
             Some(error) => Err(error),
             None => Ok(Self { file: raw, particulars, quoted_vectors }),
         }
@@ -222,7 +222,7 @@ impl Vessel {
 
     /// Particular, stated or derived, in SI units.
     pub fn particular(&self, name: &str) -> Option<f64> {
-        particulars::value(&self.particulars, name)
+        particulars::particular_value(&self.particulars, name)
     }
 
     /// Keys of its sources.
@@ -234,10 +234,10 @@ impl Vessel {
 type FieldError = (String, String);
 
 /// Longest name of a licence, bytes; anything longer is a text.
-const LONGEST_LICENCE: usize = 80;
+const MAX_LICENCE_LENGTH: usize = 80;
 
 /// Faults of the names and the scale.
-fn head(raw: &VesselFile) -> Vec<FieldError> {
+fn check_header(raw: &VesselFile) -> Vec<FieldError> {
     let slug =
         |field: &str, name: &str| Some((field.to_owned(), check_slug(name).err()?.to_string()));
     let is_scale = raw.scale.is_none_or(|scale| (1.0..=1000.0).contains(&scale));
@@ -249,12 +249,12 @@ fn head(raw: &VesselFile) -> Vec<FieldError> {
     slugs.into_iter().chain([scale]).flatten().collect()
 }
 
-fn of_licences(licences: &BTreeMap<String, String>, sources: &[&str]) -> Vec<FieldError> {
+fn check_licences(licences: &BTreeMap<String, String>, sources: &[&str]) -> Vec<FieldError> {
     let one = |(key, licence): (&String, &String)| {
         let message = if !sources.contains(&key.as_str()) {
             format!("`{key}` is not listed under `sources`")
-        } else if licence.trim().is_empty() || licence.len() > LONGEST_LICENCE {
-            format!("name the licence in 1 to {LONGEST_LICENCE} bytes, or say `none stated`")
+        } else if licence.trim().is_empty() || licence.len() > MAX_LICENCE_LENGTH {
+            format!("name the licence in 1 to {MAX_LICENCE_LENGTH} bytes, or say `none stated`")
         } else {
             return None;
         };
@@ -263,14 +263,14 @@ fn of_licences(licences: &BTreeMap<String, String>, sources: &[&str]) -> Vec<Fie
     licences.iter().filter_map(one).collect()
 }
 
-fn quoted(
+fn read_quoted_vectors(
     raw: &VesselFile,
     keys: &[&str],
 ) -> Result<BTreeMap<String, BTreeMap<String, f64>>, FieldError> {
     let one = |(name, vector): (&String, &QuotedVectorFile)| {
         let section =
             Section { source: Some(vector.source.clone()), values: vector.values.clone() };
-        let values: BTreeMap<String, Quantity> = section.resolve(keys)?;
+        let values: BTreeMap<String, Quantity> = section.resolve_values(keys)?;
         Ok((
             name.clone(),
             values.into_iter().map(|(name, quantity)| (name, quantity.value)).collect(),
@@ -316,7 +316,7 @@ fn check_model<'a>(
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::{Vessel, of_licences};
+    use super::{Vessel, check_licences};
 
     /// The lines of a refusal, without the file's name.
     fn refused(text: &str) -> Vec<String> {
@@ -356,7 +356,10 @@ mod tests {
     fn a_licence_is_of_a_listed_source_and_a_name() {
         let of = |key: &str, licence: &str| {
             let licences = [(key.to_owned(), licence.to_owned())].into();
-            of_licences(&licences, &["a"]).into_iter().map(|(field, _)| field).collect::<Vec<_>>()
+            check_licences(&licences, &["a"])
+                .into_iter()
+                .map(|(field, _)| field)
+                .collect::<Vec<_>>()
         };
         assert!(of("a", "MIT").is_empty());
         assert_eq!(of("b", "MIT"), ["b"]);

@@ -12,7 +12,7 @@ mod line_break;
 mod structure;
 
 pub use brackets::MAX_DEPTH;
-pub(crate) use structure::faults;
+pub(crate) use structure::find_faults;
 
 use serde::de::DeserializeOwned;
 
@@ -25,7 +25,7 @@ pub const MAX_ITEMS: usize = 400_000;
 
 /// Largest number of faults that are reported of one document: each is searched in the text, and a
 /// text may have hundreds of thousands.
-pub const MOST_FAULTS: usize = 20;
+pub const MAX_FAULTS: usize = 20;
 
 /// Error of a YAML text.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -41,8 +41,8 @@ pub struct YamlError {
 ///
 /// # Errors
 /// Returns an error with the parser's own line and column, or the limit that the text exceeds.
-pub fn read<T: DeserializeOwned>(text: &str) -> Result<T, YamlError> {
-    check(text)?;
+pub fn read_document<T: DeserializeOwned>(text: &str) -> Result<T, YamlError> {
+    check_limits(text)?;
     let refused = |error: serde_yaml::Error| YamlError {
         line: error.location().map(|place| place.line()),
         message: error.to_string(),
@@ -53,13 +53,13 @@ pub fn read<T: DeserializeOwned>(text: &str) -> Result<T, YamlError> {
 }
 
 /// Refuses a text that the parser should not read.
-fn check(text: &str) -> Result<(), YamlError> {
+fn check_limits(text: &str) -> Result<(), YamlError> {
     if text.len() > MAX_BYTES {
         let message = format!("a YAML document of {} bytes; {MAX_BYTES} are the most", text.len());
         return Err(YamlError { line: None, message });
     }
     // The size of the parsed document is bounded by the number of its items.
-    let items = items(text.as_bytes());
+    let items = count_items(text.as_bytes());
     if items > MAX_ITEMS {
         let message = format!("a YAML document of some {items} items; {MAX_ITEMS} are the most");
         return Err(YamlError { line: None, message });
@@ -68,12 +68,12 @@ fn check(text: &str) -> Result<(), YamlError> {
         let line = 1 + text.as_bytes()[..place].iter().filter(|byte| **byte == b'\n').count();
         YamlError { line: Some(line), message: format!("{message} at line {line}") }
     };
-    aliases::check(text.as_bytes()).map_err(at)?;
-    brackets::check(text.as_bytes()).map_err(at)
+    aliases::check_aliases(text.as_bytes()).map_err(at)?;
+    brackets::check_brackets(text.as_bytes()).map_err(at)
 }
 
 /// Returns an upper bound of the number of items.
-fn items(bytes: &[u8]) -> usize {
+fn count_items(bytes: &[u8]) -> usize {
     let is_mark = |at: usize| match bytes[at] {
         b',' | b'[' | b'{' | b'?' => true,
         b':' | b'-' => bytes.get(at + 1).is_none_or(|next| !next.is_ascii_graphic()),

@@ -11,7 +11,7 @@ use crate::error::FileError;
 use crate::law::Law;
 use crate::model::Model;
 use crate::vessel::Vessel;
-use entries::Entries;
+use entries::ZooEntries;
 
 static MODELS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../../models");
 
@@ -19,17 +19,17 @@ static MODELS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../../models");
 /// most calls need one law and one ship.
 #[derive(Debug, Clone)]
 pub struct Zoo {
-    laws: Entries<Law>,
-    effects: Entries<Effect>,
-    vessels: Entries<Vessel>,
+    laws: ZooEntries<Law>,
+    effects: ZooEntries<Effect>,
+    vessels: ZooEntries<Vessel>,
 }
 
 impl Default for Zoo {
     fn default() -> Self {
         Self {
-            laws: Entries::new(Law::parse),
-            effects: Entries::new(Effect::parse),
-            vessels: Entries::new(Vessel::parse),
+            laws: ZooEntries::new(Law::parse),
+            effects: ZooEntries::new(Effect::parse),
+            vessels: ZooEntries::new(Vessel::parse),
         }
     }
 }
@@ -40,11 +40,11 @@ impl Zoo {
     ///
     /// # Errors
     /// Returns an error for a file that is not text.
-    pub fn embedded() -> Result<Self, FileError> {
+    pub fn load_embedded() -> Result<Self, FileError> {
         Ok(Self {
-            laws: Entries::embedded(MODELS.get_dir("laws"), Law::parse)?,
-            effects: Entries::embedded(MODELS.get_dir("effects"), Effect::parse)?,
-            vessels: Entries::embedded(MODELS.get_dir("vessels"), Vessel::parse)?,
+            laws: ZooEntries::from_folder(MODELS.get_dir("laws"), Law::parse)?,
+            effects: ZooEntries::from_folder(MODELS.get_dir("effects"), Effect::parse)?,
+            vessels: ZooEntries::from_folder(MODELS.get_dir("vessels"), Vessel::parse)?,
         })
     }
 
@@ -52,8 +52,9 @@ impl Zoo {
     ///
     /// # Errors
     /// Returns the error of the first file that cannot be read or is not consistent.
-    pub fn check(&self) -> Result<(), FileError> {
-        let faults = [self.laws.fault(), self.effects.fault(), self.vessels.fault()];
+    pub fn check_all(&self) -> Result<(), FileError> {
+        let faults =
+            [self.laws.first_fault(), self.effects.first_fault(), self.vessels.first_fault()];
         if let Some(fault) = faults.into_iter().flatten().next() {
             return Err(fault.clone());
         }
@@ -67,7 +68,7 @@ impl Zoo {
     /// The errors of [`Law::parse`].
     pub fn add_law(&mut self, file: &str, text: &str) -> Result<Arc<Law>, FileError> {
         let law = Arc::new(Law::parse(file, text)?);
-        self.laws.keep(&law.name, text, Arc::clone(&law));
+        self.laws.insert(&law.name, text, Arc::clone(&law));
         Ok(law)
     }
 
@@ -77,7 +78,7 @@ impl Zoo {
     /// The errors of [`Effect::parse`].
     pub fn add_effect(&mut self, file: &str, text: &str) -> Result<Arc<Effect>, FileError> {
         let effect = Arc::new(Effect::parse(file, text)?);
-        self.effects.keep(&effect.name, text, Arc::clone(&effect));
+        self.effects.insert(&effect.name, text, Arc::clone(&effect));
         Ok(effect)
     }
 
@@ -90,7 +91,7 @@ impl Zoo {
         let vessel = Arc::new(Vessel::parse(file, text)?);
         let in_file = |error| FileError { file: file.to_owned(), ..error };
         self.check_models(&vessel).map_err(in_file)?;
-        self.vessels.keep(vessel.name(), text, Arc::clone(&vessel));
+        self.vessels.insert(vessel.name(), text, Arc::clone(&vessel));
         Ok(vessel)
     }
 
@@ -103,22 +104,22 @@ impl Zoo {
             .file
             .models
             .iter()
-            .try_for_each(|model| self.published(vessel, Some(&model.name)).map(|_| ()))
+            .try_for_each(|model| self.published_model(vessel, Some(&model.name)).map(|_| ()))
     }
 
     /// Returns a published model of a vessel, by default its first.
     ///
     /// # Errors
     /// Returns an error that names the missing law, model, parameter or coefficient.
-    pub fn published(&self, vessel: &Vessel, name: Option<&str>) -> Result<Model, FileError> {
+    pub fn published_model(&self, vessel: &Vessel, name: Option<&str>) -> Result<Model, FileError> {
         let models = &vessel.file.models;
         let wanted = name
             .map_or_else(|| models.first(), |name| models.iter().find(|model| model.name == name));
         let law_name = wanted.map_or("", |model| model.law.as_str());
         match self.laws.get(law_name) {
-            Some(law) => Model::published(vessel, name, law),
+            Some(law) => Model::from_published(vessel, name, law),
             // There is no such model: the constructor reports it.
-            None if wanted.is_none() => Model::published(vessel, name, &Law::empty()),
+            None if wanted.is_none() => Model::from_published(vessel, name, &Law::empty_law()),
             None => Err(FileError {
                 file: vessel.name().to_owned(),
                 line: None,
@@ -136,15 +137,15 @@ impl Zoo {
     ///
     /// # Errors
     /// Returns an error that names what is not in the zoo, and the known ones.
-    pub fn model(&self, name: &str) -> Result<Model, FileError> {
+    pub fn find_model(&self, name: &str) -> Result<Model, FileError> {
         let (ship, model) =
             name.split_once('/').map_or((name, None), |(ship, model)| (ship, Some(model)));
-        let vessel = self.vessels.get(ship).ok_or_else(|| self.no_ship(ship))?;
-        self.published(vessel, model)
+        let vessel = self.vessels.get(ship).ok_or_else(|| self.unknown_ship_error(ship))?;
+        self.published_model(vessel, model)
     }
 
     /// Error of an unknown ship.
-    pub fn no_ship(&self, name: &str) -> FileError {
+    pub fn unknown_ship_error(&self, name: &str) -> FileError {
         let message = format!(
             "there is no such ship in the zoo and no such file; the zoo has {}",
             self.vessels.names().join(", ")
@@ -175,32 +176,32 @@ impl Zoo {
 
     /// Every law, in the order of names.
     pub fn laws(&self) -> impl Iterator<Item = &Arc<Law>> {
-        self.laws.all()
+        self.laws.read_all()
     }
 
     /// Every effect, in the order of names.
     pub fn effects(&self) -> impl Iterator<Item = &Arc<Effect>> {
-        self.effects.all()
+        self.effects.read_all()
     }
 
     /// Every vessel, in the order of names.
     pub fn vessels(&self) -> impl Iterator<Item = &Arc<Vessel>> {
-        self.vessels.all()
+        self.vessels.read_all()
     }
 
     /// Text of a law's file.
     pub fn law_text(&self, name: &str) -> Option<&str> {
-        self.laws.text(name)
+        self.laws.document_text(name)
     }
 
     /// Text of an effect's file.
     pub fn effect_text(&self, name: &str) -> Option<&str> {
-        self.effects.text(name)
+        self.effects.document_text(name)
     }
 
     /// Text of a vessel's file.
     pub fn vessel_text(&self, name: &str) -> Option<&str> {
-        self.vessels.text(name)
+        self.vessels.document_text(name)
     }
 }
 
@@ -211,8 +212,8 @@ mod tests {
 
     #[test]
     fn every_embedded_file_reads_by_the_name_of_its_document() {
-        let zoo = Zoo::embedded().unwrap();
-        zoo.check().unwrap_or_else(|error| panic!("{error}"));
+        let zoo = Zoo::load_embedded().unwrap();
+        zoo.check_all().unwrap_or_else(|error| panic!("{error}"));
         for (folder, known) in [
             ("laws", zoo.laws().map(|law| law.name.clone()).collect::<Vec<_>>()),
             ("effects", zoo.effects().map(|effect| effect.name.clone()).collect()),
@@ -231,11 +232,11 @@ mod tests {
 
     #[test]
     fn a_fault_of_a_file_is_found_by_the_check() {
-        let mut zoo = Zoo::embedded().unwrap();
+        let mut zoo = Zoo::load_embedded().unwrap();
         let text = zoo.vessel_text("mariner").unwrap().replace("law: abkowitz", "law: none-such");
         assert!(zoo.add_vessel("m.yaml", &text).unwrap_err().to_string().contains("none-such"));
         let text = zoo.law_text("low-speed").unwrap().replace("name: low-speed", "name: abkowitz");
         zoo.add_law("law.yaml", &text).unwrap();
-        assert!(zoo.check().is_err());
+        assert!(zoo.check_all().is_err());
     }
 }

@@ -6,14 +6,17 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use sistership_model::{Model, Zoo};
-use sistership_simulation::plant::{MAX_INPUTS, Plant, Work};
-use sistership_simulation::state::{States, at, straight};
-use sistership_simulation::tape::Lanes;
+use sistership_simulation::plant::{MAX_INPUTS, Plant, PlantWorkspace};
+use sistership_simulation::state::{LaneStates, at, straight_state};
+use sistership_simulation::tape::LaneValues;
 
 /// States of a turn that differ by lane, with inputs.
-fn point<const N: usize>(plant: &Plant, model: &Model) -> (States<N>, [Lanes<N>; MAX_INPUTS]) {
+fn point<const N: usize>(
+    plant: &Plant,
+    model: &Model,
+) -> (LaneStates<N>, [LaneValues<N>; MAX_INPUTS]) {
     let speed_m_s = model.speed_m_s.unwrap_or(7.0);
-    let mut states = straight(speed_m_s).data.0[0].map(|value| [value; N]);
+    let mut states = straight_state(speed_m_s).data.0[0].map(|value| [value; N]);
     let spread = |most: f64| std::array::from_fn(|lane| most * (lane as f64 + 1.0) / N as f64);
     states[at::V] = spread(-0.1 * speed_m_s);
     states[at::R] = spread(0.005);
@@ -31,16 +34,16 @@ fn point<const N: usize>(plant: &Plant, model: &Model) -> (States<N>, [Lanes<N>;
 }
 
 fn lanes<const N: usize>(criterion: &mut Criterion, name: &str) {
-    let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
-    let model = zoo.model(name).unwrap_or_else(|error| panic!("{error}"));
+    let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
+    let model = zoo.find_model(name).unwrap_or_else(|error| panic!("{error}"));
     let plant = Plant::new(&model, zoo.law(&model.law).expect("the law of a zoo model"))
         .unwrap_or_else(|error| panic!("{error}"));
     let (states, inputs) = point::<N>(&plant, &model);
-    let mut work = Work::<N>::default();
+    let mut work = PlantWorkspace::<N>::default();
     let mut group = criterion.benchmark_group(format!("{}, {name}", model.law));
     group.throughput(Throughput::Elements(N as u64));
     group.bench_function(format!("{N} at a time"), |bencher| {
-        bencher.iter(|| plant.rates(black_box(&states), black_box(&inputs), &mut work));
+        bencher.iter(|| plant.state_rates(black_box(&states), black_box(&inputs), &mut work));
     });
     group.finish();
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use sistership_model::Model;
 pub use sistership_model::learned::{
-    AdditionFormulas, AdditionGradient, Instant, LAW_RATES, LearnedBranch,
+    AdditionFormulas, AdditionGradient, CorrectionInstant, CorrectionModel, LAW_RATES,
 };
 
 use crate::equations::PlantError;
@@ -13,7 +13,7 @@ use crate::equations::PlantError;
 ///
 /// # Errors
 /// Returns an error if the model has a learned correction whose weights have not been attached.
-pub fn attached(model: &Model) -> Result<Option<Arc<dyn LearnedBranch>>, PlantError> {
+pub fn attached_correction(model: &Model) -> Result<Option<Arc<dyn CorrectionModel>>, PlantError> {
     let Some(branch) = &model.branch else { return Ok(None) };
     let missing =
         || PlantError::Weights { model: model.name.clone(), sha256: branch.weights_sha256.clone() };

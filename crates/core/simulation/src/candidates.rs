@@ -12,19 +12,20 @@ use std::collections::BTreeMap;
 use sistership_formula::Expr;
 use sistership_model::Model;
 use sistership_model::coefficient::{Axis, split_submodel};
-use sistership_model::law::{Law, STATES, indicator};
+use sistership_model::law::{Law, STATES, indicator_name};
 
 use crate::equations::{
-    Attitude, EquationsOfMotion, Lowering, PlantError, constant_mobility, mobility,
+    AxesAttitude, EquationLowering, EquationsOfMotion, PlantError, constant_mobility,
+    solve_mobility,
 };
 use crate::integrate::Method;
 use crate::plant::check_inputs;
 use crate::state::{StateVector, at};
-use crate::tape::{Lanes, Slots, Tape};
-use crate::wide::{Wide, widest};
+use crate::tape::{LaneValues, Tape, TapeResults};
+use crate::wide::{SimdKernel, dispatch_simd};
 
-const PLANE: [usize; 4] = [at::U, at::V, at::R, at::PSI];
-const ROLL: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
+const STATES_3DOF: [usize; 4] = [at::U, at::V, at::R, at::PSI];
+const STATES_4DOF: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
 /// States in the order in which the tape takes them.
 const TAPE_ORDER: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];
 
@@ -35,7 +36,7 @@ pub struct CandidateSystem {
     front: Tape,
     tape: Tape,
     states: &'static [usize],
-    axes: Vec<Sum>,
+    axes: Vec<AxisForce>,
     /// Outputs of the mass matrix entries over the axes, row by row.
     mass: Vec<Option<usize>>,
     /// Accelerations per unit force on each axis, where masses do not change.
@@ -50,15 +51,15 @@ pub struct CandidateSystem {
 
 /// Right-hand side of the equation of one axis.
 #[derive(Debug, Clone)]
-struct Sum {
+struct AxisForce {
     scale: usize,
     rest: usize,
-    groups: Vec<Group>,
+    groups: Vec<TermGroup>,
 }
 
 /// Terms under one condition.
 #[derive(Debug, Clone)]
-struct Group {
+struct TermGroup {
     /// Output of the condition; `None` for terms without a condition.
     gate: Option<usize>,
     /// Index of each coefficient with the output of its term.
@@ -74,13 +75,13 @@ impl CandidateSystem {
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
         let equations = EquationsOfMotion::new(model, law)?;
         check_inputs(equations.law())?;
-        equations.without_lags_or_instruments("candidates")?;
-        Builder {
+        equations.reject_lags_and_instruments("candidates")?;
+        CandidateBuilder {
             equations: &equations,
-            lowering: Lowering::new(&equations, &equations.names()),
+            lowering: EquationLowering::new(&equations, &equations.tape_input_names()),
             names: Vec::new(),
         }
-        .build()
+        .build_system()
     }
 
     /// Names of the coefficients, in the order in which their values are given.
@@ -89,7 +90,7 @@ impl CandidateSystem {
     }
 
     /// Places in the state vector of the simulated states.
-    pub fn states(&self) -> &'static [usize] {
+    pub fn state_places(&self) -> &'static [usize] {
         self.states
     }
 
@@ -100,28 +101,30 @@ impl CandidateSystem {
 
     /// Returns the inputs of a step at an instant: the inputs of the law, followed by the values
     /// that depend on them alone.
-    pub fn prepared(&self, inputs: &[f64]) -> Vec<f64> {
+    pub fn prepare_inputs(&self, inputs: &[f64]) -> Vec<f64> {
         // The hoisted front depends on no state, so that zeros will do.
         let point: Vec<f64> =
             std::iter::repeat_n(0.0, STATES.len()).chain(inputs.iter().copied()).collect();
-        inputs.iter().copied().chain(self.front.values(&point)).collect()
+        inputs.iter().copied().chain(self.front.evaluate_point(&point)).collect()
     }
 }
 
-struct Builder<'e> {
+struct CandidateBuilder<'e> {
     equations: &'e EquationsOfMotion<'e>,
-    lowering: Lowering<'e>,
+    lowering: EquationLowering<'e>,
     names: Vec<String>,
 }
 
-impl Builder<'_> {
-    fn build(mut self) -> Result<CandidateSystem, PlantError> {
+impl CandidateBuilder<'_> {
+    fn build_system(mut self) -> Result<CandidateSystem, PlantError> {
         let (equations, order) = (self.equations, self.equations.axes());
-        let axes = order.iter().map(|&axis| self.sum(axis)).collect::<Result<_, _>>()?;
-        let mass = self.lowering.mass_matrix(order)?;
-        let additions = self.lowering.additions(order)?;
-        let states: &'static [usize] = if equations.law().has_roll() { &ROLL } else { &PLANE };
-        let kinematics = self.kinematics(states)?;
+        let axes =
+            order.iter().map(|&axis| self.build_axis_force(axis)).collect::<Result<_, _>>()?;
+        let mass = self.lowering.add_mass_matrix(order)?;
+        let additions = self.lowering.add_effect_accelerations(order)?;
+        let states: &'static [usize] =
+            if equations.law().has_roll() { &STATES_4DOF } else { &STATES_3DOF };
+        let kinematics = self.build_kinematics(states)?;
         // The front holds what depends on inputs alone: it is evaluated once for all candidates.
         let (front, tape) = self.lowering.finish_hoisted(STATES.len());
         let constant = constant_mobility(equations, &tape, &mass)?;
@@ -141,40 +144,44 @@ impl Builder<'_> {
         })
     }
 
-    fn sum(&mut self, axis: Axis) -> Result<Sum, PlantError> {
+    fn build_axis_force(&mut self, axis: Axis) -> Result<AxisForce, PlantError> {
         let equations = self.equations;
         let of_law = &equations.law().axes[&axis];
         let (scale, rest) =
-            (self.lowering.output(&of_law.scale)?, self.lowering.output(&of_law.rest)?);
+            (self.lowering.add_output(&of_law.scale)?, self.lowering.add_output(&of_law.rest)?);
         // The key `None` collects the shared coefficients, which have no condition.
         let mut groups: BTreeMap<Option<&str>, Vec<(usize, usize)>> = BTreeMap::new();
-        for name in equations.coefficients(axis) {
+        for name in equations.axis_coefficients(axis) {
             let (shared, submodel) = split_submodel(name);
             // Checks that the deviation exists; its condition multiplies the sum of all terms under
             // it.
-            equations.term(name)?;
-            let entry = (self.names.len(), self.lowering.output(&equations.term(shared)?)?);
+            equations.unscaled_regressor(name)?;
+            let entry = (
+                self.names.len(),
+                self.lowering.add_output(&equations.unscaled_regressor(shared)?)?,
+            );
             self.names.push(name.clone());
             groups.entry(submodel).or_default().push(entry);
         }
         let group = |(submodel, terms): (Option<&str>, Vec<(usize, usize)>)| {
             let gate = submodel
-                .map(|submodel| self.lowering.output(&Expr::Name(indicator(submodel))))
+                .map(|submodel| self.lowering.add_output(&Expr::Name(indicator_name(submodel))))
                 .transpose()?;
-            Ok(Group { gate, terms })
+            Ok(TermGroup { gate, terms })
         };
         let groups = groups.into_iter().map(group).collect::<Result<_, PlantError>>()?;
-        Ok(Sum { scale, rest, groups })
+        Ok(AxisForce { scale, rest, groups })
     }
 
-    fn kinematics(&mut self, states: &[usize]) -> Result<Vec<(usize, usize)>, PlantError> {
+    fn build_kinematics(&mut self, states: &[usize]) -> Result<Vec<(usize, usize)>, PlantError> {
         let mut all = Vec::new();
         // The position is left out: no force depends on it.
         for place in [at::PSI, at::PHI] {
             let Some(row) = states.iter().position(|&state| state == place) else { continue };
             all.push((
                 row,
-                self.lowering.output(&self.equations.kinematic(place, Attitude::Upright)?)?,
+                self.lowering
+                    .add_output(&self.equations.kinematic_rate(place, AxesAttitude::Upright)?)?,
             ));
         }
         Ok(all)
@@ -185,12 +192,12 @@ impl Builder<'_> {
 #[derive(Debug)]
 pub struct CandidateRun<'a, const L: usize> {
     system: &'a CandidateSystem,
-    states: Vec<Lanes<L>>,
-    at: Vec<Lanes<L>>,
-    rates: [Vec<Lanes<L>>; 4],
-    inputs: Vec<Lanes<L>>,
-    work: Slots<L>,
-    forces: Vec<Lanes<L>>,
+    states: Vec<LaneValues<L>>,
+    at: Vec<LaneValues<L>>,
+    rates: [Vec<LaneValues<L>>; 4],
+    inputs: Vec<LaneValues<L>>,
+    work: TapeResults<L>,
+    forces: Vec<LaneValues<L>>,
 }
 
 impl<'a, const L: usize> CandidateRun<'a, L> {
@@ -202,14 +209,14 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
             states: states(),
             at: states(),
             rates: std::array::from_fn(|_| states()),
-            inputs: Vec::with_capacity(STATES.len() + system.tape.inputs().len()),
-            work: Slots::default(),
+            inputs: Vec::with_capacity(STATES.len() + system.tape.input_names().len()),
+            work: TapeResults::default(),
             forces: vec![[0.0; L]; system.axes.len()],
         }
     }
 
     /// Starts a lane at a state.
-    pub fn start(&mut self, lane: usize, state: &StateVector) {
+    pub fn start_lane(&mut self, lane: usize, state: &StateVector) {
         self.states
             .iter_mut()
             .zip(self.system.states)
@@ -218,43 +225,43 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
 
     /// Values of a simulated state in every lane; rows are counted as in
     /// [`CandidateSystem::states`], so that u, v and r come first.
-    pub fn state(&self, row: usize) -> &Lanes<L> {
+    pub fn state_lanes(&self, row: usize) -> &LaneValues<L> {
         &self.states[row]
     }
 
     /// Rate of change of a state at the start of the last step, in every lane.
-    pub fn rate(&self, row: usize) -> &Lanes<L> {
+    pub fn rate_lanes(&self, row: usize) -> &LaneValues<L> {
         &self.rates[0][row]
     }
 
     /// Advances every lane by one step. `inputs` are [prepared](CandidateSystem::prepared) inputs
     /// at the start, middle and end of the step; Euler's method reads the first only.
-    pub fn step(
+    pub fn advance_step(
         &mut self,
         method: Method,
         step_s: f64,
-        inputs: [&[Lanes<L>]; 3],
+        inputs: [&[LaneValues<L>]; 3],
         coefficients: &[f64],
     ) {
         // One dispatch for each step: all of its stages are compiled for the same vector width.
-        widest(Step { run: self, method, step_s, inputs, coefficients });
+        dispatch_simd(CandidateStep { run: self, method, step_s, inputs, coefficients });
     }
 
     #[inline(always)]
-    fn advance(
+    fn integrate_step(
         &mut self,
         method: Method,
         h: f64,
-        [start, middle, end]: [&[Lanes<L>]; 3],
+        [start, middle, end]: [&[LaneValues<L>]; 3],
         coefficients: &[f64],
     ) {
         // Stage i starts from the state moved along the rate of stage i - 1 (classical Runge-Kutta
         // method).
-        self.stage(0, 0.0, start, coefficients);
+        self.evaluate_stage(0, 0.0, start, coefficients);
         if method == Method::Rk4 {
-            self.stage(1, 0.5 * h, middle, coefficients);
-            self.stage(2, 0.5 * h, middle, coefficients);
-            self.stage(3, h, end, coefficients);
+            self.evaluate_stage(1, 0.5 * h, middle, coefficients);
+            self.evaluate_stage(2, 0.5 * h, middle, coefficients);
+            self.evaluate_stage(3, h, end, coefficients);
         }
         // `x + h / 6 (k1 + 2 (k2 + k3) + k4)`
         let [a, b, c, d] = &self.rates;
@@ -274,7 +281,13 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
     /// Evaluates the rates of one stage at the state moved by `reach` along the rates of the stage
     /// before.
     #[inline(always)]
-    fn stage(&mut self, i: usize, reach: f64, inputs: &[Lanes<L>], coefficients: &[f64]) {
+    fn evaluate_stage(
+        &mut self,
+        i: usize,
+        reach: f64,
+        inputs: &[LaneValues<L>],
+        coefficients: &[f64],
+    ) {
         for (row, at) in self.at.iter_mut().enumerate() {
             *at = self.states[row];
             if i > 0 {
@@ -290,59 +303,65 @@ impl<'a, const L: usize> CandidateRun<'a, L> {
         }
         self.inputs.extend_from_slice(inputs);
         // One evaluation of the tape serves all lanes.
-        self.system.tape.run(&self.inputs, &mut self.work);
-        self.system.forces(&self.work, coefficients, &mut self.forces);
-        self.system.rates(&self.work, &self.forces, &mut self.rates[i]);
+        self.system.tape.evaluate(&self.inputs, &mut self.work);
+        self.system.axis_forces(&self.work, coefficients, &mut self.forces);
+        self.system.state_rates(&self.work, &self.forces, &mut self.rates[i]);
     }
 }
 
-struct Step<'r, 'a, 'i, const L: usize> {
+struct CandidateStep<'r, 'a, 'i, const L: usize> {
     run: &'r mut CandidateRun<'a, L>,
     method: Method,
     step_s: f64,
-    inputs: [&'i [Lanes<L>]; 3],
+    inputs: [&'i [LaneValues<L>]; 3],
     coefficients: &'i [f64],
 }
 
-impl<const L: usize> Wide for Step<'_, '_, '_, L> {
+impl<const L: usize> SimdKernel for CandidateStep<'_, '_, '_, L> {
     #[inline(always)]
-    fn go(self) {
-        self.run.advance(self.method, self.step_s, self.inputs, self.coefficients);
+    fn run(self) {
+        self.run.integrate_step(self.method, self.step_s, self.inputs, self.coefficients);
     }
 }
 
 impl CandidateSystem {
     #[inline(always)]
-    fn forces<const L: usize>(
+    fn axis_forces<const L: usize>(
         &self,
-        work: &[Lanes<L>],
+        work: &[LaneValues<L>],
         coefficients: &[f64],
-        out: &mut [Lanes<L>],
+        out: &mut [LaneValues<L>],
     ) {
         for (sum, out) in self.axes.iter().zip(out) {
             let mut total = [0.0; L];
-            for Group { gate, terms } in &sum.groups {
-                let gate = gate.map_or([1.0; L], |gate| self.tape.read(gate, work));
+            for TermGroup { gate, terms } in &sum.groups {
+                let gate = gate.map_or([1.0; L], |gate| self.tape.output_lanes(gate, work));
                 // A submodel whose condition holds in no lane costs nothing.
                 if gate.iter().all(|gate| *gate == 0.0) {
                     continue;
                 }
                 let mut own = [0.0; L];
                 for &(coefficient, term) in terms {
-                    let (c, term) = (coefficients[coefficient], self.tape.at(term, work));
+                    let (c, term) = (coefficients[coefficient], self.tape.output_ref(term, work));
                     (0..L).for_each(|lane| own[lane] += c * term[lane]);
                 }
                 (0..L).for_each(|lane| total[lane] += gate[lane] * own[lane]);
             }
             // Force on the axis: scale times the sum of the terms, plus the rest without
             // coefficients.
-            let (scale, rest) = (self.tape.at(sum.scale, work), self.tape.at(sum.rest, work));
+            let (scale, rest) =
+                (self.tape.output_ref(sum.scale, work), self.tape.output_ref(sum.rest, work));
             (0..L).for_each(|lane| out[lane] = scale[lane] * total[lane] + rest[lane]);
         }
     }
 
     #[inline(always)]
-    fn rates<const L: usize>(&self, work: &[Lanes<L>], forces: &[Lanes<L>], out: &mut [Lanes<L>]) {
+    fn state_rates<const L: usize>(
+        &self,
+        work: &[LaneValues<L>],
+        forces: &[LaneValues<L>],
+        out: &mut [LaneValues<L>],
+    ) {
         let n = self.axes.len();
         match &self.constant {
             Some(mobility) => {
@@ -353,30 +372,35 @@ impl CandidateSystem {
                     }
                 }
             }
-            None => self.solved(work, forces, out),
+            None => self.solve_accelerations(work, forces, out),
         }
         // Accelerations that effects add follow those of the forces, in the order of the axes.
         for (out, output) in out.iter_mut().zip(&self.additions) {
             if let Some(output) = output {
-                let added = self.tape.at(*output, work);
+                let added = self.tape.output_ref(*output, work);
                 (0..L).for_each(|lane| out[lane] += added[lane]);
             }
         }
         for &(row, output) in &self.kinematics {
-            out[row] = self.tape.read(output, work);
+            out[row] = self.tape.output_lanes(output, work);
         }
     }
 
     /// Accelerations for masses that change with the motion: the mass matrix is solved for each
     /// lane.
-    fn solved<const L: usize>(&self, work: &[Lanes<L>], forces: &[Lanes<L>], out: &mut [Lanes<L>]) {
+    fn solve_accelerations<const L: usize>(
+        &self,
+        work: &[LaneValues<L>],
+        forces: &[LaneValues<L>],
+        out: &mut [LaneValues<L>],
+    ) {
         let n = self.axes.len();
         // The matrix is solved for one lane at a time.
         for lane in 0..L {
             let entry = |output: Option<usize>| {
-                output.map_or(0.0, |output| self.tape.at(output, work)[lane])
+                output.map_or(0.0, |output| self.tape.output_ref(output, work)[lane])
             };
-            let solved = mobility(n, |i, j| entry(self.mass[i * n + j]));
+            let solved = solve_mobility(n, |i, j| entry(self.mass[i * n + j]));
             for (row, out) in out[..n].iter_mut().enumerate() {
                 out[lane] = forces
                     .iter()

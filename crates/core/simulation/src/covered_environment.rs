@@ -11,22 +11,22 @@ use sistership_model::trial::{Channel, Trial};
 pub(crate) fn covered_environment(trials: &[&Trial]) -> BTreeMap<String, [f64; 2]> {
     let wind = [Channel::WindSpeed, Channel::ApparentWindSpeed].into_iter().filter_map(|channel| {
         let recorded = trials.iter().filter_map(|trial| trial.channel(channel));
-        Some((channel.name().to_owned(), range(recorded.flatten().copied())?))
+        Some((channel.name().to_owned(), value_range(recorded.flatten().copied())?))
     });
-    let depths: Vec<Option<[f64; 2]>> = trials.iter().map(|trial| depth(trial)).collect();
+    let depths: Vec<Option<[f64; 2]>> = trials.iter().map(|trial| depth_range(trial)).collect();
     let is_recorded = depths.iter().any(Option::is_some);
     let ends = depths.into_iter().flat_map(|depth| depth.unwrap_or([DEEP_M, DEEP_M]));
-    let depth = range(ends).filter(|_| is_recorded);
+    let depth = value_range(ends).filter(|_| is_recorded);
     wind.chain(depth.map(|range| (Channel::Depth.name().to_owned(), range))).collect()
 }
 
-fn depth(trial: &Trial) -> Option<[f64; 2]> {
-    let recorded = trial.channel(Channel::Depth).map(|depths| range(depths.iter().copied()));
+fn depth_range(trial: &Trial) -> Option<[f64; 2]> {
+    let recorded = trial.channel(Channel::Depth).map(|depths| value_range(depths.iter().copied()));
     // A trial without recorded depths may state a constant one.
     recorded.flatten().or_else(|| trial.depth_m.map(|depth| [depth, depth]))
 }
 
-fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+fn value_range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     values.fold(None, |range, value| match range {
         Some([low, high]) => Some([value.min(low), value.max(high)]),
         None => Some([value, value]),

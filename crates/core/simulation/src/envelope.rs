@@ -3,11 +3,11 @@
 
 use sistership_model::{Model, particulars};
 
-use crate::state::{StateVector, at, speed};
+use crate::state::{StateVector, at, horizontal_speed};
 
 /// Limits of the speed, yaw rate and roll angle of a ship.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Envelope {
+pub struct MotionEnvelope {
     speed_m_s: f64,
     yaw_rate_rad_s: f64,
     roll_rad: f64,
@@ -16,14 +16,14 @@ pub struct Envelope {
 /// Reason and time at which a simulation was stopped.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("stopped at {t_s:.1} s: {reason}")]
-pub struct Stopped {
+pub struct SimulationStop {
     /// Time of the stop, s.
     pub t_s: f64,
     /// Description of the quantity that left the physical range.
     pub reason: String,
 }
 
-impl Envelope {
+impl MotionEnvelope {
     /// Creates the limits for a ship of length `lpp_m` that approaches at `approach_speed_m_s`:
     /// three times that speed (at least a Froude number of 0.1), a yaw rate of six times speed over
     /// length, 80 degrees of roll.
@@ -39,8 +39,8 @@ impl Envelope {
 
     /// Returns the limits of the ship of a model; `None` if it gives no length or no approach
     /// speed.
-    pub fn of(model: &Model) -> Option<Self> {
-        let value = |name: &str| particulars::value(&model.particulars, name);
+    pub fn from_model(model: &Model) -> Option<Self> {
+        let value = |name: &str| particulars::particular_value(&model.particulars, name);
         Some(Self::new(value("lpp_m")?, model.speed_m_s.or(value("service_speed_m_s"))?))
     }
 
@@ -63,15 +63,15 @@ impl Envelope {
     ///
     /// # Errors
     /// Returns an error that names the quantity outside the range.
-    pub fn check(&self, t_s: f64, state: &StateVector) -> Result<(), Stopped> {
-        let stop = |reason: String| Err(Stopped { t_s, reason });
+    pub fn check_state(&self, t_s: f64, state: &StateVector) -> Result<(), SimulationStop> {
+        let stop = |reason: String| Err(SimulationStop { t_s, reason });
         if state.iter().any(|value| !value.is_finite()) {
             return stop("the state is no longer a number".into());
         }
-        if speed(state) > self.speed_m_s {
+        if horizontal_speed(state) > self.speed_m_s {
             return stop(format!(
                 "speed {} m/s exceeds {:.2} m/s",
-                figure(speed(state)),
+                format_magnitude(horizontal_speed(state)),
                 self.speed_m_s
             ));
         }
@@ -79,7 +79,7 @@ impl Envelope {
             let limit = self.yaw_rate_rad_s.to_degrees();
             return stop(format!(
                 "yaw rate {} deg/s exceeds {limit:.2} deg/s",
-                figure(state[at::R].to_degrees())
+                format_magnitude(state[at::R].to_degrees())
             ));
         }
         if state[at::PHI].abs() > self.roll_rad {
@@ -93,6 +93,6 @@ impl Envelope {
 }
 
 /// Formats a number of any size: a diverged motion may have reached huge values.
-fn figure(value: f64) -> String {
+fn format_magnitude(value: f64) -> String {
     if value.abs() < 1e4 { format!("{value:.2}") } else { format!("{value:.1e}") }
 }

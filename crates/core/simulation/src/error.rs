@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use sistership_model::trial::{Channel, Trial};
 
-use crate::recorded::Replay;
-use crate::state::RECORDED;
+use crate::recorded::TrialReplay;
+use crate::state::RECORDED_CHANNELS;
 
 /// Sums of squared differences by channel, which add over trials.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -16,15 +16,15 @@ pub struct SquaredError {
 impl SquaredError {
     /// Differences of one simulated trial; that of the heading is wrapped to half a turn. Roll
     /// counts for 4-DOF models only.
-    pub fn of(trial: &Trial, replay: &Replay) -> Self {
+    pub fn from_trial(trial: &Trial, replay: &TrialReplay) -> Self {
         let mut error = Self::default();
-        let compared = RECORDED.iter().filter(|(channel, _)| {
+        let compared = RECORDED_CHANNELS.iter().filter(|(channel, _)| {
             replay.has_roll || !matches!(channel, Channel::Phi | Channel::P)
         });
         for &(channel, index) in compared {
             let Some(measured) = trial.channel(channel) else { continue };
             let square = |(state, &k): (&crate::StateVector, &usize)| {
-                difference(channel, state[index], measured[k]).powi(2)
+                channel_difference(channel, state[index], measured[k]).powi(2)
             };
             let sum = replay.track.states.iter().zip(&replay.samples).map(square).sum();
             error.sums.insert(channel, (sum, replay.samples.len()));
@@ -42,7 +42,7 @@ impl SquaredError {
     }
 
     /// Root mean square by channel name; channels without simulated samples are absent.
-    pub fn rmse(&self) -> BTreeMap<String, f64> {
+    pub fn rmse_by_channel(&self) -> BTreeMap<String, f64> {
         let named =
             |channel: &Channel| Some((channel.name().to_owned(), self.channel_rmse(*channel)?));
         self.sums.keys().filter_map(named).collect()
@@ -57,13 +57,13 @@ impl SquaredError {
     }
 }
 
-fn difference(channel: Channel, simulated: f64, measured: f64) -> f64 {
+fn channel_difference(channel: Channel, simulated: f64, measured: f64) -> f64 {
     let plain = simulated - measured;
-    if channel == Channel::Psi { wrapped(plain) } else { plain }
+    if channel == Channel::Psi { wrap_angle(plain) } else { plain }
 }
 
 /// Wraps an angle to (-pi, pi].
-pub fn wrapped(angle: f64) -> f64 {
+pub fn wrap_angle(angle: f64) -> f64 {
     let turn = std::f64::consts::TAU;
     // Subtracts the nearest whole number of turns.
     angle - turn * (angle / turn).round()
@@ -79,7 +79,7 @@ pub fn standard_deviations(trials: &[&Trial]) -> BTreeMap<Channel, f64> {
             values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
         (!values.is_empty()).then(|| variance.sqrt())
     };
-    RECORDED.iter().filter_map(|&(channel, _)| Some((channel, of(channel)?))).collect()
+    RECORDED_CHANNELS.iter().filter_map(|&(channel, _)| Some((channel, of(channel)?))).collect()
 }
 
 /// The standardised mean squared error of Wakita et al. 2022, Eq. 26: the mean over samples of the
@@ -91,5 +91,5 @@ pub fn standardised_mse(error: &SquaredError, deviations: &BTreeMap<Channel, f64
         // A channel without variation has no scale, and does not count.
         (*deviation > 0.0).then(|| (rmse / deviation).powi(2))
     };
-    RECORDED[..6].iter().filter_map(term).sum()
+    RECORDED_CHANNELS[..6].iter().filter_map(term).sum()
 }

@@ -4,14 +4,14 @@ use sistership_model::vessel::Steering;
 
 /// Steering gear with a limit, a rate limit and a time constant, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gear {
+pub struct SteeringGear {
     limit_rad: f64,
     rate_rad_s: f64,
     time_constant_s: f64,
     band_rad: f64,
 }
 
-impl Gear {
+impl SteeringGear {
     /// Creates the steering gear that a model describes.
     pub fn new(steering: &Steering) -> Self {
         Self {
@@ -50,7 +50,7 @@ impl Gear {
 
     /// Returns the rudder rate, rad/s. A gear without a time constant would chatter about its
     /// order: an order within reach of one step of `step_s` is therefore met exactly at its end.
-    pub fn rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {
+    pub fn rudder_rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {
         let order = order_rad.clamp(-self.limit_rad, self.limit_rad);
         // Not `clamp`, which panics on an order that is NaN.
         let order = match self.band_rad > 0.0 {
@@ -70,9 +70,9 @@ mod tests {
     #[test]
     fn an_order_within_the_play_is_not_followed() {
         let steering = Steering { limit_deg: 35.0, rate_deg_s: 2.0, ..Steering::default() };
-        let gear = Gear::new(&steering).with_band(0.02);
-        assert_eq!(gear.rate(0.1, 0.09, 1.0), 0.0);
-        assert!((gear.rate(0.1, 0.05, 1.0) - 0.03).abs() < 1e-12, "to the edge of the play");
-        assert!((gear.rate(-0.1, -0.05, 1.0) + 0.03).abs() < 1e-12);
+        let gear = SteeringGear::new(&steering).with_band(0.02);
+        assert_eq!(gear.rudder_rate(0.1, 0.09, 1.0), 0.0);
+        assert!((gear.rudder_rate(0.1, 0.05, 1.0) - 0.03).abs() < 1e-12, "to the edge of the play");
+        assert!((gear.rudder_rate(-0.1, -0.05, 1.0) + 0.03).abs() < 1e-12);
     }
 }

@@ -13,12 +13,12 @@ use std::collections::BTreeMap;
 use sistership_model::trial::{Channel, Trial};
 
 use crate::error::{SquaredError, standardised_mse};
-use crate::recorded::Replay;
-use crate::state::RECORDED;
+use crate::recorded::TrialReplay;
+use crate::state::RECORDED_CHANNELS;
 
 /// Standardised squared error per channel for samples that were not simulated because the
 /// simulation stopped: that of two independent motions of the same variance, `E (a - b)^2 = 2 s^2`.
-const UNRELATED: f64 = 2.0;
+const STOPPED_ERROR: f64 = 2.0;
 
 /// Standardised squared errors of simulations with one restart interval.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -44,10 +44,10 @@ impl HorizonErrors {
     /// [`UNRELATED`].
     pub fn with_stops(
         trials: &[&Trial],
-        runs: &[Replay],
+        runs: &[TrialReplay],
         deviations: &BTreeMap<Channel, f64>,
     ) -> Self {
-        let one = |(trial, run): (&&Trial, &Replay)| error_with_stop(trial, run, deviations);
+        let one = |(trial, run): (&&Trial, &TrialReplay)| error_with_stop(trial, run, deviations);
         let each: Vec<f64> = trials.iter().zip(runs).map(one).collect();
         // The overall mean weights each trial by its number of samples.
         let weighted = trials.iter().zip(&each).map(|(trial, error)| error * trial.len() as f64);
@@ -56,24 +56,25 @@ impl HorizonErrors {
     }
 }
 
-fn error_with_stop(trial: &Trial, run: &Replay, deviations: &BTreeMap<Channel, f64>) -> f64 {
-    let error = standardised_mse(&SquaredError::of(trial, run), deviations);
+fn error_with_stop(trial: &Trial, run: &TrialReplay, deviations: &BTreeMap<Channel, f64>) -> f64 {
+    let error = standardised_mse(&SquaredError::from_trial(trial, run), deviations);
     // Channels count that the trial has and whose deviation is not zero.
     let is_compared = |channel: &Channel| {
         trial.channel(*channel).is_some() && deviations.get(channel).is_some_and(|d| *d > 0.0)
     };
     // The first six recorded channels are those of the standardised error; roll is not among them.
-    let channels = RECORDED[..6].iter().filter(|(channel, _)| is_compared(channel)).count();
+    let channels =
+        RECORDED_CHANNELS[..6].iter().filter(|(channel, _)| is_compared(channel)).count();
     // Mean over all samples of the trial: simulated ones with their error, the others as unrelated
     // motions.
     let (simulated, all) = (run.samples.len() as f64, trial.len().max(1) as f64);
-    (error * simulated + UNRELATED * channels as f64 * (all - simulated)) / all
+    (error * simulated + STOPPED_ERROR * channels as f64 * (all - simulated)) / all
 }
 
 /// Returns the criterion and the share of each trial in it: the mean of the shares is the geometric
 /// mean of the means over trials, and their scatter is, to first order, that of the criterion's
 /// logarithm times the criterion.
-pub fn combined(horizons: &[HorizonErrors]) -> (f64, Vec<f64>) {
+pub fn combine_horizons(horizons: &[HorizonErrors]) -> (f64, Vec<f64>) {
     // A single interval needs no combination.
     match horizons {
         [] => return (0.0, Vec::new()),
@@ -90,18 +91,18 @@ pub fn combined(horizons: &[HorizonErrors]) -> (f64, Vec<f64>) {
     // First-order expansion of the geometric mean about the means over trials.
     let share = |trial: usize| {
         let ratios = horizons.iter().zip(&means);
-        let ratios = ratios.map(|(horizon, mean)| horizon.each[trial] / mean.max(LEAST));
+        let ratios = ratios.map(|(horizon, mean)| horizon.each[trial] / mean.max(SMALLEST_ERROR));
         scale * ratios.sum::<f64>() / horizons.len() as f64
     };
     (mean, (0..trials).map(share).collect())
 }
 
 /// Lower bound of an error before its logarithm is taken.
-const LEAST: f64 = f64::MIN_POSITIVE;
+const SMALLEST_ERROR: f64 = f64::MIN_POSITIVE;
 
 fn geometric_mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let count = values.len().max(1) as f64;
-    (values.map(|value| value.max(LEAST).ln()).sum::<f64>() / count).exp()
+    (values.map(|value| value.max(SMALLEST_ERROR).ln()).sum::<f64>() / count).exp()
 }
 
 #[cfg(test)]
@@ -115,25 +116,25 @@ mod tests {
     #[test]
     fn one_horizon_is_itself() {
         let only = horizon(&[0.1, 0.3]);
-        assert_eq!(combined(std::slice::from_ref(&only)), (only.mean, only.each));
-        assert_eq!(combined(&[]), (0.0, Vec::new()));
+        assert_eq!(combine_horizons(std::slice::from_ref(&only)), (only.mean, only.each));
+        assert_eq!(combine_horizons(&[]), (0.0, Vec::new()));
     }
 
     #[test]
     fn horizons_count_by_ratios_and_trials_by_their_share() {
         let (short, long) = (horizon(&[0.01, 0.03]), horizon(&[2.0, 6.0]));
-        let (mean, each) = combined(&[short.clone(), long]);
+        let (mean, each) = combine_horizons(&[short.clone(), long]);
         assert!((mean - (0.02_f64 * 4.0).sqrt()).abs() < 1e-12);
         assert!((each.iter().sum::<f64>() / 2.0 - mean).abs() < 1e-12);
         assert!((each[1] / each[0] - 3.0).abs() < 1e-12);
         // Twice the long error is a factor of the root of two, whatever its size.
-        let (doubled, _) = combined(&[short, horizon(&[4.0, 12.0])]);
+        let (doubled, _) = combine_horizons(&[short, horizon(&[4.0, 12.0])]);
         assert!((doubled / mean - 2.0_f64.sqrt()).abs() < 1e-12);
     }
 
     #[test]
     fn errors_of_nothing_are_finite() {
-        let (mean, each) = combined(&[horizon(&[0.0, 0.0]), horizon(&[1.0, 1.0])]);
+        let (mean, each) = combine_horizons(&[horizon(&[0.0, 0.0]), horizon(&[1.0, 1.0])]);
         assert!(mean < 1e-100 && each.iter().all(|error| error.is_finite()));
     }
 }

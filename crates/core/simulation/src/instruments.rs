@@ -5,9 +5,9 @@ use sistership_model::law::Law;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
 
-use crate::equations::{EquationsOfMotion, Lowering, PlantError};
-use crate::state::{RECORDED, StateVector, at};
-use crate::tape::{Lanes, Slots, Tape};
+use crate::equations::{EquationLowering, EquationsOfMotion, PlantError};
+use crate::state::{RECORDED_CHANNELS, StateVector, at};
+use crate::tape::{LaneValues, Tape, TapeResults};
 
 /// Names that the formula of an instrument may use, with their places: states, then their rates.
 const STATES: [(&str, usize); 8] = [
@@ -23,7 +23,7 @@ const STATES: [(&str, usize); 8] = [
 
 /// Instruments: readings of every channel that differs from the true state.
 #[derive(Debug)]
-pub struct Instruments {
+pub struct InstrumentModel {
     tape: Tape,
     /// Place in the state vector and output of the tape.
     says: Vec<(usize, usize)>,
@@ -31,12 +31,12 @@ pub struct Instruments {
 
 /// Workspace of readings, kept from sample to sample to avoid allocation.
 #[derive(Debug, Default)]
-pub struct Room {
-    values: Vec<Lanes<1>>,
-    work: Slots<1>,
+pub struct InstrumentWorkspace {
+    values: Vec<LaneValues<1>>,
+    work: TapeResults<1>,
 }
 
-impl Instruments {
+impl InstrumentModel {
     /// Creates the instruments of trials whose velocities are measured in a frame; `None` if every
     /// instrument reads the true value.
     ///
@@ -47,40 +47,43 @@ impl Instruments {
         frame: VelocityFrame,
     ) -> Result<Option<Self>, PlantError> {
         let law = equations.law();
-        let mut lowering = Lowering::new(equations, &input_names(law));
+        let mut lowering = EquationLowering::new(equations, &tape_input_names(law));
         let mut says = Vec::new();
-        for (channel, expr) in readings(law, frame) {
+        for (channel, expr) in reading_formulas(law, frame) {
             // A channel that is not part of the state has no reading to replace.
-            let Some(&(_, place)) = RECORDED.iter().find(|(known, _)| *known == channel) else {
+            let Some(&(_, place)) = RECORDED_CHANNELS.iter().find(|(known, _)| *known == channel)
+            else {
                 continue;
             };
-            says.push((place, lowering.output(&expr)?));
+            says.push((place, lowering.add_output(&expr)?));
         }
         Ok((!says.is_empty()).then(|| Self { tape: lowering.finish(), says }))
     }
 
     /// Returns the readings at a state with its rate of change.
-    pub fn read(
+    pub fn read_state(
         &self,
         state: &StateVector,
         rate: &StateVector,
         inputs: &[f64],
-        room: &mut Room,
+        room: &mut InstrumentWorkspace,
     ) -> StateVector {
-        let Room { values, work } = room;
+        let InstrumentWorkspace { values, work } = room;
         values.clear();
         values.extend(STATES.iter().map(|&(_, place)| [state[place]]));
         values.extend(STATES.iter().map(|&(_, place)| [rate[place]]));
         values.extend(inputs.iter().map(|&value| [value]));
-        self.tape.run(values, work);
+        self.tape.evaluate(values, work);
         let mut said = *state;
-        self.says.iter().for_each(|&(place, output)| said[place] = self.tape.read(output, work)[0]);
+        self.says
+            .iter()
+            .for_each(|&(place, output)| said[place] = self.tape.output_lanes(output, work)[0]);
         said
     }
 }
 
 /// Input names of the tape of instruments: states, their rates, the inputs of the law.
-pub fn input_names(law: &Law) -> Vec<String> {
+pub fn tape_input_names(law: &Law) -> Vec<String> {
     let states = STATES.iter().map(|(name, _)| (*name).to_owned());
     let rates = STATES.iter().map(|(name, _)| format!("{name}_dot"));
     states.chain(rates).chain(law.inputs.keys().cloned()).collect()
@@ -93,7 +96,7 @@ pub const THROUGH_WATER: [(Channel, usize); 2] =
 
 /// Formulas of the channels that do not read the true value: a log that measures through the water
 /// reads the velocity relative to the water.
-pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, Expr)> {
+pub fn reading_formulas(law: &Law, frame: VelocityFrame) -> Vec<(Channel, Expr)> {
     let ground = [Channel::U, Channel::V];
     // Separate channels of a log, and `u` and `v` in the frame of the water, are speeds through the
     // water.
@@ -101,16 +104,16 @@ pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, Expr)> {
     let axes = ground.into_iter().zip(ground).filter(|_| frame == VelocityFrame::Water);
     let through_water = axes.chain(logs.clone());
     let mut readings: Vec<(Channel, Expr)> =
-        through_water.filter_map(|(log, own)| Some((log, seen(law, own)?))).collect();
+        through_water.filter_map(|(log, own)| Some((log, relative_velocity(law, own)?))).collect();
     for (channel, expr) in &law.dressing.measures {
         match readings.iter_mut().find(|(known, _)| known == channel) {
             // The second effect on a channel acts on the reading after the first one.
-            Some((_, before)) => *before = expr_of(expr, *channel, before),
+            Some((_, before)) => *before = substitute_reading(expr, *channel, before),
             None => {
                 // Without an error a log reads the velocity of the same direction.
                 let own = logs.clone().find(|(log, _)| log == channel).map(|(_, own)| own);
                 let truth = Expr::Name(own.unwrap_or(*channel).name().into());
-                readings.push((*channel, expr_of(expr, *channel, &truth)));
+                readings.push((*channel, substitute_reading(expr, *channel, &truth)));
             }
         }
     }
@@ -118,12 +121,12 @@ pub fn readings(law: &Law, frame: VelocityFrame) -> Vec<(Channel, Expr)> {
 }
 
 /// Formula of an instrument in terms of its reading without an error.
-fn expr_of(expr: &Expr, channel: Channel, without_error: &Expr) -> Expr {
-    expr.renamed(&|name| (name == channel.name()).then(|| without_error.clone()))
+fn substitute_reading(expr: &Expr, channel: Channel, without_error: &Expr) -> Expr {
+    expr.replace_names(&|name| (name == channel.name()).then(|| without_error.clone()))
 }
 
 /// Velocity relative to the water for a velocity over the ground; `None` without a current.
-fn seen(law: &Law, channel: Channel) -> Option<Expr> {
+fn relative_velocity(law: &Law, channel: Channel) -> Option<Expr> {
     // Values of effects on the inflow are named `effect/form.seen.channel`.
     let name = law.values.keys().find(|name| name.ends_with(&format!(".seen.{channel}")))?;
     Some(Expr::Name(name.clone()))
@@ -131,18 +134,21 @@ fn seen(law: &Law, channel: Channel) -> Option<Expr> {
 
 /// Iterations of the search for a true state: few, so that it stays near the reading where an error
 /// is too large for the search to converge.
-const ROUNDS: usize = 16;
+const MAX_ITERATIONS: usize = 16;
 /// Largest remaining difference in any state at which the search ends.
-const FOUND: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-9;
 
 /// Returns the true state for the readings `said`, by fixed-point iteration: each step subtracts
 /// the difference between the readings at the state and `said`.
-pub fn truth(said: &StateVector, mut read: impl FnMut(&StateVector) -> StateVector) -> StateVector {
+pub fn invert_readings(
+    said: &StateVector,
+    mut read: impl FnMut(&StateVector) -> StateVector,
+) -> StateVector {
     let mut state = *said;
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ITERATIONS {
         let error = read(&state) - said;
         state -= error;
-        if error.amax() < FOUND {
+        if error.amax() < TOLERANCE {
             break;
         }
     }

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::state::{StateVector, States};
-use crate::tape::Lanes;
+use crate::state::{LaneStates, StateVector};
+use crate::tape::LaneValues;
 
 /// An integration method.
 #[derive(
@@ -22,7 +22,7 @@ pub enum Method {
 impl Method {
     /// Returns the state one step later; `rate(fraction, state)` is the rate of change at that
     /// fraction of the step.
-    pub fn step(
+    pub fn advance_state(
         self,
         state: &StateVector,
         step_s: f64,
@@ -44,21 +44,21 @@ impl Method {
 impl Method {
     /// Advances ships in lockstep as [`Method::step`] does, each with its own step length; the
     /// rounding is the same.
-    pub fn steps<const N: usize>(
+    pub fn advance_states<const N: usize>(
         self,
-        states: &States<N>,
-        steps_s: &Lanes<N>,
-        mut rates: impl FnMut(Stage, &States<N>) -> States<N>,
-    ) -> States<N> {
-        let first = rates(Stage::Start, states);
+        states: &LaneStates<N>,
+        steps_s: &LaneValues<N>,
+        mut rates: impl FnMut(StepStage, &LaneStates<N>) -> LaneStates<N>,
+    ) -> LaneStates<N> {
+        let first = rates(StepStage::Start, states);
         if self == Self::Euler {
-            return moved(states, &first, steps_s);
+            return move_states(states, &first, steps_s);
         }
         // Stages at 0, h/2, h/2 and h.
         let half = steps_s.map(|step_s| 0.5 * step_s);
-        let second = rates(Stage::Middle, &moved(states, &first, &half));
-        let third = rates(Stage::Middle, &moved(states, &second, &half));
-        let fourth = rates(Stage::End, &moved(states, &third, steps_s));
+        let second = rates(StepStage::Middle, &move_states(states, &first, &half));
+        let third = rates(StepStage::Middle, &move_states(states, &second, &half));
+        let fourth = rates(StepStage::End, &move_states(states, &third, steps_s));
         // The order of additions is that of `step`, so that both round alike.
         let mut slope = first;
         for (place, slope) in slope.iter_mut().enumerate() {
@@ -68,13 +68,13 @@ impl Method {
                     + fourth[place][lane];
             }
         }
-        moved(states, &slope, &steps_s.map(|step_s| step_s / 6.0))
+        move_states(states, &slope, &steps_s.map(|step_s| step_s / 6.0))
     }
 }
 
 /// Point of a step at which a rate is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
+pub enum StepStage {
     /// Start of the step.
     Start,
     /// Middle of the step.
@@ -83,7 +83,7 @@ pub enum Stage {
     End,
 }
 
-impl Stage {
+impl StepStage {
     /// Fraction of the step.
     pub fn fraction(self) -> f64 {
         [0.0, 0.5, 1.0][self as usize]
@@ -91,7 +91,11 @@ impl Stage {
 }
 
 #[inline]
-fn moved<const N: usize>(states: &States<N>, rates: &States<N>, by_s: &Lanes<N>) -> States<N> {
+fn move_states<const N: usize>(
+    states: &LaneStates<N>,
+    rates: &LaneStates<N>,
+    by_s: &LaneValues<N>,
+) -> LaneStates<N> {
     let mut out = *states;
     for (out, rate) in out.iter_mut().zip(rates) {
         (0..N).for_each(|lane| out[lane] += rate[lane] * by_s[lane]);
@@ -113,7 +117,7 @@ mod tests {
             (rate[0], rate[1]) = (-s[1], s[0]);
             rate
         };
-        (0..steps).for_each(|_| state = method.step(&state, h, rate));
+        (0..steps).for_each(|_| state = method.advance_state(&state, h, rate));
         (state[0] - 1.0).hypot(state[1])
     }
 

@@ -39,12 +39,12 @@ impl<'a> MonotoneCubic<'a> {
 
     /// Value at a fraction `w` of the way from sample `k` to the next; for the last sample, the
     /// sample.
-    pub fn at(&self, k: usize, w: f64) -> f64 {
-        if k + 1 < self.values.len() { self.between(k, w) } else { self.values[k] }
+    pub fn interpolate_at(&self, k: usize, w: f64) -> f64 {
+        if k + 1 < self.values.len() { self.interpolate_between(k, w) } else { self.values[k] }
     }
 
     /// Value at a fraction `w` of the way from sample `k` to the next.
-    pub fn between(&self, k: usize, w: f64) -> f64 {
+    pub fn interpolate_between(&self, k: usize, w: f64) -> f64 {
         let step = self.t[k + 1] - self.t[k];
         let (a, b) = (self.values[k], self.values[k + 1]);
         let (da, db) = (self.slopes[k] * step, self.slopes[k + 1] * step);
@@ -56,7 +56,7 @@ impl<'a> MonotoneCubic<'a> {
 
 /// Returns the response of a first-order lag to samples that are interpolated linearly; it starts
 /// in steady state.
-pub fn lagged(t: &[f64], values: &[f64], time_constant_s: f64) -> Vec<f64> {
+pub fn apply_lag(t: &[f64], values: &[f64], time_constant_s: f64) -> Vec<f64> {
     let mut out = values.to_vec();
     for k in 1..values.len() {
         // Interval in time constants; the lower limit avoids a division by zero.
@@ -71,7 +71,7 @@ pub fn lagged(t: &[f64], values: &[f64], time_constant_s: f64) -> Vec<f64> {
 
 /// Returns the response of a dead band (play, or backlash): it follows the samples only where they
 /// leave a band of half width `half` about it, and starts with the first sample.
-pub fn within_band(values: &[f64], half: f64) -> Vec<f64> {
+pub fn apply_dead_band(values: &[f64], half: f64) -> Vec<f64> {
     let mut out = values.to_vec();
     for k in 1..values.len() {
         out[k] = out[k - 1].max(values[k] - half).min(values[k] + half);
@@ -86,19 +86,25 @@ mod tests {
     #[test]
     fn what_is_behind_a_play_follows_at_a_distance_and_turns_late() {
         let recorded = [0.0, 0.5, 3.0, 2.5, 1.5, 0.0, 0.5];
-        assert_eq!(within_band(&recorded, 1.0), [0.0, 0.0, 2.0, 2.0, 2.0, 1.0, 1.0]);
-        assert_eq!(within_band(&recorded, 0.0), recorded);
+        assert_eq!(apply_dead_band(&recorded, 1.0), [0.0, 0.0, 2.0, 2.0, 2.0, 1.0, 1.0]);
+        assert_eq!(apply_dead_band(&recorded, 0.0), recorded);
     }
 
     #[test]
     fn lines_are_exact_and_steps_do_not_overshoot() {
         let t = [0.0, 1.0, 2.0, 3.0, 4.0];
         let line = MonotoneCubic::new(&t, vec![0.0, 2.0, 4.0, 6.0, 8.0]);
-        assert!((line.between(1, 0.3) - 2.6).abs() < 1e-12);
+        assert!((line.interpolate_between(1, 0.3) - 2.6).abs() < 1e-12);
         let step = [0.0, 0.0, 1.0, 1.0, 1.0];
         let cubic = MonotoneCubic::new(&t, step.to_vec());
-        assert!((0..=100).all(|i| (0.0..=1.0).contains(&cubic.between(1, f64::from(i) / 100.0))));
-        assert_eq!((cubic.between(1, 0.0), cubic.between(1, 1.0)), (0.0, 1.0));
+        assert!(
+            (0..=100)
+                .all(|i| (0.0..=1.0).contains(&cubic.interpolate_between(1, f64::from(i) / 100.0)))
+        );
+        assert_eq!(
+            (cubic.interpolate_between(1, 0.0), cubic.interpolate_between(1, 1.0)),
+            (0.0, 1.0)
+        );
     }
 
     #[test]
@@ -109,15 +115,17 @@ mod tests {
         for k in 1..10 {
             let exact = (-(t[k] + 0.25)).exp();
             let linear = 0.5 * (values[k] + values[k + 1]);
-            assert!((cubic.between(k, 0.5) - exact).abs() < 0.2 * (linear - exact).abs());
+            assert!(
+                (cubic.interpolate_between(k, 0.5) - exact).abs() < 0.2 * (linear - exact).abs()
+            );
         }
     }
 
     #[test]
     fn a_lag_follows_a_ramp_one_time_constant_behind() {
         let t: Vec<f64> = (0..200).map(|k| 0.5 * f64::from(k)).collect();
-        let out = lagged(&t, &t, 3.0);
+        let out = apply_lag(&t, &t, 3.0);
         assert!((out[199] - (t[199] - 3.0)).abs() < 1e-9);
-        assert!(lagged(&t, &t, 0.0).iter().zip(&t).all(|(a, b)| (a - b).abs() < 1e-6));
+        assert!(apply_lag(&t, &t, 0.0).iter().zip(&t).all(|(a, b)| (a - b).abs() < 1e-6));
     }
 }

@@ -27,10 +27,10 @@ pub mod tape;
 pub mod validity;
 pub mod wide;
 
-pub use envelope::{Envelope, Stopped};
+pub use envelope::{MotionEnvelope, SimulationStop};
 pub use equations::PlantError;
 pub use integrate::Method;
 pub use plant::Plant;
-pub use ship::{Order, Run, Ship};
-pub use side_by_side::SideBySide;
+pub use ship::{HelmOrder, RunSettings, Ship};
+pub use side_by_side::ShipEnsemble;
 pub use state::{StateVector, Trajectory};

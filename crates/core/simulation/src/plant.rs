@@ -9,14 +9,14 @@ use sistership_model::Model;
 use sistership_model::coefficient::Axis;
 use sistership_model::law::Law;
 
-use crate::equations::{Coefficients, EquationsOfMotion, Lowering, PlantError};
+use crate::equations::{CoefficientBinding, EquationLowering, EquationsOfMotion, PlantError};
 use crate::tape::Tape;
 
-pub use listed::Listed;
-pub use rate::Work;
+pub use listed::PlantListing;
+pub use rate::PlantWorkspace;
 
 /// Inputs at an instant, in the order of the law's inputs.
-pub type Inputs = [f64; MAX_INPUTS];
+pub type LawInputs = [f64; MAX_INPUTS];
 
 /// Largest number of inputs that a law may declare.
 pub const MAX_INPUTS: usize = 16;
@@ -25,7 +25,7 @@ pub const MAX_INPUTS: usize = 16;
 #[derive(Debug)]
 pub struct Plant {
     tape: Tape,
-    layout: Layout,
+    layout: OutputLayout,
     /// Accelerations per unit force on each axis, where masses do not change.
     mobility: Option<Matrix4<f64>>,
     input_names: Vec<String>,
@@ -38,7 +38,7 @@ pub struct Plant {
 
 /// Outputs of the tape by meaning.
 #[derive(Debug, Clone, Default)]
-struct Layout {
+struct OutputLayout {
     /// Forces by axis in the order X, Y, K, N; `None` for an axis that the law does not have.
     forces: [Option<usize>; 4],
     /// Mass matrix entries in the same order.
@@ -58,7 +58,7 @@ impl Plant {
     /// Returns an error that names what the model does not give, or if the mass matrix cannot be
     /// inverted.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
-        Self::of(&EquationsOfMotion::new(model, law)?, Coefficients::Values)
+        Self::from_equations(&EquationsOfMotion::new(model, law)?, CoefficientBinding::Values)
     }
 
     /// Lowers a model as [`Plant::new`] does, with all coefficients open: values are given with
@@ -66,17 +66,17 @@ impl Plant {
     ///
     /// # Errors
     /// The errors of [`Plant::new`].
-    pub fn open(model: &Model, law: &Law) -> Result<Self, PlantError> {
-        Self::of(&EquationsOfMotion::new(model, law)?, Coefficients::Names)
+    pub fn with_open_coefficients(model: &Model, law: &Law) -> Result<Self, PlantError> {
+        Self::from_equations(&EquationsOfMotion::new(model, law)?, CoefficientBinding::Names)
     }
 
     /// Lowers equations that are set up already, as [`Plant::new`] does.
     ///
     /// # Errors
     /// The errors of [`Plant::new`].
-    pub fn of(
+    pub fn from_equations(
         equations: &EquationsOfMotion<'_>,
-        coefficients: Coefficients,
+        coefficients: CoefficientBinding,
     ) -> Result<Self, PlantError> {
         Self::with_distance(equations, coefficients, None)
     }
@@ -87,21 +87,21 @@ impl Plant {
     /// The errors of [`Plant::new`].
     pub fn with_distance(
         equations: &EquationsOfMotion<'_>,
-        coefficients: Coefficients,
+        coefficients: CoefficientBinding,
         distance: Option<&Expr>,
     ) -> Result<Self, PlantError> {
         let (model, law) = (equations.model(), equations.law());
         check_inputs(law)?;
         let open: Vec<String> = match coefficients {
-            Coefficients::Values => Vec::new(),
-            Coefficients::Names => model.coefficients.keys().cloned().collect(),
+            CoefficientBinding::Values => Vec::new(),
+            CoefficientBinding::Names => model.coefficients.keys().cloned().collect(),
         };
         // Open coefficients follow the inputs of the law on the tape.
         let names: Vec<String> =
-            equations.names().into_iter().chain(open.iter().cloned()).collect();
-        let mut lowering = Lowering::new(equations, &names);
-        let mut layout = lay_out(equations, &mut lowering, coefficients)?;
-        layout.distance = distance.map(|distance| lowering.output(distance)).transpose()?;
+            equations.tape_input_names().into_iter().chain(open.iter().cloned()).collect();
+        let mut lowering = EquationLowering::new(equations, &names);
+        let mut layout = build_layout(equations, &mut lowering, coefficients)?;
+        layout.distance = distance.map(|distance| lowering.add_output(distance)).transpose()?;
         let tape = lowering.finish();
         // A mass matrix with a determinant of zero or less is not physical.
         let mobility = match constant_mass(&tape, &layout).map(LU::new) {
@@ -118,8 +118,8 @@ impl Plant {
             open,
             input_names: law.inputs.keys().cloned().collect(),
             input_defaults: law.inputs.values().map(|input| input.default).collect(),
-            lags_s: by_input(equations, &equations.law().dressing.lags)?,
-            bands: by_input(equations, &equations.law().dressing.bands)?,
+            lags_s: values_by_input(equations, &equations.law().dressing.lags)?,
+            bands: values_by_input(equations, &equations.law().dressing.bands)?,
         })
     }
 
@@ -134,12 +134,12 @@ impl Plant {
     }
 
     /// Inputs with a lag: place among the inputs and time constant, s.
-    pub fn lags_s(&self) -> &[(usize, f64)] {
+    pub fn input_lags_s(&self) -> &[(usize, f64)] {
         &self.lags_s
     }
 
     /// Half widths of the dead bands of inputs, with the place among the inputs.
-    pub fn bands(&self) -> &[(usize, f64)] {
+    pub fn dead_bands(&self) -> &[(usize, f64)] {
         &self.bands
     }
 
@@ -162,36 +162,37 @@ pub(crate) fn check_inputs(law: &Law) -> Result<(), PlantError> {
     Ok(())
 }
 
-fn lay_out(
+fn build_layout(
     equations: &EquationsOfMotion<'_>,
-    lowering: &mut Lowering<'_>,
-    coefficients: Coefficients,
-) -> Result<Layout, PlantError> {
+    lowering: &mut EquationLowering<'_>,
+    coefficients: CoefficientBinding,
+) -> Result<OutputLayout, PlantError> {
     let law = equations.law();
-    let mut layout = Layout::default();
+    let mut layout = OutputLayout::default();
     for (row, axis) in Axis::ALL.into_iter().enumerate() {
         if law.axes.contains_key(&axis) {
-            layout.forces[row] = Some(lowering.output(&equations.force(axis, coefficients)?)?);
+            layout.forces[row] =
+                Some(lowering.add_output(&equations.axis_force(axis, coefficients)?)?);
         }
         for (column, other) in Axis::ALL.into_iter().enumerate() {
-            layout.mass[row][column] = lowering.mass(axis, other)?;
+            layout.mass[row][column] = lowering.add_mass_entry(axis, other)?;
         }
     }
     for (place, name) in ["x", "y", "psi", "phi"].into_iter().enumerate() {
         if let Some(expr) = law.kinematics.get(name) {
-            layout.kinematics[place] = Some(lowering.output(expr)?);
+            layout.kinematics[place] = Some(lowering.add_output(expr)?);
         }
     }
     // Several effects may act on one axis: their accelerations add.
     for (axis, expr) in &law.dressing.accelerations {
         let place = &mut layout.accelerations[*axis as usize];
-        *place = Some(lowering.sum(*place, expr)?);
+        *place = Some(lowering.add_to_output(*place, expr)?);
     }
     Ok(layout)
 }
 
 /// Evaluates constant formulas by input; returns the input's place and the value, none below zero.
-fn by_input(
+fn values_by_input(
     equations: &EquationsOfMotion<'_>,
     figures: &[(String, Expr)],
 ) -> Result<Vec<(usize, f64)>, PlantError> {
@@ -199,14 +200,14 @@ fn by_input(
     let one = |(input, expr): &(String, Expr)| {
         let place = law.inputs.get_index_of(input)?;
         // The formula must be constant: its tape has no inputs.
-        let mut lowering = Lowering::new(equations, &[]);
-        let lowered = lowering.output(expr);
-        Some(lowered.map(|_| (place, lowering.finish().values(&[])[0].max(0.0))))
+        let mut lowering = EquationLowering::new(equations, &[]);
+        let lowered = lowering.add_output(expr);
+        Some(lowered.map(|_| (place, lowering.finish().evaluate_point(&[])[0].max(0.0))))
     };
     figures.iter().filter_map(one).collect()
 }
 
-fn constant_mass(tape: &Tape, layout: &Layout) -> Option<Matrix4<f64>> {
+fn constant_mass(tape: &Tape, layout: &OutputLayout) -> Option<Matrix4<f64>> {
     // Absent axes keep the entries of the identity, so that the matrix stays regular.
     let mut mass = Matrix4::identity();
     for (row, columns) in layout.mass.iter().enumerate() {

@@ -12,12 +12,12 @@ use sistership_model::trial::Trial;
 use crate::integrate::Method;
 use crate::lockstep;
 use crate::ship::Ship;
-use part::Part;
+use part::TrialPart;
 pub use rates::instants_along;
 pub use record::MissingChannel;
-use record::Record;
-pub use replayed::Replay;
-pub use truth::as_true_instruments_say;
+use record::TrialRecord;
+pub use replayed::TrialReplay;
+pub use truth::correct_instrument_errors;
 
 /// Settings of the simulation of a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +39,7 @@ impl Default for ReplaySettings {
 
 /// Trial to be simulated by one of several ships that differ in their coefficients alone.
 #[derive(Debug, Clone, Copy)]
-pub struct Recorded<'a> {
+pub struct RecordedTrial<'a> {
     /// The trial.
     pub trial: &'a Trial,
     /// Coefficients of the ship, in the order of [`Ship::open_coefficients`]; empty for a ship
@@ -52,12 +52,12 @@ pub struct Recorded<'a> {
 /// # Errors
 /// Returns an error that names the channel that the trial lacks: velocities, rudder, or another
 /// input of the law without a default.
-pub fn replay(
+pub fn replay_trial(
     ship: &Ship,
     trial: &Trial,
     settings: &ReplaySettings,
-) -> Result<Replay, MissingChannel> {
-    let mut all = replay_all(ship, &[Recorded { trial, coefficients: &[] }], settings)?;
+) -> Result<TrialReplay, MissingChannel> {
+    let mut all = replay_trials(ship, &[RecordedTrial { trial, coefficients: &[] }], settings)?;
     Ok(all.remove(0))
 }
 
@@ -65,35 +65,34 @@ pub fn replay(
 ///
 /// # Errors
 /// Returns the error of [`replay`] for the first trial that lacks a channel.
-pub fn replay_all(
+pub fn replay_trials(
     ship: &Ship,
-    trials: &[Recorded<'_>],
+    trials: &[RecordedTrial<'_>],
     settings: &ReplaySettings,
-) -> Result<Vec<Replay>, MissingChannel> {
+) -> Result<Vec<TrialReplay>, MissingChannel> {
     let records = trials
         .iter()
-        .map(|recorded| Record::new(ship, recorded.trial))
+        .map(|recorded| TrialRecord::new(ship, recorded.trial))
         .collect::<Result<Vec<_>, _>>()?;
     // Every part is a task of its own: lanes of a batch may hold parts of different trials.
-    let mut passages: Vec<Part<'_>> = Vec::new();
+    let mut passages: Vec<TrialPart<'_>> = Vec::new();
     for (index, (record, recorded)) in records.iter().zip(trials).enumerate() {
-        let parts = parts(recorded.trial, settings.restart_s).into_iter();
-        passages
-            .extend(parts.map(|part| {
-                Part::new(index, record, recorded.coefficients, part, settings.step_s)
-            }));
+        let parts = simulation_parts(recorded.trial, settings.restart_s).into_iter();
+        passages.extend(parts.map(|part| {
+            TrialPart::new(index, record, recorded.coefficients, part, settings.step_s)
+        }));
     }
-    lockstep::sail(ship, settings.method, &mut passages);
-    let nothing = || Replay::nothing(ship.has_roll());
-    let mut replays: Vec<Replay> = trials.iter().map(|_| nothing()).collect();
-    passages.into_iter().for_each(|part| part.join(&mut replays));
+    lockstep::run_batch(ship, settings.method, &mut passages);
+    let nothing = || TrialReplay::without_samples(ship.has_roll());
+    let mut replays: Vec<TrialReplay> = trials.iter().map(|_| nothing()).collect();
+    passages.into_iter().for_each(|part| part.append_to_results(&mut replays));
     // Excursions are those of the whole trial, not of its parts.
-    replays.iter_mut().for_each(|replay| replay.outside = ship.leaves(&replay.track));
+    replays.iter_mut().for_each(|replay| replay.outside = ship.find_excursion(&replay.track));
     Ok(replays)
 }
 
 /// Returns the gap-free parts of a trial, divided where the simulation restarts.
-fn parts(trial: &Trial, restart_s: Option<f64>) -> Vec<std::ops::Range<usize>> {
+fn simulation_parts(trial: &Trial, restart_s: Option<f64>) -> Vec<std::ops::Range<usize>> {
     let cut = |segment: std::ops::Range<usize>| {
         let mut starts = vec![segment.start];
         if let Some(restart) = restart_s {

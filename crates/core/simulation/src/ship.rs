@@ -7,20 +7,20 @@ use sistership_model::manifest::VelocityFrame;
 use sistership_model::validity::{Excursion, Region};
 use sistership_model::{Model, particulars};
 
-use crate::branch::{Instant, LearnedBranch, attached};
-use crate::envelope::Envelope;
-use crate::equations::{Coefficients, EquationsOfMotion, PlantError};
-use crate::gear::Gear;
-use crate::instruments::{Instruments, truth};
+use crate::branch::{CorrectionInstant, CorrectionModel, attached_correction};
+use crate::envelope::MotionEnvelope;
+use crate::equations::{CoefficientBinding, EquationsOfMotion, PlantError};
+use crate::gear::SteeringGear;
+use crate::instruments::{InstrumentModel, invert_readings};
 use crate::integrate::Method;
-use crate::plant::{Inputs, MAX_INPUTS, Plant, Work};
-use crate::state::{StateVector, States, Trajectory, at, lane_of};
-use crate::tape::Lanes;
-use crate::validity::leaves;
+use crate::plant::{LawInputs, MAX_INPUTS, Plant, PlantWorkspace};
+use crate::state::{LaneStates, StateVector, Trajectory, at, lane_of};
+use crate::tape::LaneValues;
+use crate::validity::find_excursion;
 
 /// Order to rudder and propeller at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Order {
+pub struct HelmOrder {
     /// Rudder, rad, positive turns to starboard.
     pub delta_rad: f64,
     /// Propeller revolutions, 1/s.
@@ -31,19 +31,19 @@ pub struct Order {
 #[derive(Debug)]
 pub struct Ship {
     plant: Plant,
-    gear: Gear,
-    envelope: Envelope,
-    template: Inputs,
-    slots: Slots,
+    gear: SteeringGear,
+    envelope: MotionEnvelope,
+    template: LawInputs,
+    slots: InputSlots,
     lpp_m: f64,
     approach_speed_m_s: f64,
     approach_n_rps: f64,
     /// Instruments for velocities over the ground, and through the water.
-    instruments: [Option<Instruments>; 2],
+    instruments: [Option<InstrumentModel>; 2],
     /// Range covered by the model's trials.
     validity: Option<Region>,
     /// Learned correction of the law.
-    branch: Option<Arc<dyn LearnedBranch>>,
+    branch: Option<Arc<dyn CorrectionModel>>,
 }
 
 /// Places of the velocities that a learned correction changes.
@@ -51,7 +51,7 @@ const VELOCITIES: [usize; 3] = [at::U, at::V, at::R];
 
 /// Places of the inputs that change during a run.
 #[derive(Debug, Clone, Copy)]
-struct Slots {
+struct InputSlots {
     delta: Option<usize>,
     n: Option<usize>,
     depth: Option<usize>,
@@ -64,9 +64,9 @@ impl Ship {
     /// The errors of [`Plant::new`]; also an error if the model has no length or no approach speed,
     /// or if the weights of its learned correction have not been attached.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
-        let branch = attached(model)?;
-        let equations = EquationsOfMotion::of_foundation(model, law)?;
-        Ok(Self { branch, ..Self::of(&equations, Coefficients::Values)? })
+        let branch = attached_correction(model)?;
+        let equations = EquationsOfMotion::from_foundation(model, law)?;
+        Ok(Self { branch, ..Self::from_equations(&equations, CoefficientBinding::Values)? })
     }
 
     /// Prepares a model as [`Ship::new`] does, for ships whose coefficients are given with each
@@ -74,19 +74,19 @@ impl Ship {
     ///
     /// # Errors
     /// The errors of [`Ship::new`].
-    pub fn sisters(model: &Model, law: &Law) -> Result<Self, PlantError> {
-        let branch = attached(model)?;
-        let equations = EquationsOfMotion::of_foundation(model, law)?;
-        Ok(Self { branch, ..Self::of(&equations, Coefficients::Names)? })
+    pub fn with_open_coefficients(model: &Model, law: &Law) -> Result<Self, PlantError> {
+        let branch = attached_correction(model)?;
+        let equations = EquationsOfMotion::from_foundation(model, law)?;
+        Ok(Self { branch, ..Self::from_equations(&equations, CoefficientBinding::Names)? })
     }
 
-    fn of(
+    fn from_equations(
         equations: &EquationsOfMotion<'_>,
-        coefficients: Coefficients,
+        coefficients: CoefficientBinding,
     ) -> Result<Self, PlantError> {
-        let plant = Plant::of(equations, coefficients)?;
+        let plant = Plant::from_equations(equations, coefficients)?;
         let (model, law) = (equations.model(), equations.law());
-        let instruments = |frame| Instruments::new(equations, frame);
+        let instruments = |frame| InstrumentModel::new(equations, frame);
         let instruments = [instruments(VelocityFrame::Ground)?, instruments(VelocityFrame::Water)?];
         let need = |name: &str, value: Option<f64>| {
             value.ok_or_else(|| PlantError::Missing {
@@ -95,18 +95,18 @@ impl Ship {
                 model: model.name.clone(),
             })
         };
-        let lpp_m = need("lpp_m", particulars::value(&model.particulars, "lpp_m"))?;
+        let lpp_m = need("lpp_m", particulars::particular_value(&model.particulars, "lpp_m"))?;
         // The service speed replaces an approach speed that the model does not give.
-        let service = particulars::value(&model.particulars, "service_speed_m_s");
+        let service = particulars::particular_value(&model.particulars, "service_speed_m_s");
         let speed = need("speed_m_s", model.speed_m_s.or(service))?;
         let place = |name: &str| plant.input_names().iter().position(|known| known == name);
-        let slots = Slots { delta: place("delta"), n: place("n"), depth: place("depth") };
+        let slots = InputSlots { delta: place("delta"), n: place("n"), depth: place("depth") };
         // Inputs that no run changes keep the defaults of the law.
         let mut template = [0.0; MAX_INPUTS];
         for (value, default) in template.iter_mut().zip(plant.input_defaults()) {
             *value = default.unwrap_or(0.0);
         }
-        let envelope = Envelope::new(lpp_m, speed);
+        let envelope = MotionEnvelope::new(lpp_m, speed);
         let domain = model.branch.as_ref().map(|branch| &branch.domain);
         let approach_n_rps = model.revolutions_rps.unwrap_or(0.0);
         // The lag and the dead band of the rudder are part of the steering gear.
@@ -114,9 +114,9 @@ impl Ship {
             let found = figures.iter().find(|(place, _)| Some(*place) == slots.delta);
             found.map_or(0.0, |&(_, figure)| figure)
         };
-        let (lag_s, band_rad) = (of_rudder(plant.lags_s()), of_rudder(plant.bands()));
+        let (lag_s, band_rad) = (of_rudder(plant.input_lags_s()), of_rudder(plant.dead_bands()));
         Ok(Self {
-            gear: Gear::new(&model.steering).with_lag(lag_s).with_band(band_rad),
+            gear: SteeringGear::new(&model.steering).with_lag(lag_s).with_band(band_rad),
             plant,
             instruments,
             envelope,
@@ -133,7 +133,7 @@ impl Ship {
     }
 
     /// Learned correction of the law, if any.
-    pub fn branch(&self) -> Option<&dyn LearnedBranch> {
+    pub fn learned_correction(&self) -> Option<&dyn CorrectionModel> {
         self.branch.as_deref()
     }
 
@@ -190,7 +190,7 @@ impl Ship {
 
     /// Coefficients of another model in the order of the open coefficients; `None` if its names are
     /// not those of this ship.
-    pub fn sister(&self, model: &Model) -> Option<Vec<f64>> {
+    pub fn open_coefficient_values(&self, model: &Model) -> Option<Vec<f64>> {
         let names = self.plant.open_coefficients();
         let same = model.coefficients.len() == names.len()
             // Equal numbers and known names: both sets of names are the same.
@@ -209,27 +209,27 @@ impl Ship {
     }
 
     /// Inputs with a lag: place among the inputs and time constant, s.
-    pub fn lags_s(&self) -> &[(usize, f64)] {
-        self.plant.lags_s()
+    pub fn input_lags_s(&self) -> &[(usize, f64)] {
+        self.plant.input_lags_s()
     }
 
     /// Half widths of the dead bands of inputs, with the place among the inputs.
-    pub fn bands(&self) -> &[(usize, f64)] {
-        self.plant.bands()
+    pub fn dead_bands(&self) -> &[(usize, f64)] {
+        self.plant.dead_bands()
     }
 
     /// Readings of the instruments at a state; `inputs` as in [`Ship::rate_with`].
-    pub fn says(
+    pub fn instrument_readings(
         &self,
         frame: VelocityFrame,
         state: &StateVector,
-        inputs: &Inputs,
-        work: &mut Work,
+        inputs: &LawInputs,
+        work: &mut PlantWorkspace,
     ) -> StateVector {
         // Instruments are indexed by the frame: ground, then water.
         let Some(instruments) = &self.instruments[frame as usize] else { return *state };
         let rate = self.rate_with(state, inputs, work);
-        instruments.read(
+        instruments.read_state(
             state,
             &rate,
             &inputs[..self.plant.input_names().len()],
@@ -238,47 +238,48 @@ impl Ship {
     }
 
     /// Returns the true state for the readings `said`.
-    pub fn truth(
+    pub fn true_state(
         &self,
         frame: VelocityFrame,
         said: &StateVector,
-        inputs: &Inputs,
-        work: &mut Work,
+        inputs: &LawInputs,
+        work: &mut PlantWorkspace,
     ) -> StateVector {
         if self.instruments[frame as usize].is_none() {
             return *said;
         }
-        truth(said, |state| self.says(frame, state, inputs, work))
+        invert_readings(said, |state| self.instrument_readings(frame, state, inputs, work))
     }
 
     /// Returns the excursion of a motion from the range covered by the model's trials; `None` if it
     /// stays inside, or if that range is unknown.
-    pub fn leaves(&self, track: &Trajectory) -> Option<Excursion> {
-        leaves(self.validity.as_ref()?, track)
+    pub fn find_excursion(&self, track: &Trajectory) -> Option<Excursion> {
+        find_excursion(self.validity.as_ref()?, track)
     }
 
     /// Disables the check of excursions from the range covered by the model's trials.
-    pub fn forget_validity(&mut self) {
+    pub fn disable_excursions(&mut self) {
         self.validity = None;
     }
 
     /// Limits outside which runs are stopped.
-    pub fn envelope(&self) -> &Envelope {
+    pub fn envelope(&self) -> &MotionEnvelope {
         &self.envelope
     }
 
     /// Steering gear, including the lag that effects add.
-    pub fn gear(&self) -> Gear {
+    pub fn steering_gear(&self) -> SteeringGear {
         self.gear
     }
 
     /// Widens the limits to those of a run at another speed.
     pub fn set_envelope_speed(&mut self, speed_m_s: f64) {
-        self.envelope = Envelope::new(self.lpp_m, speed_m_s.abs().max(self.approach_speed_m_s));
+        self.envelope =
+            MotionEnvelope::new(self.lpp_m, speed_m_s.abs().max(self.approach_speed_m_s));
     }
 
     /// Returns the inputs for a rudder angle and revolutions.
-    pub fn inputs(&self, delta_rad: f64, n_rps: f64) -> Inputs {
+    pub fn inputs_for(&self, delta_rad: f64, n_rps: f64) -> LawInputs {
         let mut inputs = self.template;
         for (slot, value) in [(self.slots.delta, delta_rad), (self.slots.n, n_rps)] {
             if let Some(slot) = slot {
@@ -292,13 +293,13 @@ impl Ship {
     pub fn rate_under(
         &self,
         state: &StateVector,
-        order: Order,
+        order: HelmOrder,
         step_s: f64,
-        work: &mut Work,
+        work: &mut PlantWorkspace,
     ) -> StateVector {
-        let inputs = self.inputs(state[at::DELTA], order.n_rps);
+        let inputs = self.inputs_for(state[at::DELTA], order.n_rps);
         let mut rate = self.rate_with(state, &inputs, work);
-        rate[at::DELTA] = self.gear.rate(order.delta_rad, state[at::DELTA], step_s);
+        rate[at::DELTA] = self.gear.rudder_rate(order.delta_rad, state[at::DELTA], step_s);
         rate
     }
 
@@ -308,32 +309,38 @@ impl Ship {
         state: &StateVector,
         delta_rad: f64,
         n_rps: f64,
-        work: &mut Work,
+        work: &mut PlantWorkspace,
     ) -> StateVector {
-        self.rate_with(state, &self.inputs(delta_rad, n_rps), work)
+        self.rate_with(state, &self.inputs_for(delta_rad, n_rps), work)
     }
 
     /// Rate of change of the state with all inputs of the law, in the order of
     /// [`Ship::law_inputs`].
-    pub fn rate_with(&self, state: &StateVector, inputs: &Inputs, work: &mut Work) -> StateVector {
-        let mut rate = self.plant.rate(state, inputs, work);
+    pub fn rate_with(
+        &self,
+        state: &StateVector,
+        inputs: &LawInputs,
+        work: &mut PlantWorkspace,
+    ) -> StateVector {
+        let mut rate = self.plant.state_rate(state, inputs, work);
         // A learned correction takes the rates of the foundation as inputs.
         if let Some(branch) = &self.branch {
-            let added = branch.addition(&self.instant(state, &|slot| inputs[slot], &rate));
+            let added =
+                branch.rate_additions(&self.correction_inputs(state, &|slot| inputs[slot], &rate));
             VELOCITIES.into_iter().zip(added).for_each(|(place, added)| rate[place] += added);
         }
         rate
     }
 
     /// Returns the inputs of a learned correction; `input` returns the input of the law at a place.
-    pub fn instant(
+    pub fn correction_inputs(
         &self,
         state: &StateVector,
         input: &dyn Fn(usize) -> f64,
         foundation: &StateVector,
-    ) -> Instant {
+    ) -> CorrectionInstant {
         let at_slot = |slot: Option<usize>| slot.map_or(0.0, input);
-        Instant {
+        CorrectionInstant {
             velocities: VELOCITIES.map(|place| state[place]),
             delta_rad: at_slot(self.slots.delta),
             n_rps: at_slot(self.slots.n),
@@ -342,20 +349,20 @@ impl Ship {
     }
 
     /// Rates of change of several states, each with all inputs of the law.
-    pub(crate) fn rates<const N: usize>(
+    pub(crate) fn state_rates<const N: usize>(
         &self,
-        states: &States<N>,
-        inputs: &[Lanes<N>],
-        work: &mut Work<N>,
-    ) -> States<N> {
-        let mut rates = self.plant.rates(states, inputs, work);
+        states: &LaneStates<N>,
+        inputs: &[LaneValues<N>],
+        work: &mut PlantWorkspace<N>,
+    ) -> LaneStates<N> {
+        let mut rates = self.plant.state_rates(states, inputs, work);
         if let Some(branch) = &self.branch {
             // Each lane is evaluated by itself, so that a result does not depend on the other
             // lanes.
             for lane in 0..N {
                 let input = |slot: usize| inputs[slot][lane];
                 let (state, own) = (lane_of(states, lane), lane_of(&rates, lane));
-                let added = branch.addition(&self.instant(&state, &input, &own));
+                let added = branch.rate_additions(&self.correction_inputs(&state, &input, &own));
                 VELOCITIES
                     .into_iter()
                     .zip(added)
@@ -367,13 +374,13 @@ impl Ship {
 
     /// Rate at which the steering gear moves the rudder towards the order, rad/s.
     pub(crate) fn rudder_rate(&self, order_rad: f64, angle_rad: f64, step_s: f64) -> f64 {
-        self.gear.rate(order_rad, angle_rad, step_s)
+        self.gear.rudder_rate(order_rad, angle_rad, step_s)
     }
 }
 
 /// Settings of a run.
 #[derive(Debug, Clone, Copy)]
-pub struct Run {
+pub struct RunSettings {
     /// State at time zero.
     pub start: StateVector,
     /// Duration, s.

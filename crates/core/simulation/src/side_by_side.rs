@@ -1,64 +1,67 @@
 //! Ships that are simulated together under the same orders, step by step, as the orders arrive.
 
 use crate::integrate::Method;
-use crate::plant::{Inputs, MAX_INPUTS, Work};
+use crate::plant::{LawInputs, MAX_INPUTS, PlantWorkspace};
 use crate::ship::Ship;
-use crate::state::{StateVector, States, at, lane_of, set_lane};
+use crate::state::{LaneStates, StateVector, at, lane_of, set_lane};
 
 /// Number of ships that are calculated together.
-const TOGETHER: usize = 8;
+const BLOCK_SIZE: usize = 8;
 
 /// Ensemble of ships that differ in their coefficients, each with its own state. A ship whose
 /// motion leaves the physical range drops out; the others continue.
 #[derive(Debug)]
-pub struct SideBySide {
-    blocks: Vec<Block>,
+pub struct ShipEnsemble {
+    blocks: Vec<ShipBlock>,
 }
 
 #[derive(Debug)]
-struct Block {
-    states: States<TOGETHER>,
-    work: Work<TOGETHER>,
+struct ShipBlock {
+    states: LaneStates<BLOCK_SIZE>,
+    work: PlantWorkspace<BLOCK_SIZE>,
     /// Active lanes; lanes beyond the last ship, and those of ships that dropped out, are not
     /// active.
-    sailing: [bool; TOGETHER],
+    sailing: [bool; BLOCK_SIZE],
 }
 
-impl SideBySide {
+impl ShipEnsemble {
     /// Creates an ensemble in one state; `coefficients` as returned by [`Ship::sister`].
     pub fn new(coefficients: &[Vec<f64>], start: &StateVector) -> Self {
-        let blocks = coefficients.chunks(TOGETHER).map(|chunk| Block::new(chunk, start)).collect();
+        let blocks =
+            coefficients.chunks(BLOCK_SIZE).map(|chunk| ShipBlock::new(chunk, start)).collect();
         Self { blocks }
     }
 
     /// Advances all ships by a step: `inputs` are those of the law, of which the rudder angle is
     /// replaced by that of each ship, and `order_rad` is the order to its steering gear.
-    pub fn step(&mut self, ship: &Ship, inputs: &Inputs, order_rad: f64, step_s: f64) {
-        self.blocks.iter_mut().for_each(|block| block.step(ship, inputs, order_rad, step_s));
+    pub fn advance_step(&mut self, ship: &Ship, inputs: &LawInputs, order_rad: f64, step_s: f64) {
+        self.blocks
+            .iter_mut()
+            .for_each(|block| block.advance_step(ship, inputs, order_rad, step_s));
     }
 
     /// States of the active ships.
-    pub fn states(&self) -> impl Iterator<Item = StateVector> {
+    pub fn active_states(&self) -> impl Iterator<Item = StateVector> {
         self.blocks.iter().flat_map(|block| {
-            let lanes = (0..TOGETHER).filter(|lane| block.sailing[*lane]);
+            let lanes = (0..BLOCK_SIZE).filter(|lane| block.sailing[*lane]);
             lanes.map(|lane| lane_of(&block.states, lane))
         })
     }
 
     /// Number of blocks, each of which takes about the time of a single ship.
-    pub fn blocks(&self) -> usize {
+    pub fn block_count(&self) -> usize {
         self.blocks.len()
     }
 }
 
-impl Block {
+impl ShipBlock {
     fn new(coefficients: &[Vec<f64>], start: &StateVector) -> Self {
         let mut block = Self {
-            states: [[0.0; TOGETHER]; 9],
-            work: Work::default(),
-            sailing: [false; TOGETHER],
+            states: [[0.0; BLOCK_SIZE]; 9],
+            work: PlantWorkspace::default(),
+            sailing: [false; BLOCK_SIZE],
         };
-        for lane in 0..TOGETHER {
+        for lane in 0..BLOCK_SIZE {
             // An unused lane is calculated with the others, but its result is not read.
             let own = coefficients.get(lane).or(coefficients.first());
             own.into_iter().for_each(|own| block.work.set_coefficients(lane, own));
@@ -68,23 +71,24 @@ impl Block {
         block
     }
 
-    fn step(&mut self, ship: &Ship, inputs: &Inputs, order_rad: f64, step_s: f64) {
+    fn advance_step(&mut self, ship: &Ship, inputs: &LawInputs, order_rad: f64, step_s: f64) {
         let Self { states, work, sailing } = self;
         // Order and inputs are constant over the step; only the rudder angle differs between
         // stages.
-        *states = Method::Rk4.steps(states, &[step_s; TOGETHER], |_, states| {
-            let mut lanes: [[f64; TOGETHER]; MAX_INPUTS] = inputs.map(|value| [value; TOGETHER]);
+        *states = Method::Rk4.advance_states(states, &[step_s; BLOCK_SIZE], |_, states| {
+            let mut lanes: [[f64; BLOCK_SIZE]; MAX_INPUTS] =
+                inputs.map(|value| [value; BLOCK_SIZE]);
             if let Some(place) = ship.rudder_place() {
                 lanes[place] = states[at::DELTA];
             }
-            let mut rates = ship.rates(states, &lanes, work);
+            let mut rates = ship.state_rates(states, &lanes, work);
             rates[at::DELTA] =
                 states[at::DELTA].map(|angle| ship.rudder_rate(order_rad, angle, step_s));
             rates
         });
         // A ship that has dropped out stays inactive, also if its state returned to the range.
         for (lane, sailing) in sailing.iter_mut().enumerate() {
-            *sailing &= ship.envelope().check(0.0, &lane_of(states, lane)).is_ok();
+            *sailing &= ship.envelope().check_state(0.0, &lane_of(states, lane)).is_ok();
         }
     }
 }

@@ -3,22 +3,22 @@
 use nalgebra::SVector;
 use sistership_model::trial::Channel;
 
-use crate::tape::Lanes;
+use crate::tape::LaneValues;
 
 /// State vector: `u, v, r, p, phi, psi, x, y, delta` in SI units and radians; `delta` is the actual
 /// rudder angle.
 pub type StateVector = SVector<f64, 9>;
 
 /// States of ships in lockstep: by component, by ship.
-pub type States<const N: usize> = [Lanes<N>; 9];
+pub type LaneStates<const N: usize> = [LaneValues<N>; 9];
 
 /// State of one of several ships.
-pub fn lane_of<const N: usize>(states: &States<N>, lane: usize) -> StateVector {
+pub fn lane_of<const N: usize>(states: &LaneStates<N>, lane: usize) -> StateVector {
     StateVector::from_fn(|place, _| states[place][lane])
 }
 
 /// Sets the state of one of several ships.
-pub fn set_lane<const N: usize>(states: &mut States<N>, lane: usize, state: &StateVector) {
+pub fn set_lane<const N: usize>(states: &mut LaneStates<N>, lane: usize, state: &StateVector) {
     states.iter_mut().zip(state.iter()).for_each(|(lanes, value)| lanes[lane] = *value);
 }
 
@@ -46,7 +46,7 @@ pub mod at {
 
 /// Channels of a trial that record the state, with their places in it: velocities, heading,
 /// position, then roll.
-pub const RECORDED: [(Channel, usize); 8] = [
+pub const RECORDED_CHANNELS: [(Channel, usize); 8] = [
     (Channel::U, at::U),
     (Channel::V, at::V),
     (Channel::R, at::R),
@@ -58,12 +58,12 @@ pub const RECORDED: [(Channel, usize); 8] = [
 ];
 
 /// Speed, m/s: the magnitude of the horizontal velocity.
-pub fn speed(state: &StateVector) -> f64 {
+pub fn horizontal_speed(state: &StateVector) -> f64 {
     state[at::U].hypot(state[at::V])
 }
 
 /// State of straight running at a speed, heading north.
-pub fn straight(speed_m_s: f64) -> StateVector {
+pub fn straight_state(speed_m_s: f64) -> StateVector {
     let mut state = StateVector::zeros();
     state[at::U] = speed_m_s;
     state
@@ -82,7 +82,7 @@ pub struct Trajectory {
 
 impl Trajectory {
     /// One component over time.
-    pub fn column(&self, index: usize) -> Vec<f64> {
+    pub fn state_column(&self, index: usize) -> Vec<f64> {
         self.states.iter().map(|state| state[index]).collect()
     }
 

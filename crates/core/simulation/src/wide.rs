@@ -6,16 +6,16 @@
 //! [`f64::mul_add`] itself is passed to [`fused`].
 
 /// Computation that is compiled for each vector width.
-pub trait Wide {
+pub trait SimdKernel {
     /// Runs the computation; must be `#[inline(always)]`, and so must all that it calls in its
     /// loops.
-    fn go(self);
+    fn run(self);
 }
 
 /// Runs a kernel with the widest instructions of the processor.
 #[inline]
 #[allow(unsafe_code)]
-pub fn widest(work: impl Wide) {
+pub fn dispatch_simd(work: impl SimdKernel) {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx512f") {
         // SAFETY: the processor has just been found to have AVX-512.
@@ -26,7 +26,7 @@ pub fn widest(work: impl Wide) {
         // SAFETY: the processor has just been found to have AVX2.
         return unsafe { with_avx2(work) };
     }
-    work.go();
+    work.run();
 }
 
 /// Runs a kernel with the widest instructions that multiply and add with one rounding
@@ -34,7 +34,7 @@ pub fn widest(work: impl Wide) {
 /// `mul_add` would be a function call.
 #[inline]
 #[allow(unsafe_code)]
-pub fn fused(work: impl Wide) -> bool {
+pub fn dispatch_fused(work: impl SimdKernel) -> bool {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx512f") {
         // SAFETY: the processor has just been found to have AVX-512, of which fusing is a part.
@@ -52,18 +52,18 @@ pub fn fused(work: impl Wide) -> bool {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f")]
-fn with_avx512(work: impl Wide) {
-    work.go();
+fn with_avx512(work: impl SimdKernel) {
+    work.run();
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn with_avx2(work: impl Wide) {
-    work.go();
+fn with_avx2(work: impl SimdKernel) {
+    work.run();
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn with_avx2_fused(work: impl Wide) {
-    work.go();
+fn with_avx2_fused(work: impl SimdKernel) {
+    work.run();
 }

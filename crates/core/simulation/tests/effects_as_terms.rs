@@ -2,11 +2,11 @@
 
 #![allow(clippy::unwrap_used)]
 
-use sistership_model::effect::{AppliedEffect, AsTerms};
+use sistership_model::effect::{AppliedEffect, EffectsAsTerms};
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Zoo};
-use sistership_simulation::plant::{MAX_INPUTS, Plant, Work};
+use sistership_simulation::plant::{MAX_INPUTS, Plant, PlantWorkspace};
 use sistership_simulation::state::{StateVector, at};
 
 /// The Mariner with one effect, its parameters somewhere within their bounds.
@@ -17,7 +17,7 @@ fn with(zoo: &Zoo, effect: &str, form: &str) -> Model {
         let [low, high] = form.parameters[name].bounds;
         (name.clone(), Quantity::new(low + (0.4 + 0.05 * place as f64) * (high - low), "test"))
     };
-    let mut model = zoo.model("mariner").unwrap();
+    let mut model = zoo.find_model("mariner").unwrap();
     model.effects = vec![AppliedEffect {
         name: effect.name.clone(),
         acts_on: effect.acts_on,
@@ -40,12 +40,12 @@ fn rate(model: &Model, law: &Law) -> StateVector {
         .zip(&mut inputs)
         .enumerate()
         .for_each(|(place, (_, input))| *input = 0.3 + 0.2 * place as f64);
-    plant.rate(&state, &inputs, &mut Work::default())
+    plant.state_rate(&state, &inputs, &mut PlantWorkspace::default())
 }
 
 #[test]
 fn forces_that_are_linear_become_terms() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     for (effect, form) in [
         ("wind", "measured"),
         ("propeller-asymmetry", "constant"),
@@ -53,7 +53,7 @@ fn forces_that_are_linear_become_terms() {
     ] {
         let model = with(&zoo, effect, form);
         let law = zoo.law(&model.law).unwrap();
-        let mut terms = AsTerms::new(&model, law).unwrap().unwrap();
+        let mut terms = EffectsAsTerms::new(&model, law).unwrap().unwrap();
         let at_priors = rate(&terms.model, &terms.law);
         for (name, quantity) in &model.effects[0].parameters {
             let term = format!("{effect}/{form}.{name}");
@@ -72,7 +72,7 @@ fn forces_that_are_linear_become_terms() {
             "{effect}: {expected} {found}"
         );
         assert!((at_priors - found).amax() > 1e-9 * expected.amax(), "{effect} does nothing");
-        let back = terms.fitted(&terms.model.coefficients);
+        let back = terms.with_fitted_values(&terms.model.coefficients);
         for (name, quantity) in &model.effects[0].parameters {
             assert_eq!(back.effects[0].parameters[name].value, quantity.value, "{effect}: {name}");
         }
@@ -82,7 +82,7 @@ fn forces_that_are_linear_become_terms() {
 
 #[test]
 fn what_is_not_linear_or_no_force_stays_an_effect() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     for (effect, form) in [
         ("wind", "constant"),
         ("current", "constant"),
@@ -91,7 +91,7 @@ fn what_is_not_linear_or_no_force_stays_an_effect() {
     ] {
         let model = with(&zoo, effect, form);
         assert!(
-            AsTerms::new(&model, zoo.law(&model.law).unwrap()).unwrap().is_none(),
+            EffectsAsTerms::new(&model, zoo.law(&model.law).unwrap()).unwrap().is_none(),
             "{effect}/{form}"
         );
     }

@@ -7,10 +7,10 @@ use sistership_model::manifest::VelocityFrame;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Zoo};
-use sistership_simulation::plant::{MAX_INPUTS, Work};
-use sistership_simulation::recorded::{ReplaySettings, as_true_instruments_say, replay};
+use sistership_simulation::plant::{MAX_INPUTS, PlantWorkspace};
+use sistership_simulation::recorded::{ReplaySettings, correct_instrument_errors, replay_trial};
 use sistership_simulation::ship::Ship;
-use sistership_simulation::state::{RECORDED, StateVector};
+use sistership_simulation::state::{RECORDED_CHANNELS, StateVector};
 
 /// An effect, its form, and its parameters.
 type Erring<'a> = (&'a str, &'a str, &'a [(&'a str, f64)]);
@@ -31,7 +31,7 @@ fn mariner(zoo: &Zoo, effects: &[Erring<'_>]) -> Ship {
         }
     };
     let model =
-        Model { effects: effects.iter().map(one).collect(), ..zoo.model("mariner").unwrap() };
+        Model { effects: effects.iter().map(one).collect(), ..zoo.find_model("mariner").unwrap() };
     Ship::new(&model, zoo.law(&model.law).unwrap()).unwrap()
 }
 
@@ -40,15 +40,15 @@ fn sailed(ship: &Ship) -> Trial {
     let t_s: Vec<f64> = (0..300).map(f64::from).collect();
     let mut trial =
         Trial { name: "to and fro".into(), velocity: VelocityFrame::Ground, ..Trial::default() };
-    for (channel, _) in RECORDED {
+    for (channel, _) in RECORDED_CHANNELS {
         trial
             .channels
             .insert(channel, vec![if channel == Channel::U { 7.5 } else { 0.0 }; t_s.len()]);
     }
     trial.channels.insert(Channel::Delta, t_s.iter().map(|t| 0.2 * (t / 20.0).sin()).collect());
     trial.t_s = t_s;
-    let run = replay(ship, &trial, &ReplaySettings::default()).unwrap();
-    for (channel, place) in RECORDED {
+    let run = replay_trial(ship, &trial, &ReplaySettings::default()).unwrap();
+    for (channel, place) in RECORDED_CHANNELS {
         trial.channels.insert(channel, run.track.states.iter().map(|state| state[place]).collect());
     }
     trial
@@ -59,11 +59,12 @@ fn shown(ship: &Ship, trial: &Trial) -> Trial {
     let recorded = |name: &str, sample: usize| {
         trial.channel(Channel::by_name(name)?).map(|column| column[sample])
     };
-    let (mut shown, mut work) = (trial.clone(), Work::default());
+    let (mut shown, mut work) = (trial.clone(), PlantWorkspace::default());
     for sample in 0..trial.len() {
         let mut state = StateVector::zeros();
-        for (channel, place) in
-            RECORDED.into_iter().chain([(Channel::Delta, sistership_simulation::state::at::DELTA)])
+        for (channel, place) in RECORDED_CHANNELS
+            .into_iter()
+            .chain([(Channel::Delta, sistership_simulation::state::at::DELTA)])
         {
             state[place] = trial.channels[&channel][sample];
         }
@@ -71,8 +72,8 @@ fn shown(ship: &Ship, trial: &Trial) -> Trial {
         let given =
             ship.law_inputs().map(|(name, default)| recorded(name, sample).or(default).unwrap());
         given.zip(&mut inputs).for_each(|(value, input)| *input = value);
-        let said = ship.says(trial.velocity, &state, &inputs, &mut work);
-        RECORDED.iter().for_each(|(channel, place)| {
+        let said = ship.instrument_readings(trial.velocity, &state, &inputs, &mut work);
+        RECORDED_CHANNELS.iter().for_each(|(channel, place)| {
             shown.channels.get_mut(channel).unwrap()[sample] = said[*place]
         });
     }
@@ -89,7 +90,7 @@ fn farthest(a: &Trial, b: &Trial, channel: Channel) -> f64 {
 
 #[test]
 fn errors_of_instruments_are_undone() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let truth = sailed(&mariner(&zoo, &[]));
     let erring = mariner(
         &zoo,
@@ -104,7 +105,7 @@ fn errors_of_instruments_are_undone() {
         farthest(&shown, &truth, Channel::V) > 0.1 && farthest(&shown, &truth, Channel::Psi) > 0.01,
         "nothing errs"
     );
-    let undone = as_true_instruments_say(&erring, &shown).unwrap();
+    let undone = correct_instrument_errors(&erring, &shown).unwrap();
     for (channel, limit) in [
         (Channel::U, 1e-6),
         (Channel::V, 1e-6),
@@ -119,7 +120,7 @@ fn errors_of_instruments_are_undone() {
 
 #[test]
 fn instruments_that_do_not_err_leave_a_trial_as_it_is() {
-    let ship = mariner(&Zoo::embedded().unwrap(), &[]);
+    let ship = mariner(&Zoo::load_embedded().unwrap(), &[]);
     let trial = sailed(&ship);
-    assert_eq!(as_true_instruments_say(&ship, &trial).unwrap(), trial);
+    assert_eq!(correct_instrument_errors(&ship, &trial).unwrap(), trial);
 }

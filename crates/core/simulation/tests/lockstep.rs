@@ -5,14 +5,17 @@ use sistership_model::trial::Channel;
 use sistership_model::{Law, Model, Trial, Zoo};
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{
-    ManoeuvreSettings, standard, standard_of_sisters, turn, zigzag,
+    ManoeuvreSettings, simulate_standard_ensemble, simulate_standard_manoeuvres, simulate_turn,
+    simulate_zigzag,
 };
-use sistership_simulation::recorded::{Recorded, Replay, ReplaySettings, replay, replay_all};
+use sistership_simulation::recorded::{
+    RecordedTrial, ReplaySettings, TrialReplay, replay_trial, replay_trials,
+};
 use sistership_simulation::state::at;
 
 fn ready(name: &str) -> (Model, std::sync::Arc<Law>) {
-    let zoo = Zoo::embedded().unwrap();
-    let model = zoo.model(name).unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = zoo.find_model(name).unwrap();
     let law = zoo.law(&model.law).unwrap().clone();
     (model, law)
 }
@@ -20,8 +23,8 @@ fn ready(name: &str) -> (Model, std::sync::Arc<Law>) {
 /// A turn as it would be recorded, of some length.
 fn trial(ship: &Ship, rudder_deg: f64, samples: usize) -> Trial {
     let settings = ManoeuvreSettings { step_s: Some(1.0), ..ManoeuvreSettings::default() };
-    let track = turn(ship, rudder_deg, &settings).unwrap().track;
-    let column = |index: usize| track.column(index)[..samples].to_vec();
+    let track = simulate_turn(ship, rudder_deg, &settings).unwrap().track;
+    let column = |index: usize| track.state_column(index)[..samples].to_vec();
     let channels =
         [(Channel::U, at::U), (Channel::V, at::V), (Channel::R, at::R), (Channel::Psi, at::PSI)];
     let mut trial = Trial { name: format!("turn {rudder_deg}"), ..Trial::default() };
@@ -47,16 +50,16 @@ fn trials_in_lockstep_are_simulated_as_each_alone() {
         let (model, law) = ready(name);
         let ship = Ship::new(&model, &law).unwrap();
         let trials = trials(&ship);
-        let recorded: Vec<Recorded<'_>> =
-            trials.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
-        let together = replay_all(&ship, &recorded, &RESTARTED()).unwrap();
-        let alone: Vec<Replay> =
-            trials.iter().map(|trial| replay(&ship, trial, &RESTARTED()).unwrap()).collect();
+        let recorded: Vec<RecordedTrial<'_>> =
+            trials.iter().map(|trial| RecordedTrial { trial, coefficients: &[] }).collect();
+        let together = replay_trials(&ship, &recorded, &RESTARTED()).unwrap();
+        let alone: Vec<TrialReplay> =
+            trials.iter().map(|trial| replay_trial(&ship, trial, &RESTARTED()).unwrap()).collect();
         assert_eq!(together, alone, "{name}");
         let whole = ReplaySettings::default();
         assert_eq!(
-            replay_all(&ship, &recorded[..1], &whole).unwrap()[0],
-            replay_all(&ship, &recorded, &whole).unwrap()[0]
+            replay_trials(&ship, &recorded[..1], &whole).unwrap()[0],
+            replay_trials(&ship, &recorded, &whole).unwrap()[0]
         );
     }
 }
@@ -66,9 +69,9 @@ fn manoeuvres_in_lockstep_are_sailed_as_each_alone() {
     let (model, law) = ready("mariner");
     let ship = Ship::new(&model, &law).unwrap();
     let settings = ManoeuvreSettings::default();
-    let all = standard(&ship, &settings);
-    assert_eq!(all.turns[1], turn(&ship, -35.0, &settings).unwrap().metrics);
-    assert_eq!(all.zigzags[2], zigzag(&ship, 20.0, 20.0, &settings).unwrap().metrics);
+    let all = simulate_standard_manoeuvres(&ship, &settings);
+    assert_eq!(all.turns[1], simulate_turn(&ship, -35.0, &settings).unwrap().metrics);
+    assert_eq!(all.zigzags[2], simulate_zigzag(&ship, 20.0, 20.0, &settings).unwrap().metrics);
 }
 
 #[test]
@@ -80,35 +83,38 @@ fn sisters_sail_by_their_own_coefficients() {
         sister
     };
     let models = [1.0, 0.9, 1.1].map(changed);
-    let sisters = Ship::sisters(&model, &law).unwrap();
+    let sisters = Ship::with_open_coefficients(&model, &law).unwrap();
     let coefficients: Vec<Vec<f64>> =
-        models.iter().map(|model| sisters.sister(model).unwrap()).collect();
+        models.iter().map(|model| sisters.open_coefficient_values(model).unwrap()).collect();
     let given: Vec<&[f64]> = coefficients.iter().map(Vec::as_slice).collect();
     let settings = ManoeuvreSettings::default();
-    for (model, sailed) in models.iter().zip(standard_of_sisters(&sisters, &given, &settings)) {
-        let alone = standard(&Ship::new(model, &law).unwrap(), &settings);
+    for (model, sailed) in
+        models.iter().zip(simulate_standard_ensemble(&sisters, &given, &settings))
+    {
+        let alone = simulate_standard_manoeuvres(&Ship::new(model, &law).unwrap(), &settings);
         let (here, there) = (
             sailed.turns[0].tactical_diameter_m.unwrap(),
             alone.turns[0].tactical_diameter_m.unwrap(),
         );
         assert!((here / there - 1.0).abs() < 1e-9, "{here} {there}");
     }
-    assert_eq!(sisters.sister(&ready("kvlcc2").0), None);
+    assert_eq!(sisters.open_coefficient_values(&ready("kvlcc2").0), None);
 }
 
 #[test]
 fn a_sister_that_diverges_disturbs_no_other() {
     let (model, law) = ready("mariner");
-    let sisters = Ship::sisters(&model, &law).unwrap();
-    let own = sisters.sister(&model).unwrap();
+    let sisters = Ship::with_open_coefficients(&model, &law).unwrap();
+    let own = sisters.open_coefficient_values(&model).unwrap();
     let wild: Vec<f64> = own.iter().map(|value| -50.0 * value).collect();
     let trial = trial(&Ship::new(&model, &law).unwrap(), 20.0, 200);
-    let recorded = [&own, &wild, &own].map(|coefficients| Recorded { trial: &trial, coefficients });
-    let runs = replay_all(&sisters, &recorded, &ReplaySettings::default()).unwrap();
+    let recorded =
+        [&own, &wild, &own].map(|coefficients| RecordedTrial { trial: &trial, coefficients });
+    let runs = replay_trials(&sisters, &recorded, &ReplaySettings::default()).unwrap();
     assert!(runs[1].stopped.is_some() && runs[1].samples.len() < 200);
     assert_eq!(runs[0], runs[2]);
     assert_eq!(
         runs[0],
-        replay_all(&sisters, &recorded[..1], &ReplaySettings::default()).unwrap()[0]
+        replay_trials(&sisters, &recorded[..1], &ReplaySettings::default()).unwrap()[0]
     );
 }

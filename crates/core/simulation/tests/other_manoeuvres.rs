@@ -4,14 +4,14 @@
 use sistership_model::{Law, Model, Zoo};
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{
-    AsternOrder, FurtherAsked, ManoeuvreSettings, NotReversing, check_reversing, further, pull_out,
-    spiral, stop,
+    AsternOrder, FurtherSelection, ManoeuvreSettings, ReversingError, check_reversing,
+    simulate_further_manoeuvres, simulate_pull_out, simulate_spirals, simulate_stop,
 };
 use sistership_simulation::metrics::is_straight_line_stable;
 
 fn model(name: &str) -> (Model, Law) {
-    let zoo = Zoo::embedded().unwrap();
-    let model = zoo.model(name).unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = zoo.find_model(name).unwrap();
     let law = (**zoo.law(&model.law).unwrap()).clone();
     (model, law)
 }
@@ -34,9 +34,14 @@ fn a_stop_has_the_track_reach_of_the_explanatory_notes() {
         let mass = q("m") * (1.0 + q("k_11"));
         let (a, b) = (mass * u * u / (2.0 * resistance), resistance / thrust);
         let expected_m = a * (1.0 + b).ln();
-        let sailed =
-            stop(&model, &law, &ship, &ManoeuvreSettings::default(), AsternOrder::default())
-                .unwrap();
+        let sailed = simulate_stop(
+            &model,
+            &law,
+            &ship,
+            &ManoeuvreSettings::default(),
+            AsternOrder::default(),
+        )
+        .unwrap();
         let reach_m = sailed.metrics.track_reach_m.unwrap();
         println!(
             "{name}: {reach_m:.1} m, by the notes {expected_m:.1} m, {:.2} L",
@@ -54,7 +59,8 @@ fn a_slow_reversal_takes_way() {
     let ship = Ship::new(&model, &law).unwrap();
     let reach = |reversal_s: f64| {
         let order = AsternOrder { reversal_s, ..AsternOrder::default() };
-        let sailed = stop(&model, &law, &ship, &ManoeuvreSettings::default(), order).unwrap();
+        let sailed =
+            simulate_stop(&model, &law, &ship, &ManoeuvreSettings::default(), order).unwrap();
         sailed.metrics.track_reach_m.unwrap()
     };
     let more = (reach(60.0) - reach(0.0)) / ship.approach_speed_m_s();
@@ -67,9 +73,9 @@ fn a_law_that_is_not_told_of_reversing_says_so() {
         let (model, law) = model(name);
         check_reversing(&model, &law, &Ship::new(&model, &law).unwrap()).unwrap_err()
     };
-    assert!(matches!(refused("mariner"), NotReversing::NoRevolutions { .. }));
+    assert!(matches!(refused("mariner"), ReversingError::NoRevolutions { .. }));
     for name in ["kvlcc2", "esso-tanker", "sr108", "cybership-2", "tanker-173m"] {
-        assert!(matches!(refused(name), NotReversing::FirstQuadrant { .. }), "{name}");
+        assert!(matches!(refused(name), ReversingError::FirstQuadrant { .. }), "{name}");
     }
 }
 
@@ -83,10 +89,16 @@ fn pull_outs_and_spirals_tell_stable_ships_from_unstable_ones() {
         let (model, law) = model(name);
         let ship = Ship::new(&model, &law).unwrap();
         let settings = ManoeuvreSettings::default();
-        let sail = |rudder| pull_out(&ship, rudder, &settings).unwrap().metrics;
+        let sail = |rudder| simulate_pull_out(&ship, rudder, &settings).unwrap().metrics;
         let both = [sail(20.0), sail(-20.0)];
         assert_eq!(is_straight_line_stable(&both), by_pull_outs, "{name}: {both:?}");
-        let all = further(&model, &law, &ship, &settings, &FurtherAsked::usual());
+        let all = simulate_further_manoeuvres(
+            &model,
+            &law,
+            &ship,
+            &settings,
+            &FurtherSelection::default_selection(),
+        );
         assert_eq!(all.straight_line_stable, Some(stable), "{name}");
         assert_eq!(all.spiral.is_some(), by_pull_outs != Some(true), "{name}");
     }
@@ -99,7 +111,7 @@ fn the_spirals_agree_on_the_loop() {
         let (model, law) = model(name);
         let ship = Ship::new(&model, &law).unwrap();
         let clock = std::time::Instant::now();
-        let sailed = spiral(&ship, &ManoeuvreSettings::default()).unwrap();
+        let sailed = simulate_spirals(&ship, &ManoeuvreSettings::default()).unwrap();
         println!(
             "{name}: direct {:.2} deg, reverse {:.2} deg, height {:.3} deg/s, limit {:.1} deg, \
              {:?}",

@@ -17,15 +17,15 @@ const LEVEL: f64 = 0.7;
 const SLOPE: f64 = 0.2;
 /// Number of consecutive rejected samples after which the filter restarts: a longer deviation is
 /// not a fault.
-const LOST: usize = 60;
+const MAX_REJECTED: usize = 60;
 /// Number of steps from which the initial slope is taken.
-const BEGINNING: usize = 15;
+const SLOPE_STEPS: usize = 15;
 /// Minimum number of equal values in a run that may be a frozen sensor, and the expected number of
 /// such runs by chance in a recording.
 const FROZEN: usize = 8;
 const BY_CHANCE: f64 = 1e-3;
 /// Largest faulty fraction of a channel; with more, the filter rather than the samples is wrong.
-const MOST: f64 = 0.2;
+const MAX_FAULTY_FRACTION: f64 = 0.2;
 /// Maximum number of samples of a spike; longer faults are jumps.
 const SPIKE: usize = 3;
 
@@ -61,7 +61,7 @@ pub enum SampleFault {
 
 impl SampleFault {
     /// Reason as written in a manifest.
-    pub fn text(self) -> &'static str {
+    pub fn manifest_text(self) -> &'static str {
         match self {
             Self::WrappedAverage => "averages across 360 degrees",
             Self::Spike => "spikes",
@@ -81,18 +81,18 @@ pub fn sample_faults(t_s: &[f64], channel: &FilteredChannel) -> Vec<(usize, Samp
         *value = f64::NAN;
         found.push((k, SampleFault::Impossible));
     }
-    let filter = Filter::new(t_s, &values, channel);
-    let rejected = filter.rejected(t_s);
-    found.extend(runs(&rejected).into_iter().flat_map(|(first, end)| {
-        let fault = kind(&values, channel.is_direction, first, end);
+    let filter = RobustFilter::new(t_s, &values, channel);
+    let rejected = filter.rejected_samples(t_s);
+    found.extend(flagged_runs(&rejected).into_iter().flat_map(|(first, end)| {
+        let fault = classify_run(&values, channel.is_direction, first, end);
         (first..end).map(move |k| (k, fault))
     }));
-    found.extend(frozen(&values, &filter).into_iter().map(|k| (k, SampleFault::Frozen)));
+    found.extend(frozen_samples(&values, &filter).into_iter().map(|k| (k, SampleFault::Frozen)));
     found.sort_unstable();
     found.dedup_by_key(|(k, _)| *k);
     // With so many faults the model of the filter does not describe the channel, so none is
     // reported.
-    let many = found.len() as f64 > MOST * values.len() as f64;
+    let many = found.len() as f64 > MAX_FAULTY_FRACTION * values.len() as f64;
     if many { Vec::new() } else { found }
 }
 
@@ -120,24 +120,24 @@ pub fn backward_times(t_s: &[f64]) -> Vec<usize> {
         at = before[k];
     }
     let dropped: Vec<usize> = (0..t_s.len()).filter(|&k| !kept[k]).collect();
-    if dropped.len() as f64 > MOST * t_s.len() as f64 { Vec::new() } else { dropped }
+    if dropped.len() as f64 > MAX_FAULTY_FRACTION * t_s.len() as f64 { Vec::new() } else { dropped }
 }
 
 /// Channel less the integral of its rate, and the largest innovation of a sample that is accepted.
-struct Filter {
+struct RobustFilter {
     values: Vec<f64>,
     is_direction: bool,
     gate: f64,
 }
 
-impl Filter {
+impl RobustFilter {
     fn new(t_s: &[f64], values: &[f64], channel: &FilteredChannel) -> Self {
         let values = match channel.rate {
-            Some(rate) => without_rate(t_s, values, rate),
+            Some(rate) => subtract_rate(t_s, values, rate),
             None => values.to_vec(),
         };
         let mut filter = Self { values, is_direction: channel.is_direction, gate: f64::INFINITY };
-        let forward = filter.pass(t_s, 0..t_s.len());
+        let forward = filter.filter_samples(t_s, 0..t_s.len());
         let mut distances: Vec<f64> = forward.into_iter().flatten().map(f64::abs).collect();
         // The first pass accepts everything (infinite gate) and gives the distances that set the
         // gate.
@@ -153,7 +153,7 @@ impl Filter {
     }
 
     /// Returns the innovations of the samples visited in the given order; `None` for a gap.
-    fn pass(&self, t_s: &[f64], order: impl Iterator<Item = usize>) -> Vec<Option<f64>> {
+    fn filter_samples(&self, t_s: &[f64], order: impl Iterator<Item = usize>) -> Vec<Option<f64>> {
         let order: Vec<usize> = order.collect();
         let mut innovations = vec![None; self.values.len()];
         let mut state: Option<(f64, f64, f64)> = None;
@@ -163,8 +163,8 @@ impl Filter {
             if !value.is_finite() || !t_s[k].is_finite() {
                 continue;
             }
-            let Some((level, slope, last)) = state.filter(|_| lost < LOST) else {
-                state = Some((value, self.slope(t_s, &order[at..]), t_s[k]));
+            let Some((level, slope, last)) = state.filter(|_| lost < MAX_REJECTED) else {
+                state = Some((value, self.median_slope(t_s, &order[at..]), t_s[k]));
                 lost = 0;
                 continue;
             };
@@ -173,7 +173,7 @@ impl Filter {
             // certain.
             let step = t_s[k] - last;
             let predicted = level + slope * step;
-            let innovation = self.wrapped(value - predicted);
+            let innovation = self.wrap_change(value - predicted);
             innovations[k] = Some(innovation / (1 + lost) as f64);
             if innovation.abs() > self.gate * (1 + lost) as f64 {
                 lost += 1;
@@ -187,10 +187,10 @@ impl Filter {
     }
 
     /// Returns the median slope of the next samples, which a fault among them does not change.
-    fn slope(&self, t_s: &[f64], next: &[usize]) -> f64 {
-        let pairs = next.windows(2).take(BEGINNING);
+    fn median_slope(&self, t_s: &[f64], next: &[usize]) -> f64 {
+        let pairs = next.windows(2).take(SLOPE_STEPS);
         let slopes = pairs.map(|pair| {
-            let change = self.wrapped(self.values[pair[1]] - self.values[pair[0]]);
+            let change = self.wrap_change(self.values[pair[1]] - self.values[pair[0]]);
             change / (t_s[pair[1]] - t_s[pair[0]])
         });
         let mut slopes: Vec<f64> = slopes.filter(|slope| slope.is_finite()).collect();
@@ -199,21 +199,21 @@ impl Filter {
     }
 
     /// Brings the change of a direction into -pi to pi; other channels stay as they are.
-    fn wrapped(&self, change: f64) -> f64 {
+    fn wrap_change(&self, change: f64) -> f64 {
         if self.is_direction { change - ((change + PI) / TAU).floor() * TAU } else { change }
     }
 
     /// Flags the samples that both passes reject.
-    fn rejected(&self, t_s: &[f64]) -> Vec<bool> {
+    fn rejected_samples(&self, t_s: &[f64]) -> Vec<bool> {
         let beyond = |innovation: Option<f64>| innovation.is_some_and(|one| one.abs() > self.gate);
-        let forward = self.pass(t_s, 0..t_s.len());
-        let backward = self.pass(t_s, (0..t_s.len()).rev());
+        let forward = self.filter_samples(t_s, 0..t_s.len());
+        let backward = self.filter_samples(t_s, (0..t_s.len()).rev());
         forward.into_iter().zip(backward).map(|(a, b)| beyond(a) && beyond(b)).collect()
     }
 }
 
 /// Returns the values less the integral of their rate (trapezoidal rule).
-fn without_rate(t_s: &[f64], values: &[f64], rate: &[f64]) -> Vec<f64> {
+fn subtract_rate(t_s: &[f64], values: &[f64], rate: &[f64]) -> Vec<f64> {
     let (mut sum, mut last) = (0.0, None);
     let each = values.iter().zip(rate).zip(t_s);
     each.map(|((value, rate), t)| {
@@ -229,7 +229,7 @@ fn without_rate(t_s: &[f64], values: &[f64], rate: &[f64]) -> Vec<f64> {
 }
 
 /// First and past-the-end index of every run of set flags.
-fn runs(flags: &[bool]) -> Vec<(usize, usize)> {
+fn flagged_runs(flags: &[bool]) -> Vec<(usize, usize)> {
     let (mut runs, mut k) = (Vec::new(), 0);
     while k < flags.len() {
         let end = (k..flags.len()).find(|&at| flags[at] != flags[k]).unwrap_or(flags.len());
@@ -241,7 +241,7 @@ fn runs(flags: &[bool]) -> Vec<(usize, usize)> {
     runs
 }
 
-fn kind(values: &[f64], is_direction: bool, first: usize, end: usize) -> SampleFault {
+fn classify_run(values: &[f64], is_direction: bool, first: usize, end: usize) -> SampleFault {
     // An average across the wrap lies between neighbours that are more than half a turn apart.
     let before = first.checked_sub(1).and_then(|k| values.get(k));
     let crosses = before.zip(values.get(end)).is_some_and(|(a, b)| (a - b).abs() > PI);
@@ -254,7 +254,7 @@ fn kind(values: &[f64], is_direction: bool, first: usize, end: usize) -> SampleF
 
 /// Returns the samples of runs of one value that are too long for chance and after which the
 /// channel continues at another value.
-fn frozen(values: &[f64], filter: &Filter) -> Vec<usize> {
+fn frozen_samples(values: &[f64], filter: &RobustFilter) -> Vec<usize> {
     let equal: Vec<bool> = (0..values.len()).map(|k| k > 0 && values[k] == values[k - 1]).collect();
     let part = equal.iter().filter(|equal| **equal).count() as f64 / equal.len().max(1) as f64;
     // Channels that hold or round their readings have equal neighbours by nature.
@@ -267,11 +267,12 @@ fn frozen(values: &[f64], filter: &Filter) -> Vec<usize> {
     let longest = FROZEN.max(longest.ceil() as usize);
     let resumes = |first: usize, end: usize| {
         let stood = end < values.len() && (values[end] - values[first]).abs() > 0.0;
-        let moved = filter
-            .wrapped(filter.values.get(end).copied().unwrap_or(f64::NAN) - filter.values[first]);
+        let moved = filter.wrap_change(
+            filter.values.get(end).copied().unwrap_or(f64::NAN) - filter.values[first],
+        );
         stood && moved.abs() > filter.gate
     };
-    let each = runs(&equal).into_iter().filter(|&(first, end)| end - first >= longest);
+    let each = flagged_runs(&equal).into_iter().filter(|&(first, end)| end - first >= longest);
     each.filter(|&(first, end)| resumes(first, end)).flat_map(|(first, end)| first..end).collect()
 }
 

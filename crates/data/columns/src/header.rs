@@ -1,8 +1,8 @@
 //! Evidence of a header: the quantities, unit, side and sign that its words name.
 
-use crate::role::{Kind, Role, Side};
-use crate::vocabulary::{Meaning, Phrase, vocabulary};
-use crate::words::{is_ideographic, words};
+use crate::role::{QuantityKind, Role, Side};
+use crate::vocabulary::{Phrase, PhraseMeaning, vocabulary};
+use crate::words::{is_ideographic, split_words};
 
 /// Log odds of a quantity whose phrase explains every word of a header: 400 to 1.
 const EXACT: f64 = 6.0;
@@ -15,7 +15,7 @@ const UNEXPLAINED: f64 = 2.0;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct HeaderEvidence {
     /// Quantities and their log odds, best first.
-    pub candidates: Vec<(Meaning, f64)>,
+    pub candidates: Vec<(PhraseMeaning, f64)>,
     /// Units written in the header or below it, by their names in manifests.
     pub units: Vec<String>,
     pub side: Option<Side>,
@@ -25,18 +25,18 @@ pub(crate) struct HeaderEvidence {
 impl HeaderEvidence {
     /// Reads a header and the cell of a row of units below it.
     pub(crate) fn new(header: &str, below: Option<&str>) -> Self {
-        let parts = Parts::new(header);
+        let parts = HeaderParts::new(header);
         let mut units = parts.units.clone();
         units.extend(below.and_then(unit_named));
         let mut evidence = Self {
             candidates: Vec::new(),
             is_port_positive: is_port_positive(header),
-            side: parts.side(),
+            side: parts.find_side(),
             units,
         };
         for phrase in &vocabulary().phrases {
-            if let Some(odds) = parts.odds(phrase) {
-                evidence.add(&phrase.meaning, odds);
+            if let Some(odds) = parts.phrase_odds(phrase) {
+                evidence.add_candidate(&phrase.meaning, odds);
             }
         }
         // Six candidates suffice: the search takes them up by log odds.
@@ -45,11 +45,13 @@ impl HeaderEvidence {
         evidence
     }
 
-    fn add(&mut self, meaning: &Meaning, odds: f64) {
+    fn add_candidate(&mut self, meaning: &PhraseMeaning, odds: f64) {
         // `rudder port` names the port rudder: a side in the header makes the quantity that of the
         // side.
         let meaning = match (meaning, self.side) {
-            (Meaning::Channel(role), Some(side)) => Meaning::Channel(role.of_side(side)),
+            (PhraseMeaning::Channel(role), Some(side)) => {
+                PhraseMeaning::Channel(role.for_side(side))
+            }
             _ => meaning.clone(),
         };
         match self.candidates.iter_mut().find(|(known, _)| *known == meaning) {
@@ -59,34 +61,35 @@ impl HeaderEvidence {
     }
 
     /// Returns the log odds of a channel against a column that holds no channel.
-    pub(crate) fn odds(&self, role: Role) -> Option<f64> {
-        let of_role = |(meaning, _): &&(Meaning, f64)| *meaning == Meaning::Channel(role);
+    pub(crate) fn role_odds(&self, role: Role) -> Option<f64> {
+        let of_role =
+            |(meaning, _): &&(PhraseMeaning, f64)| *meaning == PhraseMeaning::Channel(role);
         self.candidates.iter().find(of_role).map(|(_, odds)| *odds)
     }
 
     /// Returns the quantity named by the header that no channel holds, and its log odds.
-    pub(crate) fn other(&self) -> Option<(&str, f64)> {
+    pub(crate) fn other_quantity(&self) -> Option<(&str, f64)> {
         self.candidates.iter().find_map(|(meaning, odds)| match meaning {
-            Meaning::Other(name) => Some((name.as_str(), *odds)),
-            Meaning::Channel(_) => None,
+            PhraseMeaning::Other(name) => Some((name.as_str(), *odds)),
+            PhraseMeaning::Channel(_) => None,
         })
     }
 
     /// Returns the highest log odds of all candidates, 0 if there is none.
-    pub(crate) fn best(&self) -> f64 {
+    pub(crate) fn best_odds(&self) -> f64 {
         self.candidates.first().map_or(0.0, |(_, odds)| *odds)
     }
 
     /// Returns the first written unit that measures the given kind of quantity.
-    pub(crate) fn unit(&self, kind: Kind) -> Option<&str> {
+    pub(crate) fn unit_of_kind(&self, kind: QuantityKind) -> Option<&str> {
         let fits = |unit: &&String| unit_is(kind, unit);
         self.units.iter().find(fits).map(String::as_str)
     }
 }
 
-fn unit_is(kind: Kind, unit: &str) -> bool {
-    let percent = unit == "%" && matches!(kind, Kind::Revolutions | Kind::Angle);
-    percent || kind.units().iter().any(|known| known.name == unit)
+fn unit_is(kind: QuantityKind, unit: &str) -> bool {
+    let percent = unit == "%" && matches!(kind, QuantityKind::Revolutions | QuantityKind::Angle);
+    percent || kind.known_units().iter().any(|known| known.name == unit)
 }
 
 /// Returns the unit that a text denotes, by its name in manifests.
@@ -103,7 +106,7 @@ fn is_port_positive(header: &str) -> bool {
 }
 
 /// Words, units and letters of a header.
-struct Parts {
+struct HeaderParts {
     /// Words outside units, without the words that state a sign.
     words: Vec<String>,
     /// All words, joined without a separator.
@@ -116,11 +119,11 @@ struct Parts {
     ending: Vec<(String, usize)>,
 }
 
-impl Parts {
+impl HeaderParts {
     fn new(header: &str) -> Self {
-        let (name, units) = without_brackets(header);
-        let all = words(&name);
-        let ending = ending(&all);
+        let (name, units) = split_units(header);
+        let all = split_words(&name);
+        let ending = ending_units(&all);
         let mut letters = name.trim().chars();
         let letter = letters.next().filter(|_| letters.next().is_none());
         let mut units = units;
@@ -133,7 +136,7 @@ impl Parts {
         Self { joined: all.concat(), words: all, letter, units, ending }
     }
 
-    fn side(&self) -> Option<Side> {
+    fn find_side(&self) -> Option<Side> {
         let several = self.words.len() > 1;
         let of_word = |word: &String| {
             let sides = vocabulary().sides.iter();
@@ -154,12 +157,12 @@ impl Parts {
             .find_map(of_word)
             .or_else(|| self.words.first().and_then(of_word))
             .or_else(written)
-            .or_else(|| self.suffix().map(|(_, side)| side))
+            .or_else(|| self.side_suffix().map(|(_, side)| side))
     }
 
     /// Returns the stem and the side of a single word that ends in the letter of a side, such as
     /// `deltal`.
-    fn suffix(&self) -> Option<(&str, Side)> {
+    fn side_suffix(&self) -> Option<(&str, Side)> {
         let [word] = self.words.as_slice() else { return None };
         let sides =
             [('l', Side::Port), ('p', Side::Port), ('r', Side::Starboard), ('s', Side::Starboard)];
@@ -171,26 +174,27 @@ impl Parts {
     }
 
     /// Returns the log odds of a phrase; `None` if the header does not contain it.
-    fn odds(&self, phrase: &Phrase) -> Option<f64> {
+    fn phrase_odds(&self, phrase: &Phrase) -> Option<f64> {
         if phrase.joined.chars().count() == 1 && !is_ideographic(&phrase.joined) {
             return self.letter_odds(phrase);
         }
         if is_ideographic(&phrase.joined) {
             return self.ideographic_odds(&phrase.joined);
         }
-        let stem = self.suffix().map(|(stem, _)| stem);
+        let stem = self.side_suffix().map(|(stem, _)| stem);
         if self.joined == phrase.joined || stem == Some(phrase.joined.as_str()) {
             return Some(EXACT);
         }
-        let holds = phrase.words.iter().all(|word| self.words.iter().any(|one| same(one, word)));
-        holds.then(|| self.partial(phrase)).filter(|odds| *odds > 0.0)
+        let holds =
+            phrase.words.iter().all(|word| self.words.iter().any(|one| is_same_word(one, word)));
+        holds.then(|| self.partial_odds(phrase)).filter(|odds| *odds > 0.0)
     }
 
-    fn partial(&self, phrase: &Phrase) -> f64 {
-        let open = self.unexplained(phrase);
+    fn partial_odds(&self, phrase: &Phrase) -> f64 {
+        let open = self.unexplained_words(phrase);
         // A word of a quantity that is not read (ordered, error, force) makes the whole header one.
         let weight = match &phrase.meaning {
-            Meaning::Other(name) if name != "count or mark" => 1.0,
+            PhraseMeaning::Other(name) if name != "count or mark" => 1.0,
             _ => UNEXPLAINED,
         };
         // Of phrases that explain equally many words, the longer one is more specific.
@@ -199,12 +203,12 @@ impl Parts {
 
     /// Counts the words explained by neither the phrase, nor a unit, nor a side, nor the list of
     /// common words.
-    fn unexplained(&self, phrase: &Phrase) -> usize {
+    fn unexplained_words(&self, phrase: &Phrase) -> usize {
         let kind = match phrase.meaning {
-            Meaning::Channel(role) => role.kind(),
-            Meaning::Other(_) => Kind::Any,
+            PhraseMeaning::Channel(role) => role.kind(),
+            PhraseMeaning::Other(_) => QuantityKind::Any,
         };
-        let fits = |unit: &str| kind == Kind::Any || unit_is(kind, unit);
+        let fits = |unit: &str| kind == QuantityKind::Any || unit_is(kind, unit);
         let ends = self.ending.iter().filter(|(unit, _)| fits(unit)).map(|(_, count)| *count);
         // The words of a fitting unit at the end need no other explanation.
         let kept = self.words.len() - ends.max().unwrap_or(0);
@@ -215,8 +219,9 @@ impl Parts {
                 || word.chars().all(|letter| letter.is_ascii_digit())
                 || unit_named(word).is_some_and(|unit| fits(&unit))
         };
-        let open =
-            |word: &&String| !phrase.words.iter().any(|one| same(word, one)) && !common(word);
+        let open = |word: &&String| {
+            !phrase.words.iter().any(|one| is_same_word(word, one)) && !common(word)
+        };
         self.words[..kept].iter().filter(open).count()
     }
 
@@ -226,9 +231,9 @@ impl Parts {
         if *first != phrase.joined {
             return None;
         }
-        let rest = self.unexplained(phrase);
+        let rest = self.unexplained_words(phrase);
         let capital = self.letter.is_some_and(char::is_uppercase);
-        let is_place = matches!(phrase.meaning, Meaning::Channel(Role::X | Role::Y));
+        let is_place = matches!(phrase.meaning, PhraseMeaning::Channel(Role::X | Role::Y));
         let odds = match (is_place && matches!(phrase.joined.as_str(), "n" | "e"), capital) {
             (true, false) => return None,
             (true, true) => LETTER + 1.0,
@@ -256,17 +261,20 @@ impl Parts {
 }
 
 /// Returns true if two words are equal, apart from digits at the end of the written one.
-fn same(written: &str, known: &str) -> bool {
+fn is_same_word(written: &str, known: &str) -> bool {
     let stem = written.trim_end_matches(|letter: char| letter.is_ascii_digit());
     written == known || (stem.len() > 1 && stem == known)
 }
 
 fn is_sign_word(word: &str) -> bool {
-    vocabulary().port_positive.iter().any(|phrase| words(phrase).iter().any(|one| one == word))
+    vocabulary()
+        .port_positive
+        .iter()
+        .any(|phrase| split_words(phrase).iter().any(|one| one == word))
 }
 
 /// Returns the header without the units in brackets or after a separator, and these units.
-fn without_brackets(header: &str) -> (String, Vec<String>) {
+fn split_units(header: &str) -> (String, Vec<String>) {
     let (mut name, mut units, mut rest) = (String::new(), Vec::new(), header);
     while let Some(open) = rest.find(['[', '(', '{', '（', '［']) {
         let inner = &rest[open..];
@@ -309,7 +317,7 @@ fn is_clear(unit: &str) -> bool {
 
 /// Returns the units formed by the last one or two words, such as `deg`, `deg_s`, `m_s`, with the
 /// number of words of each.
-fn ending(words: &[String]) -> Vec<(String, usize)> {
+fn ending_units(words: &[String]) -> Vec<(String, usize)> {
     let counts = (1..=2).filter(|count| *count < words.len());
     counts
         .flat_map(|count| {
@@ -327,7 +335,7 @@ mod tests {
 
     fn best(header: &str) -> Option<&'static str> {
         match HeaderEvidence::new(header, None).candidates.first() {
-            Some((Meaning::Channel(role), _)) => Some(role.name()),
+            Some((PhraseMeaning::Channel(role), _)) => Some(role.name()),
             _ => None,
         }
     }
@@ -403,12 +411,15 @@ mod tests {
     #[test]
     fn units_sides_and_signs_are_read() {
         let of = |header: &str| HeaderEvidence::new(header, None);
-        assert_eq!(of("Sway speed [kn]").unit(Kind::Speed), Some("kn"));
-        assert_eq!(of("yaw_rate_deg_s").unit(Kind::Rate), Some("deg/s"));
-        assert_eq!(of("rpm_port").unit(Kind::Revolutions), Some("rpm"));
-        assert_eq!(of("Drehzahl 1/min").unit(Kind::Revolutions), Some("rpm"));
+        assert_eq!(of("Sway speed [kn]").unit_of_kind(QuantityKind::Speed), Some("kn"));
+        assert_eq!(of("yaw_rate_deg_s").unit_of_kind(QuantityKind::Rate), Some("deg/s"));
+        assert_eq!(of("rpm_port").unit_of_kind(QuantityKind::Revolutions), Some("rpm"));
+        assert_eq!(of("Drehzahl 1/min").unit_of_kind(QuantityKind::Revolutions), Some("rpm"));
         assert_eq!(of("rpm_port").side, Some(Side::Port));
         assert!(of("Rudder (port positive)").is_port_positive);
-        assert_eq!(HeaderEvidence::new("speed", Some("knots")).unit(Kind::Speed), Some("kn"));
+        assert_eq!(
+            HeaderEvidence::new("speed", Some("knots")).unit_of_kind(QuantityKind::Speed),
+            Some("kn")
+        );
     }
 }

@@ -13,14 +13,14 @@ pub(crate) struct Hypothesis {
 
 impl Hypothesis {
     /// Returns the factor from the numbers of the column to SI units and canonical sign.
-    pub(crate) fn factor(&self) -> f64 {
+    pub(crate) fn si_factor(&self) -> f64 {
         if self.is_reversed { -self.unit.to_si } else { self.unit.to_si }
     }
 
     /// Returns the hypotheses of every unit and sign of a role.
-    pub(crate) fn of_role(role: Role) -> impl Iterator<Item = Self> {
+    pub(crate) fn for_role(role: Role) -> impl Iterator<Item = Self> {
         let signs: &[bool] = if role.is_signed() { &[false, true] } else { &[false] };
-        let units = role.kind().units().iter();
+        let units = role.kind().known_units().iter();
         units.flat_map(move |&unit| {
             signs.iter().map(move |&is_reversed| Self { role, unit, is_reversed })
         })
@@ -40,16 +40,16 @@ impl Assignment {
     pub(crate) fn find(&self, role: Role) -> Option<(usize, f64)> {
         let of_role = |one: &Option<Hypothesis>| one.is_some_and(|one| one.role == role);
         let at = self.columns.iter().position(of_role)?;
-        Some((at, self.columns[at]?.factor()))
+        Some((at, self.columns[at]?.si_factor()))
     }
 
-    pub(crate) fn has(&self, role: Role) -> bool {
+    pub(crate) fn has_role(&self, role: Role) -> bool {
         self.find(role).is_some()
     }
 
     /// Returns the assignment with another hypothesis for a column; a column that had the same role
     /// becomes free.
-    pub(crate) fn with(&self, column: usize, to: Option<Hypothesis>) -> Self {
+    pub(crate) fn with_column(&self, column: usize, to: Option<Hypothesis>) -> Self {
         let mut other = self.clone();
         if let Some(to) = to.filter(|to| to.role != Role::Other) {
             // A role occurs only once.

@@ -2,13 +2,13 @@
 
 use crate::data::RecordingSample;
 use crate::hypothesis::{Assignment, Hypothesis};
-use crate::outcome::{Alternative, Identification, IdentifiedColumn};
+use crate::outcome::{AlternativeReading, Identification, IdentifiedColumn};
 use crate::own::OwnEvidence;
-use crate::physics::Physics;
-use crate::relation::Relation;
+use crate::physics::PhysicalEvidence;
+use crate::relation::ColumnRelation;
 use crate::role::Role;
-use crate::search::{Search, Settled};
-use crate::signals::Signals;
+use crate::search::{AssignmentSearch, SettledColumn};
+use crate::signals::RecordingSignals;
 use crate::starts;
 use crate::thrusters;
 use crate::time::{self, TimeUnit};
@@ -19,11 +19,11 @@ const CERTAIN: f64 = 0.97;
 const NAMED: f64 = 3.0;
 const RELATED: f64 = 8.0;
 /// Log odds from which a relation is mentioned in the reason.
-const TOLD: f64 = 3.0;
+const REPORTED_ODDS: f64 = 3.0;
 /// Probability of an alternative from which it is reported.
-const ASKED: f64 = 0.15;
+const ALTERNATIVE_PROBABILITY: f64 = 0.15;
 /// Probability below which a column that its name does not support is left unassigned.
-const TAKEN: f64 = 0.6;
+const ACCEPTED_PROBABILITY: f64 = 0.6;
 
 /// Column whose content is given by the user.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,44 +40,50 @@ pub struct GivenColumn {
 }
 
 /// Identifies the columns of a recording by headers, values and the relations between them.
-pub fn identify(recording: &RecordingSample, given: &[GivenColumn]) -> Identification {
+pub fn identify_columns(recording: &RecordingSample, given: &[GivenColumn]) -> Identification {
     // The time column is found from the evidence of single columns; relations between columns need
     // its integrals, so that the signals are computed again once it is known.
-    let plain = Signals::new(recording, None);
+    let plain = RecordingSignals::new(recording, None);
     let own: Vec<OwnEvidence> = recording
         .columns
         .iter()
         .zip(&plain.summaries)
         .map(|(column, summary)| OwnEvidence::new(column, summary))
         .collect();
-    let time = given_time(recording, given).or_else(|| time::column(&recording.columns, &own));
+    let time = given_time(recording, given).or_else(|| time::time_column(&recording.columns, &own));
     let units = time.map_or(Vec::new(), |at| time_units(recording, &own, at, given));
-    let signals = Signals::new(recording, time);
+    let signals = RecordingSignals::new(recording, time);
     let fallback = TimeUnit { name: "s", to_si: 1.0, odds: 0.0 };
     let units = if units.is_empty() { vec![fallback] } else { units };
-    let search = Search::new(&own, Physics::new(&signals), time, settled(recording, given));
+    let search = AssignmentSearch::new(
+        &own,
+        PhysicalEvidence::new(&signals),
+        time,
+        settled_columns(recording, given),
+    );
     // One search for each unit of time: the relations decide between the units.
     let found = units.iter().map(|unit| {
-        let (best, odds) = starts::best(&search, unit.to_si);
+        let (best, odds) = starts::best_assignment(&search, unit.to_si);
         (*unit, best, odds + unit.odds)
     });
     let mut found: Vec<(TimeUnit, Assignment, f64)> = found.collect();
     found.sort_by(|a, b| b.2.total_cmp(&a.2));
     let Some((unit, best, _)) = found.first().cloned() else { return Identification::default() };
     // Figures for the reader are computed for the best assignment only.
-    let physics = Physics::with_figures(&signals);
-    let outcome = Outcome { search: &search, best: &best, relations: physics.relations(&best) };
+    let physics = PhysicalEvidence::with_figures(&signals);
+    let outcome =
+        AssignmentReport { search: &search, best: &best, relations: physics.find_relations(&best) };
     let mut columns: Vec<IdentifiedColumn> = recording
         .columns
         .iter()
         .enumerate()
-        .map(|(at, column)| outcome.column(at, &column.header))
+        .map(|(at, column)| outcome.describe_column(at, &column.header))
         .collect();
     if let Some(at) = time {
         let second = found.get(1).map(|other| (other.0, other.2 - found[0].2));
-        columns[at] = of_time(&recording.columns[at].header, &own[at], unit, second);
+        columns[at] = identify_time(&recording.columns[at].header, &own[at], unit, second);
     }
-    let thrusters = thrusters::find(&own, &signals, &best);
+    let thrusters = thrusters::find_thrusters(&own, &signals, &best);
     Identification { columns, thrusters }
 }
 
@@ -94,15 +100,15 @@ fn time_units(
 ) -> Vec<TimeUnit> {
     let named = given.iter().find(|one| one.role == Some(Role::Time));
     let unit = named.and_then(|one| one.unit.as_deref());
-    let all = time::units(&recording.columns[at], &own[at]);
-    let known = Role::Time.kind().units().iter().find(|known| Some(known.name) == unit);
+    let all = time::candidate_units(&recording.columns[at], &own[at]);
+    let known = Role::Time.kind().known_units().iter().find(|known| Some(known.name) == unit);
     match known {
         Some(known) => vec![TimeUnit { name: known.name, to_si: known.to_si, odds: 0.0 }],
         None => all,
     }
 }
 
-fn settled(recording: &RecordingSample, given: &[GivenColumn]) -> Vec<Settled> {
+fn settled_columns(recording: &RecordingSample, given: &[GivenColumn]) -> Vec<SettledColumn> {
     let of = |one: &GivenColumn| {
         let column = recording.columns.iter().position(|known| known.header == one.header)?;
         let role = one.role.filter(|role| *role != Role::Time);
@@ -112,13 +118,13 @@ fn settled(recording: &RecordingSample, given: &[GivenColumn]) -> Vec<Settled> {
         };
         // The first hypothesis that the user's unit and sign allow; units are ordered most usual
         // first.
-        let what = role.and_then(|role| Hypothesis::of_role(role).find(fits));
-        (one.role != Some(Role::Time)).then_some(Settled { column, what })
+        let what = role.and_then(|role| Hypothesis::for_role(role).find(fits));
+        (one.role != Some(Role::Time)).then_some(SettledColumn { column, what })
     };
     given.iter().filter_map(of).collect()
 }
 
-fn of_time(
+fn identify_time(
     header: &str,
     own: &OwnEvidence,
     unit: TimeUnit,
@@ -127,15 +133,18 @@ fn of_time(
     // `odds` of the second unit is its log odds relative to the best, hence at most 0.
     let other = second.map_or(0.0, |(_, odds)| odds.exp());
     let probability = 1.0 / (1.0 + other);
-    let named = own.named(Role::Time) >= NAMED;
+    let named = own.name_odds(Role::Time) >= NAMED;
     let step = own.summary.step * unit.to_si;
     let name = if named { "a name of time; " } else { "" };
-    let alternative = second.filter(|_| 1.0 - probability > ASKED).map(|(unit, _)| Alternative {
-        role: Some(Role::Time),
-        unit: unit.name.into(),
-        is_reversed: false,
-        probability: 1.0 - probability,
-    });
+    let alternative =
+        second.filter(|_| 1.0 - probability > ALTERNATIVE_PROBABILITY).map(|(unit, _)| {
+            AlternativeReading {
+                role: Some(Role::Time),
+                unit: unit.name.into(),
+                is_reversed: false,
+                probability: 1.0 - probability,
+            }
+        });
     IdentifiedColumn {
         header: header.to_owned(),
         role: Some(Role::Time),
@@ -150,32 +159,33 @@ fn of_time(
 }
 
 /// Best assignment, from which the result of each column is written.
-struct Outcome<'a> {
-    search: &'a Search<'a>,
+struct AssignmentReport<'a> {
+    search: &'a AssignmentSearch<'a>,
     best: &'a Assignment,
-    relations: Vec<Relation>,
+    relations: Vec<ColumnRelation>,
 }
 
-impl Outcome<'_> {
-    fn column(&self, at: usize, header: &str) -> IdentifiedColumn {
+impl AssignmentReport<'_> {
+    fn describe_column(&self, at: usize, header: &str) -> IdentifiedColumn {
         let own = &self.search.own[at];
         let what = self.best.columns[at];
-        let mut all = self.alternatives(at);
+        let mut all = self.alternative_odds(at);
         // Softmax of the log odds, shifted by their maximum against overflow.
         let most = all.iter().map(|one| one.1).fold(f64::NEG_INFINITY, f64::max);
         let sum: f64 = all.iter().map(|one| (one.1 - most).exp()).sum();
         all.iter_mut().for_each(|one| one.1 = (one.1 - most).exp() / sum);
         let probability = all.iter().find(|one| one.0 == what).map_or(0.0, |one| one.1);
         let other = all.iter().filter(|one| one.0 != what).max_by(|a, b| a.1.total_cmp(&b.1));
-        let alternative = other.filter(|one| one.1 > ASKED).map(|one| Alternative {
-            role: one.0.map(|what| what.role),
-            unit: one.0.map_or("", |what| what.unit.name).into(),
-            is_reversed: one.0.is_some_and(|what| what.is_reversed),
-            probability: one.1,
-        });
-        let named = what.is_some_and(|what| own.named(what.role) >= NAMED);
-        if what.is_some() && !named && probability < TAKEN {
-            return self.left_out(at, header, probability);
+        let alternative =
+            other.filter(|one| one.1 > ALTERNATIVE_PROBABILITY).map(|one| AlternativeReading {
+                role: one.0.map(|what| what.role),
+                unit: one.0.map_or("", |what| what.unit.name).into(),
+                is_reversed: one.0.is_some_and(|what| what.is_reversed),
+                probability: one.1,
+            });
+        let named = what.is_some_and(|what| own.name_odds(what.role) >= NAMED);
+        if what.is_some() && !named && probability < ACCEPTED_PROBABILITY {
+            return self.unassigned_column(at, header, probability);
         }
         IdentifiedColumn {
             header: header.to_owned(),
@@ -184,16 +194,20 @@ impl Outcome<'_> {
             is_reversed: what.is_some_and(|what| what.is_reversed),
             probability,
             is_certain: self.is_certain(at, probability),
-            reason: self.reason(at),
+            reason: self.evidence_text(at),
             alternative,
-            other: own.header.other().filter(|_| what.is_none()).map(|(name, _)| name.to_owned()),
+            other: own
+                .header
+                .other_quantity()
+                .filter(|_| what.is_none())
+                .map(|(name, _)| name.to_owned()),
         }
     }
 
     /// Returns the result of a column whose best hypothesis is too unlikely to be accepted.
-    fn left_out(&self, at: usize, header: &str, probability: f64) -> IdentifiedColumn {
+    fn unassigned_column(&self, at: usize, header: &str, probability: f64) -> IdentifiedColumn {
         let what = self.best.columns[at];
-        let alternative = what.map(|what| Alternative {
+        let alternative = what.map(|what| AlternativeReading {
             role: Some(what.role),
             unit: what.unit.name.into(),
             is_reversed: what.is_reversed,
@@ -213,13 +227,14 @@ impl Outcome<'_> {
     }
 
     /// Returns every hypothesis of a column with its log odds, the other columns as assigned.
-    fn alternatives(&self, at: usize) -> Vec<(Option<Hypothesis>, f64)> {
+    fn alternative_odds(&self, at: usize) -> Vec<(Option<Hypothesis>, f64)> {
         let each = self.search.hypotheses[at].iter().copied().map(Some).chain([None]);
-        let mut all: Vec<(Option<Hypothesis>, f64)> =
-            each.map(|what| (what, self.search.odds(&self.best.with(at, what)))).collect();
+        let mut all: Vec<(Option<Hypothesis>, f64)> = each
+            .map(|what| (what, self.search.assignment_odds(&self.best.with_column(at, what))))
+            .collect();
         let best = self.best.columns[at];
         if !all.iter().any(|one| one.0 == best) {
-            all.push((best, self.search.odds(self.best)));
+            all.push((best, self.search.assignment_odds(self.best)));
         }
         all
     }
@@ -229,23 +244,23 @@ impl Outcome<'_> {
         let Some(what) = self.best.columns[at] else {
             // A column that is not read is certain if its header, its counting of rows or its being
             // empty says why.
-            let known = own.header.other().is_some() || own.summary.is_counter;
+            let known = own.header.other_quantity().is_some() || own.summary.is_counter;
             return known || own.summary.count == 0;
         };
         let settled = self.search.settled.iter().any(|one| one.column == at);
-        let borne = own.named(what.role) >= NAMED || self.related(what.role) >= RELATED;
+        let borne = own.name_odds(what.role) >= NAMED || self.relation_odds(what.role) >= RELATED;
         settled || (probability > CERTAIN && borne)
     }
 
-    fn related(&self, role: Role) -> f64 {
+    fn relation_odds(&self, role: Role) -> f64 {
         let of_role = self.relations.iter().filter(|one| one.roles.contains(&role));
         of_role.map(|one| one.odds).sum()
     }
 
-    fn reason(&self, at: usize) -> String {
+    fn evidence_text(&self, at: usize) -> String {
         let own = &self.search.own[at];
         let Some(what) = self.best.columns[at] else {
-            return match own.header.other() {
+            return match own.header.other_quantity() {
                 Some((name, _)) => format!("{name}: no channel holds it"),
                 None if own.summary.count == 0 => "it holds no number".into(),
                 None if own.summary.is_counter => "it counts rows".into(),
@@ -253,13 +268,13 @@ impl Outcome<'_> {
             };
         };
         let mut parts = Vec::new();
-        if own.named(what.role) >= NAMED {
+        if own.name_odds(what.role) >= NAMED {
             parts.push("by name".to_owned());
         }
-        let mut relations: Vec<&Relation> = self
+        let mut relations: Vec<&ColumnRelation> = self
             .relations
             .iter()
-            .filter(|one| one.roles.contains(&what.role) && one.odds.abs() > TOLD)
+            .filter(|one| one.roles.contains(&what.role) && one.odds.abs() > REPORTED_ODDS)
             .collect();
         relations.sort_by(|a, b| b.odds.abs().total_cmp(&a.odds.abs()));
         parts.extend(relations.iter().take(2).map(|one| one.figure.clone()));

@@ -30,6 +30,6 @@ mod words;
 
 pub use data::{ColumnData, RecordingSample};
 pub use faults::{FilteredChannel, SampleFault, backward_times, sample_faults};
-pub use identify::{GivenColumn, identify};
-pub use outcome::{Alternative, Identification, IdentifiedColumn, ThrusterPair};
-pub use role::{Kind, Role, Side, Unit};
+pub use identify::{GivenColumn, identify_columns};
+pub use outcome::{AlternativeReading, Identification, IdentifiedColumn, ThrusterPair};
+pub use role::{QuantityKind, Role, Side, Unit};

@@ -22,14 +22,14 @@ pub struct IdentifiedColumn {
     /// Evidence as text for the user.
     pub reason: String,
     /// Second likeliest hypothesis, where it is nearly as likely.
-    pub alternative: Option<Alternative>,
+    pub alternative: Option<AlternativeReading>,
     /// Quantity named by the header for which there is no channel.
     pub other: Option<String>,
 }
 
 /// Alternative hypothesis for a column.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Alternative {
+pub struct AlternativeReading {
     /// Quantity of the column; `None` for a column that is not read.
     pub role: Option<Role>,
     /// Unit by its name in manifests.

@@ -3,8 +3,8 @@
 use crate::data::ColumnData;
 use crate::header::HeaderEvidence;
 use crate::hypothesis::Hypothesis;
-use crate::role::{Kind, Role};
-use crate::summary::Summary;
+use crate::role::{QuantityKind, Role};
+use crate::summary::ColumnSummary;
 
 /// Log odds of a given channel where a header names none: one of some thirty quantities.
 const UNNAMED: f64 = -3.2;
@@ -26,12 +26,12 @@ const OUT_OF_RANGE: f64 = 14.0;
 #[derive(Debug, Clone)]
 pub(crate) struct OwnEvidence {
     pub header: HeaderEvidence,
-    pub summary: Summary,
+    pub summary: ColumnSummary,
     is_blank: bool,
 }
 
 impl OwnEvidence {
-    pub(crate) fn new(column: &ColumnData, summary: &Summary) -> Self {
+    pub(crate) fn new(column: &ColumnData, summary: &ColumnSummary) -> Self {
         let header = HeaderEvidence::new(&column.header, column.below.as_deref());
         let text = column.header.trim();
         let is_blank = text.is_empty() || text.starts_with('#') || header.candidates.is_empty();
@@ -39,31 +39,34 @@ impl OwnEvidence {
     }
 
     /// Returns the log odds of a hypothesis against the column being none of the channels.
-    pub(crate) fn odds(&self, what: &Hypothesis) -> f64 {
+    pub(crate) fn hypothesis_odds(&self, what: &Hypothesis) -> f64 {
         if self.summary.count == 0 {
             return -OUT_OF_RANGE;
         }
-        self.named(what.role) + self.unit(what) + self.sign(what) + self.range(what)
+        self.name_odds(what.role)
+            + self.unit_odds(what)
+            + self.sign_odds(what)
+            + self.range_odds(what)
     }
 
     /// Returns the log odds of the column holding none of the channels.
-    pub(crate) fn none(&self) -> f64 {
-        let other = self.header.other().map_or(0.0, |(_, odds)| odds);
+    pub(crate) fn unassigned_odds(&self) -> f64 {
+        let other = self.header.other_quantity().map_or(0.0, |(_, odds)| odds);
         if self.summary.is_counter { other.max(2.0) } else { other }
     }
 
-    pub(crate) fn named(&self, role: Role) -> f64 {
-        match self.header.odds(role) {
+    pub(crate) fn name_odds(&self, role: Role) -> f64 {
+        match self.header.role_odds(role) {
             Some(odds) => odds,
             // `speed` may be either speed, a heading is often called a course.
-            None if self.alike(role) => self.header.best() - 3.0,
+            None if self.shares_name(role) => self.header.best_odds() - 3.0,
             None if self.is_blank => UNNAMED,
-            None => UNNAMED - self.header.best().min(NAMED_OTHERWISE),
+            None => UNNAMED - self.header.best_odds().min(NAMED_OTHERWISE),
         }
     }
 
     /// Returns true if the header names a quantity whose name is often used for the given one.
-    fn alike(&self, role: Role) -> bool {
+    fn shares_name(&self, role: Role) -> bool {
         const ALIKE: [(Role, Role); 11] = [
             (Role::Speed, Role::U),
             (Role::U, Role::Speed),
@@ -77,39 +80,40 @@ impl OwnEvidence {
             (Role::V, Role::VEast),
             (Role::Course, Role::Psi),
         ];
-        let best = self.header.best();
-        let is_best = |written: Role| self.header.odds(written).is_some_and(|odds| odds >= best);
+        let best = self.header.best_odds();
+        let is_best =
+            |written: Role| self.header.role_odds(written).is_some_and(|odds| odds >= best);
         ALIKE.iter().any(|&(written, meant)| meant == role && is_best(written))
     }
 
-    fn unit(&self, what: &Hypothesis) -> f64 {
+    fn unit_odds(&self, what: &Hypothesis) -> f64 {
         let kind = what.role.kind();
         // Values that wrap at 360 or 2 pi show their unit, whatever is written.
         if let Some((_, unit)) = self.summary.period
-            && kind == Kind::Angle
+            && kind == QuantityKind::Angle
             && unit != what.unit.name
         {
             return -OTHER_UNIT;
         }
-        match self.header.unit(kind) {
+        match self.header.unit_of_kind(kind) {
             Some(written) if written == what.unit.name => 0.0,
             Some(_) => -OTHER_UNIT,
             // A written unit of another kind means another quantity.
-            None if self.written_otherwise(kind) => -OTHER_UNIT,
-            None => -unusual(what),
+            None if self.has_other_unit(kind) => -OTHER_UNIT,
+            None => -unusual_unit_odds(what),
         }
     }
 
-    fn written_otherwise(&self, kind: Kind) -> bool {
+    fn has_other_unit(&self, kind: QuantityKind) -> bool {
         // A name may end in the letter of a side, or be a unit itself: only units of several
         // letters speak against a quantity.
         let clear = |unit: &String| unit.len() > 1;
         !self.header.units.is_empty()
             && self.header.units.iter().all(clear)
-            && self.header.unit(kind).is_none()
+            && self.header.unit_of_kind(kind).is_none()
     }
 
-    fn sign(&self, what: &Hypothesis) -> f64 {
+    fn sign_odds(&self, what: &Hypothesis) -> f64 {
         let is_rudder = matches!(what.role, Role::Delta | Role::DeltaS | Role::DeltaP);
         match (self.header.is_port_positive, what.is_reversed) {
             (true, false) => -OTHER_UNIT,
@@ -122,9 +126,9 @@ impl OwnEvidence {
         }
     }
 
-    fn range(&self, what: &Hypothesis) -> f64 {
+    fn range_odds(&self, what: &Hypothesis) -> f64 {
         let summary = &self.summary;
-        let [low, high] = what.role.largest();
+        let [low, high] = what.role.usual_range();
         // Positions and unwrapped headings have an arbitrary origin: their spread counts, not their
         // size.
         let size = match what.role {
@@ -135,11 +139,11 @@ impl OwnEvidence {
         let out = if size < low { low / size.max(1e-12) } else { (size / high).max(1.0) };
         // A log-normal tail outside the usual range, bounded so that relations may outweigh it.
         let faded = 0.5 * (out.ln() / FADE).powi(2);
-        -(faded.min(OUT_OF_RANGE)) + self.shape(what)
+        -(faded.min(OUT_OF_RANGE)) + self.shape_odds(what)
     }
 
     /// Returns the log odds of a quantity by the shape of the values.
-    fn shape(&self, what: &Hypothesis) -> f64 {
+    fn shape_odds(&self, what: &Hypothesis) -> f64 {
         let summary = &self.summary;
         let directed =
             matches!(what.role, Role::Psi | Role::Course | Role::WindFrom | Role::ApparentWindFrom);
@@ -172,7 +176,7 @@ impl OwnEvidence {
 }
 
 /// Returns the log odds lost with a less usual unit where the header states none.
-fn unusual(what: &Hypothesis) -> f64 {
+fn unusual_unit_odds(what: &Hypothesis) -> f64 {
     let is_log =
         matches!(what.role, Role::Speed | Role::UWater | Role::WindSpeed | Role::ApparentWindSpeed);
     match what.unit.name {

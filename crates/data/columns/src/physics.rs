@@ -5,35 +5,35 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use crate::hypothesis::Assignment;
-use crate::relation::{Fit, LEAST, Observed, Relation};
+use crate::relation::{ColumnRelation, MIN_ODDS, RelationInput, SeriesFit};
 use crate::role::Role;
 use crate::rudder;
-use crate::signals::Signals;
-use crate::track::Track;
+use crate::signals::RecordingSignals;
+use crate::track::GroundTrack;
 
 /// Relations between the columns of a recording, with results cached by assignment.
-pub(crate) struct Physics<'a> {
-    pub observed: Observed<'a>,
-    tracks: RefCell<HashMap<[i64; 9], Option<Rc<Track>>>>,
-    rudders: RefCell<HashMap<(usize, usize, bool), rudder::Steering>>,
+pub(crate) struct PhysicalEvidence<'a> {
+    pub observed: RelationInput<'a>,
+    tracks: RefCell<HashMap<[i64; 9], Option<Rc<GroundTrack>>>>,
+    rudders: RefCell<HashMap<(usize, usize, bool), rudder::SteeringEvidence>>,
 }
 
-impl<'a> Physics<'a> {
-    pub(crate) fn new(signals: &'a Signals) -> Self {
-        Self::read(Observed { signals, is_told: false })
+impl<'a> PhysicalEvidence<'a> {
+    pub(crate) fn new(signals: &'a RecordingSignals) -> Self {
+        Self::from_input(RelationInput { signals, is_told: false })
     }
 
     /// Returns the relations with the figures that are shown to the user.
-    pub(crate) fn with_figures(signals: &'a Signals) -> Self {
-        Self::read(Observed { signals, is_told: true })
+    pub(crate) fn with_figures(signals: &'a RecordingSignals) -> Self {
+        Self::from_input(RelationInput { signals, is_told: true })
     }
 
-    fn read(observed: Observed<'a>) -> Self {
+    fn from_input(observed: RelationInput<'a>) -> Self {
         Self { observed, tracks: RefCell::default(), rudders: RefCell::default() }
     }
 
     /// Returns every relation between the columns of an assignment.
-    pub(crate) fn relations(&self, of: &Assignment) -> Vec<Relation> {
+    pub(crate) fn find_relations(&self, of: &Assignment) -> Vec<ColumnRelation> {
         let mut all = Vec::new();
         if self.observed.signals.scales.is_empty() {
             return all;
@@ -46,48 +46,50 @@ impl<'a> Physics<'a> {
             (Role::Y, Role::VEast, "moves as fast as the velocity east says"),
         ];
         for (whole, rate, text) in rates {
-            all.extend(self.rate(of, whole, rate, text));
+            all.extend(self.rate_relation(of, whole, rate, text));
         }
-        all.extend(self.track(of).iter().flat_map(|track| track.relations(self.observed, of)));
-        all.extend(self.steering(of));
-        all.extend(self.propulsion(of));
-        all.extend(self.heel(of));
-        all.extend(self.alike(of));
+        all.extend(
+            self.find_track(of).iter().flat_map(|track| track.track_relations(self.observed, of)),
+        );
+        all.extend(self.steering_relation(of));
+        all.extend(self.propulsion_relation(of));
+        all.extend(self.heel_relation(of));
+        all.extend(self.twin_relations(of));
         all
     }
 
     /// Returns the sum of the log odds of all relations.
-    pub(crate) fn odds(&self, of: &Assignment) -> f64 {
-        self.relations(of).iter().map(|relation| relation.odds).sum()
+    pub(crate) fn total_odds(&self, of: &Assignment) -> f64 {
+        self.find_relations(of).iter().map(|relation| relation.odds).sum()
     }
 
     /// Relation of a quantity with its rate: the change over blocks against the integral of the
     /// rate.
-    pub(crate) fn rate(
+    pub(crate) fn rate_relation(
         &self,
         of: &Assignment,
         whole: Role,
         rate: Role,
         text: &str,
-    ) -> Option<Relation> {
+    ) -> Option<ColumnRelation> {
         let ((i, fi), (j, fj)) = (of.find(whole)?, of.find(rate)?);
         let fj = fj * of.time_factor;
         let each = self.observed.signals.scales.iter().filter_map(|scale| {
-            Fit::new(&scale.columns[i].change, fi, &scale.columns[j].integral, fj)
+            SeriesFit::new(&scale.columns[i].change, fi, &scale.columns[j].integral, fj)
         });
         // The scale on which the two agree best: coarse blocks for slow motions, fine ones for fast
         // turns.
         let best = each.min_by(|a, b| a.left.total_cmp(&b.left))?;
-        let figure = self.observed.figure(|| format!("{text} ({:.2} times)", best.slope));
+        let figure = self.observed.format_figure(|| format!("{text} ({:.2} times)", best.slope));
         let roles = [whole, rate, Role::Other];
-        Some(Relation { roles, odds: best.odds(1e-5), figure })
+        Some(ColumnRelation { roles, odds: best.capped_odds(1e-5), figure })
     }
 
     /// Returns the track of positions and heading of an assignment, from the cache where it is
     /// known.
-    pub(crate) fn track(&self, of: &Assignment) -> Option<Rc<Track>> {
+    pub(crate) fn find_track(&self, of: &Assignment) -> Option<Rc<GroundTrack>> {
         let pairs = [(Role::X, Role::Y), (Role::Latitude, Role::Longitude)];
-        let (x, y) = pairs.into_iter().find(|(x, y)| of.has(*x) && of.has(*y))?;
+        let (x, y) = pairs.into_iter().find(|(x, y)| of.has_role(*x) && of.has_role(*y))?;
         // The key holds every column and factor on which the track depends; factors as integers of
         // 1e-9, since floating-point numbers are no keys.
         let place = |role: Role| match of.find(role) {
@@ -97,26 +99,27 @@ impl<'a> Physics<'a> {
         let ([a, b], [c, d]) = (place(x), place(y));
         let ([e, f], [g, h]) = (place(Role::Psi), place(Role::Course));
         let key = [a, b, c, d, e, f, g, h, (of.time_factor * 1e9) as i64];
-        let made = || Track::new(self.observed.signals, of, (x, y)).map(Rc::new);
+        let made = || GroundTrack::new(self.observed.signals, of, (x, y)).map(Rc::new);
         self.tracks.borrow_mut().entry(key).or_insert_with(made).clone()
     }
 
-    fn steering(&self, of: &Assignment) -> Option<Relation> {
+    fn steering_relation(&self, of: &Assignment) -> Option<ColumnRelation> {
         let (r, fr) = of.find(Role::R)?;
-        let rudder =
-            [Role::Delta, Role::DeltaS, Role::DeltaP].into_iter().find(|role| of.has(*role))?;
+        let rudder = [Role::Delta, Role::DeltaS, Role::DeltaP]
+            .into_iter()
+            .find(|role| of.has_role(*role))?;
         let (delta, fd) = of.find(rudder)?;
         let reversed = (fr < 0.0) != (fd < 0.0);
-        let made = || rudder::Steering::new(self.observed.signals, r, delta, reversed);
+        let made = || rudder::SteeringEvidence::new(self.observed.signals, r, delta, reversed);
         let steering = *self.rudders.borrow_mut().entry((r, delta, reversed)).or_insert_with(made);
-        Some(steering.relation(rudder, self.observed))
+        Some(steering.to_relation(rudder, self.observed))
     }
 
     /// Relation of revolutions with speed and turning by their sizes.
-    fn propulsion(&self, of: &Assignment) -> Option<Relation> {
-        let n = [Role::N, Role::NS, Role::NP].into_iter().find(|role| of.has(*role))?;
+    fn propulsion_relation(&self, of: &Assignment) -> Option<ColumnRelation> {
+        let n = [Role::N, Role::NS, Role::NP].into_iter().find(|role| of.has_role(*role))?;
         let speed = [Role::U, Role::Speed, Role::UWater, Role::VNorth];
-        let speed = speed.into_iter().find(|role| of.has(*role))?;
+        let speed = speed.into_iter().find(|role| of.has_role(*role))?;
         let ((i, fi), (j, fj)) = (of.find(n)?, of.find(speed)?);
         let revolutions = self.observed.signals.summaries[i].largest * fi;
         let speed_m_s = self.observed.signals.summaries[j].largest * fj.abs();
@@ -128,31 +131,31 @@ impl<'a> Physics<'a> {
         let length = 0.4 * speed_m_s / turning.filter(|r| *r > 1e-4)?;
         let advance = speed_m_s / revolutions.max(1e-9) / length.clamp(0.5, 300.0);
         let off = (advance.max(1e-12) / 0.02).ln();
-        let odds = (2.0 - 0.5 * off * off).clamp(LEAST, 2.0);
+        let odds = (2.0 - 0.5 * off * off).clamp(MIN_ODDS, 2.0);
         let ahead = speed_m_s / revolutions.max(1e-9);
-        let figure = self.observed.figure(|| format!("{ahead:.2} m ahead a turn"));
-        Some(Relation { roles: [n, Role::Other, Role::Other], odds, figure })
+        let figure = self.observed.format_figure(|| format!("{ahead:.2} m ahead a turn"));
+        Some(ColumnRelation { roles: [n, Role::Other, Role::Other], odds, figure })
     }
 
     /// Relation of roll angle and yaw rate: a turning ship heels, to one side or the other.
-    fn heel(&self, of: &Assignment) -> Option<Relation> {
+    fn heel_relation(&self, of: &Assignment) -> Option<ColumnRelation> {
         let ((i, _), (j, _)) = (of.find(Role::Phi)?, of.find(Role::R)?);
-        let correlation = self.correlation(i, j).abs();
+        let correlation = self.block_correlation(i, j).abs();
         let odds = 4.0 * (correlation - 0.3).max(0.0);
         let figure =
-            self.observed.figure(|| format!("heels with the yaw rate by {correlation:.2}"));
-        Some(Relation { roles: [Role::Phi, Role::R, Role::Other], odds, figure })
+            self.observed.format_figure(|| format!("heels with the yaw rate by {correlation:.2}"));
+        Some(ColumnRelation { roles: [Role::Phi, Role::R, Role::Other], odds, figure })
     }
 
     /// Returns the correlation of the means over coarse blocks.
-    fn correlation(&self, i: usize, j: usize) -> f64 {
+    fn block_correlation(&self, i: usize, j: usize) -> f64 {
         let means =
             |at: usize| self.observed.signals.scales.first().map(|scale| &scale.columns[at].mean);
-        means(i).zip(means(j)).map_or(0.0, |(a, b)| rudder::correlation(a, b))
+        means(i).zip(means(j)).map_or(0.0, |(a, b)| rudder::pearson_correlation(a, b))
     }
 
     /// Relations between two instruments of one quantity.
-    fn alike(&self, of: &Assignment) -> Vec<Relation> {
+    fn twin_relations(&self, of: &Assignment) -> Vec<ColumnRelation> {
         let pairs = [
             (Role::U, Role::UWater, 0.01),
             (Role::V, Role::VWater, 0.05),
@@ -166,11 +169,11 @@ impl<'a> Physics<'a> {
                 let ((i, fi), (j, fj)) = (of.find(one)?, of.find(other)?);
                 let scale = self.observed.signals.scales.first()?;
                 let (a, b) = (&scale.columns[i].mean, &scale.columns[j].mean);
-                let fit = Fit::new(a, fi, b, fj)?;
-                let (odds, share) = (fit.odds(floor), 100.0 * fit.left.sqrt());
+                let fit = SeriesFit::new(a, fi, b, fj)?;
+                let (odds, share) = (fit.capped_odds(floor), 100.0 * fit.left.sqrt());
                 let told = || format!("shows what its twin does, within {share:.0} %");
-                let figure = self.observed.figure(told);
-                Some(Relation { roles: [one, other, Role::Other], odds, figure })
+                let figure = self.observed.format_figure(told);
+                Some(ColumnRelation { roles: [one, other, Role::Other], odds, figure })
             })
             .collect()
     }

@@ -1,13 +1,13 @@
 //! Relations between columns: how well one series explains another, as log odds.
 
 use crate::role::Role;
-use crate::signals::Signals;
+use crate::signals::RecordingSignals;
 
 /// Log odds for each factor e by which the unexplained part of a relation is smaller.
 pub(crate) const PER_FOLD: f64 = 3.0;
 /// Largest and smallest log odds of one relation: instruments have scale errors and offsets.
-const MOST: f64 = 30.0;
-pub(crate) const LEAST: f64 = -12.0;
+const MAX_ODDS: f64 = 30.0;
+pub(crate) const MIN_ODDS: f64 = -12.0;
 /// Largest log odds of a relation that a constant would explain as well: only the sizes agree.
 const SIZE: f64 = 5.0;
 /// Fraction of the blocks whose residuals are excluded as faults of instruments.
@@ -15,7 +15,7 @@ const FAULTY: f64 = 0.04;
 
 /// Relation between columns, its log odds, and its figure as text.
 #[derive(Debug, Clone)]
-pub(crate) struct Relation {
+pub(crate) struct ColumnRelation {
     /// Quantities of the relation; `Other` fills unused places.
     pub roles: [Role; 3],
     /// Log odds against the columns being unrelated.
@@ -25,7 +25,7 @@ pub(crate) struct Relation {
 
 /// Fit of one series by another.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Fit {
+pub(crate) struct SeriesFit {
     /// Unexplained sum of squares as a fraction of the sum of squares, and of the sum of squares
     /// about the mean.
     pub left: f64,
@@ -34,7 +34,7 @@ pub(crate) struct Fit {
     pub slope: f64,
 }
 
-impl Fit {
+impl SeriesFit {
     /// Fits `factor_a * a` by `factor_b * b`; returns `None` if both are zero throughout.
     pub(crate) fn new(a: &[f64], factor_a: f64, b: &[f64], factor_b: f64) -> Option<Self> {
         let mut rows: Vec<(f64, f64, f64)> = a
@@ -70,26 +70,27 @@ impl Fit {
     }
 
     /// Returns the log odds; `floor` is the unexplained fraction that instruments leave at best.
-    pub(crate) fn odds(&self, floor: f64) -> f64 {
-        odds_of(self.left.max(floor)).min(SIZE + odds_of(self.left_of_changes.max(floor)))
+    pub(crate) fn capped_odds(&self, floor: f64) -> f64 {
+        residual_odds(self.left.max(floor))
+            .min(SIZE + residual_odds(self.left_of_changes.max(floor)))
     }
 }
 
 /// Returns the log odds of an unexplained fraction.
-pub(crate) fn odds_of(unexplained: f64) -> f64 {
-    (-PER_FOLD * unexplained.max(1e-5).ln()).clamp(LEAST, MOST)
+pub(crate) fn residual_odds(unexplained: f64) -> f64 {
+    (-PER_FOLD * unexplained.max(1e-5).ln()).clamp(MIN_ODDS, MAX_ODDS)
 }
 
 /// Signals from which relations are computed, and the request to write their figures.
 #[derive(Clone, Copy)]
-pub(crate) struct Observed<'a> {
-    pub signals: &'a Signals,
+pub(crate) struct RelationInput<'a> {
+    pub signals: &'a RecordingSignals,
     /// False while thousands of assignments are compared, since text is slow.
     pub is_told: bool,
 }
 
-impl Observed<'_> {
-    pub(crate) fn figure(&self, text: impl FnOnce() -> String) -> String {
+impl RelationInput<'_> {
+    pub(crate) fn format_figure(&self, text: impl FnOnce() -> String) -> String {
         if self.is_told { text() } else { String::new() }
     }
 }

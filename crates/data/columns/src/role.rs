@@ -65,7 +65,7 @@ pub enum Role {
 
 /// Physical kind of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum QuantityKind {
     /// s.
     Time,
     /// m.
@@ -82,10 +82,10 @@ pub enum Kind {
     Any,
 }
 
-struct Properties {
+struct RoleProperties {
     role: Role,
     name: &'static str,
-    kind: Kind,
+    kind: QuantityKind,
     /// Range, in SI units, of the largest magnitude of nearly every recording, from model basins to
     /// large ships.
     largest: [f64; 2],
@@ -93,47 +93,59 @@ struct Properties {
     is_signed: bool,
 }
 
-const fn row(
+const fn role_properties(
     role: Role,
     name: &'static str,
-    kind: Kind,
+    kind: QuantityKind,
     largest: [f64; 2],
     is_signed: bool,
-) -> Properties {
-    Properties { role, name, kind, largest, is_signed }
+) -> RoleProperties {
+    RoleProperties { role, name, kind, largest, is_signed }
 }
 
 // In the order of the variants of `Role`, which index this table.
-const TABLE: [Properties; 29] = [
-    row(Role::Time, "t", Kind::Time, [0.0, 1e12], false),
-    row(Role::X, "x", Kind::Length, [1.0, 1e7], false),
-    row(Role::Y, "y", Kind::Length, [1.0, 1e7], true),
-    row(Role::Latitude, "latitude", Kind::Angle, [0.001, 1.571], false),
-    row(Role::Longitude, "longitude", Kind::Angle, [0.001, 3.142], false),
-    row(Role::Psi, "psi", Kind::Angle, [0.08, 60.0], true),
-    row(Role::U, "u", Kind::Speed, [0.2, 25.0], true),
-    row(Role::V, "v", Kind::Speed, [0.01, 6.0], true),
-    row(Role::R, "r", Kind::Rate, [0.002, 1.0], true),
-    row(Role::Phi, "phi", Kind::Angle, [0.008, 0.7], true),
-    row(Role::P, "p", Kind::Rate, [0.0005, 0.5], true),
-    row(Role::Delta, "delta", Kind::Angle, [0.03, 1.7], true),
-    row(Role::DeltaS, "delta_s", Kind::Angle, [0.03, 1.7], true),
-    row(Role::DeltaP, "delta_p", Kind::Angle, [0.03, 1.7], true),
-    row(Role::N, "n", Kind::Revolutions, [0.5, 60.0], false),
-    row(Role::NS, "n_s", Kind::Revolutions, [0.5, 60.0], false),
-    row(Role::NP, "n_p", Kind::Revolutions, [0.5, 60.0], false),
-    row(Role::Course, "course", Kind::Angle, [0.08, 60.0], false),
-    row(Role::Speed, "speed", Kind::Speed, [0.2, 25.0], false),
-    row(Role::UWater, "u_water", Kind::Speed, [0.2, 25.0], false),
-    row(Role::VWater, "v_water", Kind::Speed, [0.01, 6.0], true),
-    row(Role::VNorth, "v_north", Kind::Speed, [0.1, 25.0], false),
-    row(Role::VEast, "v_east", Kind::Speed, [0.02, 25.0], true),
-    row(Role::WindSpeed, "wind_speed", Kind::Speed, [1.0, 45.0], false),
-    row(Role::WindFrom, "wind_from", Kind::Angle, [0.05, 6.3], false),
-    row(Role::ApparentWindSpeed, "apparent_wind_speed", Kind::Speed, [1.0, 60.0], false),
-    row(Role::ApparentWindFrom, "apparent_wind_from", Kind::Angle, [0.05, 6.3], false),
-    row(Role::Depth, "depth", Kind::Length, [0.2, 6000.0], false),
-    row(Role::Other, "", Kind::Any, [0.0, f64::INFINITY], false),
+const TABLE: [RoleProperties; 29] = [
+    role_properties(Role::Time, "t", QuantityKind::Time, [0.0, 1e12], false),
+    role_properties(Role::X, "x", QuantityKind::Length, [1.0, 1e7], false),
+    role_properties(Role::Y, "y", QuantityKind::Length, [1.0, 1e7], true),
+    role_properties(Role::Latitude, "latitude", QuantityKind::Angle, [0.001, 1.571], false),
+    role_properties(Role::Longitude, "longitude", QuantityKind::Angle, [0.001, 3.142], false),
+    role_properties(Role::Psi, "psi", QuantityKind::Angle, [0.08, 60.0], true),
+    role_properties(Role::U, "u", QuantityKind::Speed, [0.2, 25.0], true),
+    role_properties(Role::V, "v", QuantityKind::Speed, [0.01, 6.0], true),
+    role_properties(Role::R, "r", QuantityKind::Rate, [0.002, 1.0], true),
+    role_properties(Role::Phi, "phi", QuantityKind::Angle, [0.008, 0.7], true),
+    role_properties(Role::P, "p", QuantityKind::Rate, [0.0005, 0.5], true),
+    role_properties(Role::Delta, "delta", QuantityKind::Angle, [0.03, 1.7], true),
+    role_properties(Role::DeltaS, "delta_s", QuantityKind::Angle, [0.03, 1.7], true),
+    role_properties(Role::DeltaP, "delta_p", QuantityKind::Angle, [0.03, 1.7], true),
+    role_properties(Role::N, "n", QuantityKind::Revolutions, [0.5, 60.0], false),
+    role_properties(Role::NS, "n_s", QuantityKind::Revolutions, [0.5, 60.0], false),
+    role_properties(Role::NP, "n_p", QuantityKind::Revolutions, [0.5, 60.0], false),
+    role_properties(Role::Course, "course", QuantityKind::Angle, [0.08, 60.0], false),
+    role_properties(Role::Speed, "speed", QuantityKind::Speed, [0.2, 25.0], false),
+    role_properties(Role::UWater, "u_water", QuantityKind::Speed, [0.2, 25.0], false),
+    role_properties(Role::VWater, "v_water", QuantityKind::Speed, [0.01, 6.0], true),
+    role_properties(Role::VNorth, "v_north", QuantityKind::Speed, [0.1, 25.0], false),
+    role_properties(Role::VEast, "v_east", QuantityKind::Speed, [0.02, 25.0], true),
+    role_properties(Role::WindSpeed, "wind_speed", QuantityKind::Speed, [1.0, 45.0], false),
+    role_properties(Role::WindFrom, "wind_from", QuantityKind::Angle, [0.05, 6.3], false),
+    role_properties(
+        Role::ApparentWindSpeed,
+        "apparent_wind_speed",
+        QuantityKind::Speed,
+        [1.0, 60.0],
+        false,
+    ),
+    role_properties(
+        Role::ApparentWindFrom,
+        "apparent_wind_from",
+        QuantityKind::Angle,
+        [0.05, 6.3],
+        false,
+    ),
+    role_properties(Role::Depth, "depth", QuantityKind::Length, [0.2, 6000.0], false),
+    role_properties(Role::Other, "", QuantityKind::Any, [0.0, f64::INFINITY], false),
 ];
 
 impl Role {
@@ -142,7 +154,7 @@ impl Role {
         TABLE.iter().map(|row| row.role).filter(|&role| role != Self::Other)
     }
 
-    fn properties(self) -> &'static Properties {
+    fn properties(self) -> &'static RoleProperties {
         &TABLE[self as usize]
     }
 
@@ -152,17 +164,17 @@ impl Role {
     }
 
     /// Returns the quantity of a name in manifests.
-    pub fn by_name(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::channels().find(|role| role.name() == name)
     }
 
     /// Returns the physical kind of the quantity.
-    pub fn kind(self) -> Kind {
+    pub fn kind(self) -> QuantityKind {
         self.properties().kind
     }
 
     /// Returns the usual range of the largest magnitude of a recording, in SI units.
-    pub fn largest(self) -> [f64; 2] {
+    pub fn usual_range(self) -> [f64; 2] {
         self.properties().largest
     }
 
@@ -172,7 +184,7 @@ impl Role {
     }
 
     /// Returns the quantity of the starboard or port side, where there is one.
-    pub(crate) fn of_side(self, side: Side) -> Self {
+    pub(crate) fn for_side(self, side: Side) -> Self {
         match (self, side) {
             (Self::Delta, Side::Port) => Self::DeltaP,
             (Self::Delta, Side::Starboard) => Self::DeltaS,
@@ -207,9 +219,9 @@ const fn unit(name: &'static str, to_si: f64) -> Unit {
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
 
-impl Kind {
+impl QuantityKind {
     /// Returns the units in which columns of this kind are recorded, most usual first.
-    pub fn units(self) -> &'static [Unit] {
+    pub fn known_units(self) -> &'static [Unit] {
         const TIME: [Unit; 6] = [
             unit("s", 1.0),
             unit("ms", 1e-3),
@@ -248,6 +260,6 @@ mod tests {
         for (at, row) in TABLE.iter().enumerate() {
             assert_eq!(row.role as usize, at);
         }
-        assert_eq!(Role::by_name("v_north"), Some(Role::VNorth));
+        assert_eq!(Role::from_name("v_north"), Some(Role::VNorth));
     }
 }

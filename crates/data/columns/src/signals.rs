@@ -4,7 +4,7 @@
 //! which suppresses the noise of instruments.
 
 use crate::data::RecordingSample;
-use crate::summary::{Summary, continuous};
+use crate::summary::{ColumnSummary, continuous_signal};
 
 /// Number of blocks of a recording: few for slow motions, many for fast turns.
 const BLOCKS: [usize; 2] = [150, 600];
@@ -21,7 +21,7 @@ pub(crate) struct BlockSums {
 
 /// Blocks of one scale.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Scale {
+pub(crate) struct BlockScale {
     pub columns: Vec<BlockSums>,
     /// Duration of each block, in the unit of the time column.
     pub duration: Vec<f64>,
@@ -29,34 +29,36 @@ pub(crate) struct Scale {
 
 /// Columns of a recording with their summaries and block sums.
 #[derive(Debug, Clone)]
-pub(crate) struct Signals {
-    pub summaries: Vec<Summary>,
+pub(crate) struct RecordingSignals {
+    pub summaries: Vec<ColumnSummary>,
     pub continuous: Vec<Vec<f64>>,
-    pub scales: Vec<Scale>,
+    pub scales: Vec<BlockScale>,
 }
 
-impl Signals {
+impl RecordingSignals {
     /// Computes the signals; without a time column there are no block sums.
     pub(crate) fn new(recording: &RecordingSample, time: Option<usize>) -> Self {
         let columns = &recording.columns;
-        let summaries: Vec<Summary> =
-            columns.iter().map(|column| Summary::new(&column.values, &recording.breaks)).collect();
+        let summaries: Vec<ColumnSummary> = columns
+            .iter()
+            .map(|column| ColumnSummary::new(&column.values, &recording.breaks))
+            .collect();
         let continuous: Vec<Vec<f64>> = columns
             .iter()
             .zip(&summaries)
-            .map(|(column, summary)| continuous(&column.values, summary))
+            .map(|(column, summary)| continuous_signal(&column.values, summary))
             .collect();
         let scales = time.map_or(Vec::new(), |at| {
             let t = &continuous[at];
-            let spans = spans(t, &recording.breaks, summaries[at].step);
-            BLOCKS.iter().map(|&count| scale(&continuous, t, &spans, count)).collect()
+            let spans = continuous_ranges(t, &recording.breaks, summaries[at].step);
+            BLOCKS.iter().map(|&count| sum_blocks(&continuous, t, &spans, count)).collect()
         });
         Self { summaries, continuous, scales }
     }
 }
 
 /// Returns the ranges of rows in which time increases without a gap.
-fn spans(t: &[f64], breaks: &[usize], step: f64) -> Vec<(usize, usize)> {
+fn continuous_ranges(t: &[f64], breaks: &[usize], step: f64) -> Vec<(usize, usize)> {
     let (mut spans, mut first) = (Vec::new(), 0);
     for k in 1..=t.len() {
         // Negated, so that a time that is not a number ends the range too.
@@ -74,7 +76,12 @@ fn spans(t: &[f64], breaks: &[usize], step: f64) -> Vec<(usize, usize)> {
     spans
 }
 
-fn scale(columns: &[Vec<f64>], t: &[f64], spans: &[(usize, usize)], count: usize) -> Scale {
+fn sum_blocks(
+    columns: &[Vec<f64>],
+    t: &[f64],
+    spans: &[(usize, usize)],
+    count: usize,
+) -> BlockScale {
     let rows = (t.len() / count).max(2);
     // Blocks share their end rows, and a rest shorter than a block is not used.
     let blocks: Vec<(usize, usize)> = spans
@@ -97,5 +104,5 @@ fn scale(columns: &[Vec<f64>], t: &[f64], spans: &[(usize, usize)], count: usize
         sums
     };
     let duration = blocks.iter().map(|&(first, last)| t[last] - t[first]).collect();
-    Scale { columns: columns.iter().map(sums).collect(), duration }
+    BlockScale { columns: columns.iter().map(sums).collect(), duration }
 }

@@ -14,7 +14,7 @@ const SPIKE: f64 = 12.0;
 
 /// Range and shape of the values of a column.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Summary {
+pub(crate) struct ColumnSummary {
     /// Number of finite values.
     pub count: usize,
     /// 99 % quantile of the magnitudes.
@@ -42,7 +42,7 @@ pub(crate) struct Summary {
     pub still: f64,
 }
 
-impl Summary {
+impl ColumnSummary {
     /// Summarises the values of one recording, or of several in sequence: no step is formed across
     /// a break, since clocks restart there.
     pub(crate) fn new(values: &[f64], breaks: &[usize]) -> Self {
@@ -52,40 +52,40 @@ impl Summary {
             return Self::default();
         }
         let steps = steps_within(values, breaks);
-        let period = period(&sorted);
+        let period = find_period(&sorted);
         let first = sorted[0];
-        let swings = swings(&sorted);
+        let swings = swings_about_mean(&sorted);
         sorted.sort_by(f64::total_cmp);
         let mut summary = Self {
             count: sorted.len(),
-            median: quantile(&sorted, 0.5),
-            spread: quantile(&sorted, 0.99) - quantile(&sorted, 0.01),
-            negative: share(&sorted, |value| value < 0.0),
+            median: sorted_quantile(&sorted, 0.5),
+            spread: sorted_quantile(&sorted, 0.99) - sorted_quantile(&sorted, 0.01),
+            negative: fraction_where(&sorted, |value| value < 0.0),
             period,
             swings: swings && period.is_none(),
             ..Self::default()
         };
         let mut magnitudes: Vec<f64> = sorted.iter().map(|value| value.abs()).collect();
         magnitudes.sort_by(f64::total_cmp);
-        summary.largest = quantile(&magnitudes, 0.99);
-        summary.steps(steps, first);
+        summary.largest = sorted_quantile(&magnitudes, 0.99);
+        summary.summarise_steps(steps, first);
         summary
     }
 
-    fn steps(&mut self, mut steps: Vec<f64>, first: f64) {
+    fn summarise_steps(&mut self, mut steps: Vec<f64>, first: f64) {
         if steps.is_empty() {
             return;
         }
         // Row numbers increase by exactly one.
         let counts = steps.iter().all(|step| *step == 1.0);
         self.is_counter = counts && (first == 0.0 || first == 1.0 || first.fract() == 0.0);
-        self.forward = share(&steps, |step| step >= 0.0);
-        self.still = share(&steps, |step| step == 0.0);
+        self.forward = fraction_where(&steps, |step| step >= 0.0);
+        self.still = fraction_where(&steps, |step| step == 0.0);
         steps.sort_by(f64::total_cmp);
-        let step = quantile(&steps, 0.5);
+        let step = sorted_quantile(&steps, 0.5);
         self.step = step;
-        self.regular = share(&steps, |one| (one - step).abs() <= 0.1 * step.abs());
-        self.steady = share(&steps, |one| (one - step).abs() <= 0.01 * step.abs());
+        self.regular = fraction_where(&steps, |one| (one - step).abs() <= 0.1 * step.abs());
+        self.steady = fraction_where(&steps, |one| (one - step).abs() <= 0.01 * step.abs());
     }
 
     /// Returns true if the values increase as a clock does.
@@ -110,18 +110,18 @@ fn steps_within(values: &[f64], breaks: &[usize]) -> Vec<f64> {
 }
 
 /// Nearest-rank quantile of sorted values; 0 for none.
-pub(crate) fn quantile(sorted: &[f64], part: f64) -> f64 {
+pub(crate) fn sorted_quantile(sorted: &[f64], part: f64) -> f64 {
     let last = sorted.len().saturating_sub(1);
     sorted.get((last as f64 * part).round() as usize).copied().unwrap_or(0.0)
 }
 
-pub(crate) fn share(values: &[f64], holds: impl Fn(f64) -> bool) -> f64 {
+pub(crate) fn fraction_where(values: &[f64], holds: impl Fn(f64) -> bool) -> f64 {
     let count = values.iter().filter(|value| holds(**value)).count();
     count as f64 / values.len().max(1) as f64
 }
 
 /// Returns true if the mean is crossed more often than a heading crosses it in any manoeuvre.
-fn swings(values: &[f64]) -> bool {
+fn swings_about_mean(values: &[f64]) -> bool {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let (low, high) = values.iter().fold((0.0_f64, 0.0_f64), |(low, high), value| {
         (low.min(value - mean), high.max(value - mean))
@@ -144,7 +144,7 @@ fn swings(values: &[f64]) -> bool {
 
 /// Returns the period of a direction that wraps: the values keep within one period, fill most of
 /// it, and jump by it.
-fn period(values: &[f64]) -> Option<(f64, &'static str)> {
+fn find_period(values: &[f64]) -> Option<(f64, &'static str)> {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {
             (low.min(value), high.max(value))
@@ -160,21 +160,21 @@ fn period(values: &[f64]) -> Option<(f64, &'static str)> {
 }
 
 /// Returns the values as a continuous signal: directions unwrapped, gaps held, spikes replaced.
-pub(crate) fn continuous(values: &[f64], summary: &Summary) -> Vec<f64> {
+pub(crate) fn continuous_signal(values: &[f64], summary: &ColumnSummary) -> Vec<f64> {
     let period = summary.period.map(|(period, _)| period);
     let mut values: Vec<f64> = match period {
-        Some(period) => unwrapped(values, period),
+        Some(period) => unwrap_direction(values, period),
         None => values.to_vec(),
     };
-    hold(&mut values);
+    hold_gaps(&mut values);
     if period.is_none() {
-        despike(&mut values);
+        replace_spikes(&mut values);
     }
     values
 }
 
 /// Returns a direction without jumps; averages across the wrap become gaps.
-fn unwrapped(values: &[f64], period: f64) -> Vec<f64> {
+fn unwrap_direction(values: &[f64], period: f64) -> Vec<f64> {
     let wrap = |step: f64| step - (step / period).round() * period;
     let mut out = vec![f64::NAN; values.len()];
     let Some(start) = values.iter().position(|value| value.is_finite()) else { return out };
@@ -196,7 +196,7 @@ fn unwrapped(values: &[f64], period: f64) -> Vec<f64> {
     out
 }
 
-fn hold(values: &mut [f64]) {
+fn hold_gaps(values: &mut [f64]) {
     let mut last = values.iter().copied().find(|value| value.is_finite()).unwrap_or(0.0);
     for value in values {
         if value.is_finite() {
@@ -207,7 +207,7 @@ fn hold(values: &mut [f64]) {
 }
 
 /// Replaces values far from the median of five neighbours by that median.
-fn despike(values: &mut [f64]) {
+fn replace_spikes(values: &mut [f64]) {
     let n = values.len();
     if n < 20 {
         return;
@@ -221,7 +221,7 @@ fn despike(values: &mut [f64]) {
     let mut apart: Vec<f64> = (2..n - 2).map(|k| (values[k] - medians[k - 2]).abs()).collect();
     apart.sort_by(f64::total_cmp);
     // A column that is mostly constant has no scatter of its own: then its largest moves count.
-    let scatter = (1.4826 * quantile(&apart, 0.5)).max(quantile(&apart, 0.99));
+    let scatter = (1.4826 * sorted_quantile(&apart, 0.5)).max(sorted_quantile(&apart, 0.99));
     if scatter <= 0.0 {
         return;
     }
@@ -239,13 +239,16 @@ mod tests {
     #[test]
     fn directions_clocks_and_counters_are_seen() {
         let heading: Vec<f64> = (0..500).map(|k| f64::from(k) * 3.0 % 360.0).collect();
-        let summary = Summary::new(&heading, &[]);
+        let summary = ColumnSummary::new(&heading, &[]);
         assert_eq!(summary.period.map(|(_, unit)| unit), Some("deg"));
-        assert!((continuous(&heading, &summary)[499] - 1497.0).abs() < 1e-9);
+        assert!((continuous_signal(&heading, &summary)[499] - 1497.0).abs() < 1e-9);
         let clock: Vec<f64> = (0..500).map(|k| 2.7e6 + 100.0 * f64::from(k)).collect();
-        assert!(Summary::new(&clock, &[]).is_clock() && !Summary::new(&clock, &[]).is_counter);
-        assert!(Summary::new(&(0..9).map(f64::from).collect::<Vec<_>>(), &[]).is_counter);
-        assert!(Summary::new(&heading[..100], &[]).period.is_none());
+        assert!(
+            ColumnSummary::new(&clock, &[]).is_clock()
+                && !ColumnSummary::new(&clock, &[]).is_counter
+        );
+        assert!(ColumnSummary::new(&(0..9).map(f64::from).collect::<Vec<_>>(), &[]).is_counter);
+        assert!(ColumnSummary::new(&heading[..100], &[]).period.is_none());
     }
 
     #[test]
@@ -254,14 +257,14 @@ mod tests {
         (heading[10], heading[11]) = (180.0, 120.0);
         let mut long = heading.clone();
         long.extend((0..300).map(|k| (190.0 + f64::from(k)) % 360.0));
-        let signal = continuous(&long, &Summary::new(&long, &[]));
+        let signal = continuous_signal(&long, &ColumnSummary::new(&long, &[]));
         assert!((signal[150] - 500.0).abs() < 1e-9, "{}", signal[150]);
     }
 
     #[test]
     fn a_clock_that_begins_anew_in_each_file_is_a_clock() {
         let clock = [0.0, 1.0, 0.0, 1.0];
-        assert!(!Summary::new(&clock, &[]).is_clock());
-        assert!(Summary::new(&clock, &[2]).is_clock());
+        assert!(!ColumnSummary::new(&clock, &[]).is_clock());
+        assert!(ColumnSummary::new(&clock, &[2]).is_clock());
     }
 }

@@ -4,21 +4,21 @@ use crate::hypothesis::Assignment;
 use crate::outcome::ThrusterPair;
 use crate::own::OwnEvidence;
 use crate::role::{Role, Side};
-use crate::rudder::lagged;
-use crate::signals::Signals;
+use crate::rudder::lagged_correlation;
+use crate::signals::RecordingSignals;
 
 /// Name of thruster commands in the vocabulary.
 const NAME: &str = "thruster command";
 
 /// Finds the pair among columns whose headers name a thruster command of either side.
-pub(crate) fn find(
+pub(crate) fn find_thrusters(
     own: &[OwnEvidence],
-    signals: &Signals,
+    signals: &RecordingSignals,
     of: &Assignment,
 ) -> Option<ThrusterPair> {
     let on = |side: Side| {
         own.iter().position(|one| {
-            let named = one.header.other().is_some_and(|(name, _)| name == NAME);
+            let named = one.header.other_quantity().is_some_and(|(name, _)| name == NAME);
             named && one.header.side == Some(side) && one.summary.spread > 0.0
         })
     };
@@ -29,7 +29,7 @@ pub(crate) fn find(
     // Correlation with the canonical sign of the other column, at the best lag.
     let with = |role: Role, values: &[f64]| {
         let (at, factor) = of.find(role)?;
-        Some(factor.signum() * lagged(values, &signals.continuous[at]))
+        Some(factor.signum() * lagged_correlation(values, &signals.continuous[at]))
     };
     let yaw = [&difference, &mean].map(|values| with(Role::R, values).unwrap_or(0.0));
     let speed = [&difference, &mean].map(|values| with(Role::U, values).unwrap_or(0.0));

@@ -2,7 +2,7 @@
 
 use crate::data::ColumnData;
 use crate::own::OwnEvidence;
-use crate::role::{Kind, Role, Unit};
+use crate::role::{QuantityKind, Role, Unit};
 
 /// Usual interval between samples, s, and the standard deviation of its natural logarithm: from
 /// about 100 Hz to one sample a minute lies within two standard deviations.
@@ -22,7 +22,7 @@ pub(crate) struct TimeUnit {
 }
 
 /// Returns the column that most likely is time.
-pub(crate) fn column(columns: &[ColumnData], own: &[OwnEvidence]) -> Option<usize> {
+pub(crate) fn time_column(columns: &[ColumnData], own: &[OwnEvidence]) -> Option<usize> {
     let scored = own.iter().zip(columns).enumerate().filter_map(|(at, (own, column))| {
         let written = if column.written_time.is_some() { 8.0 } else { 0.0 };
         let summary = &own.summary;
@@ -35,14 +35,14 @@ pub(crate) fn column(columns: &[ColumnData], own: &[OwnEvidence]) -> Option<usiz
         let counter = if summary.is_counter { -5.0 } else { 0.0 };
         let first = if at == 0 { 1.0 } else { 0.0 };
         // A name of another quantity counts against time, up to a limit.
-        let named = own.named(Role::Time) - own.none().min(6.0);
+        let named = own.name_odds(Role::Time) - own.unassigned_odds().min(6.0);
         Some((at, named + written + regular + counter + first))
     });
     scored.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
 }
 
 /// Returns the units in which the column may be, best first, with log odds.
-pub(crate) fn units(column: &ColumnData, own: &OwnEvidence) -> Vec<TimeUnit> {
+pub(crate) fn candidate_units(column: &ColumnData, own: &OwnEvidence) -> Vec<TimeUnit> {
     let of = |unit: &Unit| {
         let interval_s = own.summary.step * unit.to_si;
         let usual = -0.5 * ((interval_s / INTERVAL_S).ln() / SCATTER).powi(2);
@@ -54,8 +54,8 @@ pub(crate) fn units(column: &ColumnData, own: &OwnEvidence) -> Vec<TimeUnit> {
     if UNIX.contains(&own.summary.median) {
         return vec![TimeUnit { name: "unix", to_si: 1.0, odds: 0.0 }];
     }
-    let all = Kind::Time.units();
-    if let Some(written) = own.header.unit(Kind::Time) {
+    let all = QuantityKind::Time.known_units();
+    if let Some(written) = own.header.unit_of_kind(QuantityKind::Time) {
         let known = all.iter().find(|unit| unit.name == written);
         return known.map(|unit| TimeUnit { odds: 0.0, ..of(unit) }).into_iter().collect();
     }

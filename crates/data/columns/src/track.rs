@@ -1,9 +1,9 @@
 //! Relations of positions and heading with velocities: north axis, units, signs, ground or water.
 
 use crate::hypothesis::Assignment;
-use crate::relation::{Fit, Observed, PER_FOLD, Relation, odds_of};
+use crate::relation::{ColumnRelation, PER_FOLD, RelationInput, SeriesFit, residual_odds};
 use crate::role::Role;
-use crate::signals::Signals;
+use crate::signals::RecordingSignals;
 
 /// Mean radius of the earth, m.
 const EARTH: f64 = 6.371e6;
@@ -17,7 +17,7 @@ const CURRENT: f64 = 0.4;
 
 /// Steps of a track over the blocks of the finer scale, in earth-fixed and ship-fixed axes.
 #[derive(Debug, Clone)]
-pub(crate) struct Track {
+pub(crate) struct GroundTrack {
     roles: (Role, Role),
     /// Displacements north and east, m.
     north: Vec<f64>,
@@ -29,9 +29,13 @@ pub(crate) struct Track {
     length: Vec<f64>,
 }
 
-impl Track {
+impl GroundTrack {
     /// Computes the steps of the positions of an assignment; returns `None` if they do not move.
-    pub(crate) fn new(signals: &Signals, of: &Assignment, roles: (Role, Role)) -> Option<Self> {
+    pub(crate) fn new(
+        signals: &RecordingSignals,
+        of: &Assignment,
+        roles: (Role, Role),
+    ) -> Option<Self> {
         let scale = signals.scales.last()?;
         let ((i, fi), (j, fj)) = (of.find(roles.0)?, of.find(roles.1)?);
         // Local plane: metres per radian of latitude, and of longitude at the median latitude.
@@ -58,30 +62,33 @@ impl Track {
     }
 
     /// Returns the relations with heading, course and velocities.
-    pub(crate) fn relations(&self, observed: Observed<'_>, of: &Assignment) -> Vec<Relation> {
-        let mut all: Vec<Relation> = self.heading(observed).into_iter().collect();
+    pub(crate) fn track_relations(
+        &self,
+        observed: RelationInput<'_>,
+        of: &Assignment,
+    ) -> Vec<ColumnRelation> {
+        let mut all: Vec<ColumnRelation> = self.heading_relation(observed).into_iter().collect();
         if let Some((along, across)) = &self.ship {
             let body = [(Role::U, along, "along"), (Role::V, across, "across")];
-            all.extend(
-                body.iter()
-                    .filter_map(|&(role, steps, text)| self.moved(observed, of, role, steps, text)),
-            );
-            all.extend(self.water(observed, of, along));
+            all.extend(body.iter().filter_map(|&(role, steps, text)| {
+                self.velocity_relation(observed, of, role, steps, text)
+            }));
+            all.extend(self.water_relation(observed, of, along));
         }
-        all.extend(self.moved(observed, of, Role::Speed, &self.length, "over ground"));
-        all.extend(self.course(observed, of));
+        all.extend(self.velocity_relation(observed, of, Role::Speed, &self.length, "over ground"));
+        all.extend(self.course_relation(observed, of));
         all
     }
 
     /// Returns the sum of the log odds of the relations of the track.
-    pub(crate) fn odds(&self, observed: Observed<'_>, of: &Assignment) -> f64 {
-        self.relations(observed, of).iter().map(|relation| relation.odds).sum()
+    pub(crate) fn track_odds(&self, observed: RelationInput<'_>, of: &Assignment) -> f64 {
+        self.track_relations(observed, of).iter().map(|relation| relation.odds).sum()
     }
 
     /// Relation of the track with the heading: a ship moves mainly along its heading.
-    fn heading(&self, observed: Observed<'_>) -> Option<Relation> {
+    fn heading_relation(&self, observed: RelationInput<'_>) -> Option<ColumnRelation> {
         let (along, across) = self.ship.as_ref()?;
-        let (ahead, aside): (f64, f64) = (squares(along), squares(across));
+        let (ahead, aside): (f64, f64) = (sum_of_squares(along), sum_of_squares(across));
         let part = aside / (ahead + aside);
         let astern: f64 = along.iter().filter(|step| **step < 0.0).map(|step| step * step).sum();
         // A track that goes mostly astern counts against the heading.
@@ -94,41 +101,46 @@ impl Track {
             - backwards;
         let told =
             || format!("{:.1} % of the track's squares lie across the heading", 100.0 * part);
-        let figure = observed.figure(told);
-        Some(Relation { roles: [self.roles.0, self.roles.1, Role::Psi], odds, figure })
+        let figure = observed.format_figure(told);
+        Some(ColumnRelation { roles: [self.roles.0, self.roles.1, Role::Psi], odds, figure })
     }
 
     /// Returns the fraction of the squares across the best straight line: the smaller eigenvalue of
     /// the 2 by 2 moment matrix of the steps, divided by its trace.
     fn off_line(&self) -> f64 {
-        let (nn, ee) = (squares(&self.north), squares(&self.east));
+        let (nn, ee) = (sum_of_squares(&self.north), sum_of_squares(&self.east));
         let ne: f64 = self.north.iter().zip(&self.east).map(|(n, e)| n * e).sum();
         let half = (0.25 * (nn - ee).powi(2) + ne * ne).sqrt();
         ((0.5 * (nn + ee) - half) / (nn + ee).max(1e-300)).max(0.0)
     }
 
-    fn moved(
+    fn velocity_relation(
         &self,
-        observed: Observed<'_>,
+        observed: RelationInput<'_>,
         of: &Assignment,
         role: Role,
         steps: &[f64],
         text: &str,
-    ) -> Option<Relation> {
+    ) -> Option<ColumnRelation> {
         let (at, factor) = of.find(role)?;
         let factor = factor * of.time_factor;
         let integral = &observed.signals.scales.last()?.columns[at].integral;
-        let fit = Fit::new(steps, 1.0, integral, factor)?;
+        let fit = SeriesFit::new(steps, 1.0, integral, factor)?;
         let times = fit.slope;
         let told = || format!("positions move {times:.2} times as fast {text} as it says");
-        let figure = observed.figure(told);
+        let figure = observed.format_figure(told);
         let roles = [self.roles.0, self.roles.1, role];
-        Some(Relation { roles, odds: fit.odds(FLOOR), figure })
+        Some(ColumnRelation { roles, odds: fit.capped_odds(FLOOR), figure })
     }
 
     /// Relation of the track with the speed through the water: the track less a steady current of
     /// two components.
-    fn water(&self, observed: Observed<'_>, of: &Assignment, along: &[f64]) -> Option<Relation> {
+    fn water_relation(
+        &self,
+        observed: RelationInput<'_>,
+        of: &Assignment,
+        along: &[f64],
+    ) -> Option<ColumnRelation> {
         let (at, factor) = of.find(Role::UWater)?;
         let scale = observed.signals.scales.last()?;
         let integral = &scale.columns[at].integral;
@@ -153,7 +165,7 @@ impl Track {
             .zip(c.iter().zip(&s))
             .map(|(rest, (c, s))| (rest - north * c - east * s).powi(2))
             .sum();
-        let figure = observed.figure(|| {
+        let figure = observed.format_figure(|| {
             format!(
                 "agrees with the track less a current of {:.2} m/s towards {:.0} deg",
                 north.hypot(east),
@@ -165,18 +177,22 @@ impl Track {
             - (cc * dot(&s, along).powi(2) - 2.0 * cs * dot(&c, along) * dot(&s, along)
                 + ss * dot(&c, along).powi(2))
                 / determinant;
-        let all = squares(along).max(1e-300);
+        let all = sum_of_squares(along).max(1e-300);
         let speed = (all / along.len().max(1) as f64).sqrt()
             / (dot(&seconds, &seconds) / seconds.len().max(1) as f64).sqrt();
         let fast = if north.hypot(east) > CURRENT * speed { 10.0 } else { 0.0 };
-        let odds = odds_of((left / all).max(FLOOR))
-            .min(2.0 + odds_of((left / alone.max(1e-9 * all)).max(FLOOR)))
+        let odds = residual_odds((left / all).max(FLOOR))
+            .min(2.0 + residual_odds((left / alone.max(1e-9 * all)).max(FLOOR)))
             - 4.0
             - fast;
-        Some(Relation { roles: [Role::UWater, Role::Psi, Role::Other], odds, figure })
+        Some(ColumnRelation { roles: [Role::UWater, Role::Psi, Role::Other], odds, figure })
     }
 
-    fn course(&self, observed: Observed<'_>, of: &Assignment) -> Option<Relation> {
+    fn course_relation(
+        &self,
+        observed: RelationInput<'_>,
+        of: &Assignment,
+    ) -> Option<ColumnRelation> {
         let (at, factor) = of.find(Role::Course)?;
         let course = &observed.signals.scales.last()?.columns[at].mean;
         let steps = self.north.iter().zip(&self.east);
@@ -192,11 +208,11 @@ impl Track {
             .min(STRAIGHT - PER_FOLD * (off.max(1e-4) / straight.max(1e-4)).ln())
             .clamp(-8.0, 20.0);
         let told = || format!("{:.1} % of the way made good lies along it", 100.0 * (1.0 - off));
-        let figure = observed.figure(told);
-        Some(Relation { roles: [self.roles.0, self.roles.1, Role::Course], odds, figure })
+        let figure = observed.format_figure(told);
+        Some(ColumnRelation { roles: [self.roles.0, self.roles.1, Role::Course], odds, figure })
     }
 }
 
-fn squares(values: &[f64]) -> f64 {
+fn sum_of_squares(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 
 use crate::role::{Role, Side};
-use crate::words::words;
+use crate::words::split_words;
 
 const FILES: [(&str, &str); 9] = [
     ("en.yaml", include_str!("../../../../models/vocabulary/en.yaml")),
@@ -57,7 +57,7 @@ struct SignsFile {
 
 /// Meaning of a phrase.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Meaning {
+pub(crate) enum PhraseMeaning {
     Channel(Role),
     /// A quantity for which there is no channel, by its name in messages.
     Other(String),
@@ -69,7 +69,7 @@ pub(crate) struct Phrase {
     pub words: Vec<String>,
     /// The words, joined without a separator.
     pub joined: String,
-    pub meaning: Meaning,
+    pub meaning: PhraseMeaning,
 }
 
 /// Words of all languages.
@@ -87,7 +87,7 @@ static VOCABULARY: LazyLock<Vocabulary> = LazyLock::new(|| {
     let mut all = Vocabulary::default();
     // Errors are ignored here: the files are part of the build, and a test parses each of them.
     for file in FILES.iter().filter_map(|(_, text)| serde_yaml::from_str(text).ok()) {
-        all.add(file);
+        all.add_file(file);
     }
     all
 });
@@ -98,13 +98,13 @@ pub(crate) fn vocabulary() -> &'static Vocabulary {
 }
 
 impl Vocabulary {
-    fn add(&mut self, file: VocabularyFile) {
+    fn add_file(&mut self, file: VocabularyFile) {
         for (name, phrases) in file.names {
-            let role = Role::by_name(&name).unwrap_or(Role::Other);
-            self.phrases(&phrases, &Meaning::Channel(role));
+            let role = Role::from_name(&name).unwrap_or(Role::Other);
+            self.add_phrases(&phrases, &PhraseMeaning::Channel(role));
         }
         for (name, phrases) in file.others {
-            self.phrases(&phrases, &Meaning::Other(name));
+            self.add_phrases(&phrases, &PhraseMeaning::Other(name));
         }
         let sides = [(file.sides.port, Side::Port), (file.sides.starboard, Side::Starboard)];
         for (list, side) in sides {
@@ -118,9 +118,9 @@ impl Vocabulary {
         self.port_positive.extend(file.signs.port_positive.iter().map(|text| text.to_lowercase()));
     }
 
-    fn phrases(&mut self, phrases: &[String], meaning: &Meaning) {
+    fn add_phrases(&mut self, phrases: &[String], meaning: &PhraseMeaning) {
         self.phrases.extend(phrases.iter().map(|phrase| {
-            let words = words(phrase);
+            let words = split_words(phrase);
             Phrase { joined: words.concat(), words, meaning: meaning.clone() }
         }));
     }
@@ -136,10 +136,10 @@ mod tests {
         for (name, text) in FILES {
             let file: VocabularyFile = serde_yaml::from_str(text).unwrap();
             for channel in file.names.keys() {
-                assert!(Role::by_name(channel).is_some(), "{name}: {channel}");
+                assert!(Role::from_name(channel).is_some(), "{name}: {channel}");
             }
             let known: Vec<&str> = Role::channels()
-                .flat_map(|role| role.kind().units())
+                .flat_map(|role| role.kind().known_units())
                 .map(|unit| unit.name)
                 .chain(["%"])
                 .collect();

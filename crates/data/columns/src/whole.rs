@@ -24,7 +24,7 @@ const ALONE: [(Role, Role, f64); 16] = [
 ];
 
 /// Log odds of two quantities that are seldom in one recording.
-const TOGETHER: [(Role, Role, f64); 6] = [
+const SELDOM_TOGETHER: [(Role, Role, f64); 6] = [
     (Role::Delta, Role::DeltaS, -6.0),
     (Role::Delta, Role::DeltaP, -6.0),
     (Role::N, Role::NS, -6.0),
@@ -59,10 +59,11 @@ const NEEDED: [(&[Role], f64); 4] = [
 ];
 
 /// Returns the log odds of the set of assigned quantities.
-pub(crate) fn odds(of: &Assignment) -> f64 {
-    let alone = ALONE.iter().filter(|(one, other, _)| of.has(*one) && !of.has(*other));
-    let together = TOGETHER.iter().filter(|(one, other, _)| of.has(*one) && of.has(*other));
-    let needed = NEEDED.iter().filter(|(roles, _)| roles.iter().any(|role| of.has(*role)));
+pub(crate) fn set_odds(of: &Assignment) -> f64 {
+    let alone = ALONE.iter().filter(|(one, other, _)| of.has_role(*one) && !of.has_role(*other));
+    let together =
+        SELDOM_TOGETHER.iter().filter(|(one, other, _)| of.has_role(*one) && of.has_role(*other));
+    let needed = NEEDED.iter().filter(|(roles, _)| roles.iter().any(|role| of.has_role(*role)));
     let unit = |role: Role| {
         let what = of.columns.iter().flatten().find(|what| what.role == role);
         // Degrees match degrees per second, radians match radians per second.

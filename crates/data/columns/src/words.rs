@@ -39,7 +39,7 @@ const PLAIN: [(char, &str); 33] = [
 
 /// Splits a text into words in lower case without marks; a change from a small to a capital letter
 /// begins a word.
-pub(crate) fn words(text: &str) -> Vec<String> {
+pub(crate) fn split_words(text: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word = String::new();
     let mut before = ' ';
@@ -50,7 +50,7 @@ pub(crate) fn words(text: &str) -> Vec<String> {
             words.push(std::mem::take(&mut word));
         }
         if letter.is_alphanumeric() {
-            plain(letter, &mut word);
+            push_plain(letter, &mut word);
         }
         before = letter;
     }
@@ -61,7 +61,7 @@ pub(crate) fn words(text: &str) -> Vec<String> {
     words
 }
 
-fn plain(letter: char, word: &mut String) {
+fn push_plain(letter: char, word: &mut String) {
     for small in letter.to_lowercase() {
         match PLAIN.iter().find(|(marked, _)| *marked == small) {
             Some((_, plain)) => word.push_str(plain),
@@ -81,9 +81,9 @@ mod tests {
 
     #[test]
     fn headers_are_cut_into_words() {
-        assert_eq!(words("YawRate [deg/s]"), ["yaw", "rate", "deg", "s"]);
-        assert_eq!(words("Krängung_ist (°)"), ["kraengung", "ist"]);
-        assert_eq!(words("舵角"), ["舵角"]);
+        assert_eq!(split_words("YawRate [deg/s]"), ["yaw", "rate", "deg", "s"]);
+        assert_eq!(split_words("Krängung_ist (°)"), ["kraengung", "ist"]);
+        assert_eq!(split_words("舵角"), ["舵角"]);
         assert!(is_ideographic("선수각") && !is_ideographic("Kurs"));
     }
 }

@@ -3,17 +3,17 @@
 use sistership_formula::Function;
 
 use crate::error::ExportError;
-use crate::expression::{Language, function};
-use crate::format::Format;
-use crate::outside::Outside;
-use crate::plan::{Coefficient, Plan, STATES};
+use crate::expression::{TargetLanguage, function_name};
+use crate::format::ModelFormat;
+use crate::outside::ExternalInput;
+use crate::plan::{ExportCoefficient, ExportPlan, STATES};
 use crate::{header, range, rates, wrapped};
 
 /// C99 source file.
 #[derive(Debug)]
-pub struct C;
+pub struct CFormat;
 
-impl Format for C {
+impl ModelFormat for CFormat {
     fn name(&self) -> &'static str {
         "c"
     }
@@ -22,13 +22,13 @@ impl Format for C {
         "c"
     }
 
-    fn write(&self, plan: &Plan) -> Result<Vec<u8>, ExportError> {
-        Ok(text(plan).into_bytes())
+    fn write(&self, plan: &ExportPlan) -> Result<Vec<u8>, ExportError> {
+        Ok(source_text(plan).into_bytes())
     }
 }
 
-impl Language for C {
-    fn number(&self, value: f64) -> String {
+impl TargetLanguage for CFormat {
+    fn number_literal(&self, value: f64) -> String {
         if value.is_infinite() {
             return if value > 0.0 { "INFINITY" } else { "(-INFINITY)" }.to_owned();
         }
@@ -36,45 +36,45 @@ impl Language for C {
         if value < 0.0 { format!("({value:?})") } else { format!("{value:?}") }
     }
 
-    fn state(&self, place: usize) -> String {
+    fn state_name(&self, place: usize) -> String {
         format!("s->{}", STATES[place].0)
     }
 
-    fn outside(&self, outside: &Outside) -> String {
+    fn input_name(&self, outside: &ExternalInput) -> String {
         format!("in->{}", outside.identifier)
     }
 
-    fn coefficient(&self, coefficient: &Coefficient) -> String {
+    fn coefficient_name(&self, coefficient: &ExportCoefficient) -> String {
         format!("c->{}", coefficient.identifier)
     }
 
-    fn power(&self, a: &str, b: &str) -> String {
+    fn write_power(&self, a: &str, b: &str) -> String {
         format!("pow({a}, {b})")
     }
 
-    fn call(&self, of: Function, arguments: &[&str]) -> String {
+    fn write_call(&self, of: Function, arguments: &[&str]) -> String {
         let name = match of {
             // C has no sign function.
             Function::Sign => return format!("(({0} > 0.0) - ({0} < 0.0))", arguments[0]),
             Function::Abs => "fabs",
             Function::Min => "fmin",
             Function::Max => "fmax",
-            other => function(other),
+            other => function_name(other),
         };
         format!("{name}({})", arguments.join(", "))
     }
 
-    fn choice(&self, comparison: &str, [a, b, c, d]: [&str; 4]) -> String {
+    fn write_conditional(&self, comparison: &str, [a, b, c, d]: [&str; 4]) -> String {
         format!("{a} {comparison} {b} ? {c} : {d}")
     }
 
-    fn assign(&self, name: &str, terms: &[String]) -> String {
+    fn write_assignment(&self, name: &str, terms: &[String]) -> String {
         // Rates are members of a structure; all other names are defined here.
         let kind = if name.starts_with("rate->") { "" } else { "const double " };
-        wrapped::sum(&format!("    {kind}{name} = "), terms, "\n       ") + ";"
+        wrapped::wrap_sum(&format!("    {kind}{name} = "), terms, "\n       ") + ";"
     }
 
-    fn solve(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
+    fn write_solution(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
         let row = |(mass, force): (&[String; 4], &String)| {
             format!("        {{{}, {force}}}", mass.join(", "))
         };
@@ -89,7 +89,7 @@ impl Language for C {
         lines
     }
 
-    fn rate(&self, place: usize) -> String {
+    fn rate_target(&self, place: usize) -> String {
         format!("rate->{}", STATES[place].0)
     }
 }
@@ -99,30 +99,31 @@ const SOLVE: &str = include_str!("../templates/solve.c");
 const STEP: &str = include_str!("../templates/step.c");
 
 /// Complete source file.
-fn text(plan: &Plan) -> String {
-    let lines = header::lines(plan);
+fn source_text(plan: &ExportPlan) -> String {
+    let lines = header::header_lines(plan);
     // The end mark of a comment inside the text would end the comment.
-    let comment = lines.iter().flat_map(|line| wrapped::comment(" *", &line.replace("*/", "* /")));
+    let comment =
+        lines.iter().flat_map(|line| wrapped::wrap_comment(" *", &line.replace("*/", "* /")));
     let mut text =
         format!("/*\n{}\n */\n#include <math.h>\n\n", comment.collect::<Vec<_>>().join("\n"));
-    text.push_str(&types(plan));
-    text.push_str(&values(plan));
+    text.push_str(&type_definitions(plan));
+    text.push_str(&initial_values(plan));
     // The solver is only needed if the mass matrix changes with the motion.
-    if plan.listed().mobility.is_none() {
+    if plan.listed_operations().mobility.is_none() {
         text.push_str(SOLVE);
     }
-    text.push_str(&rates_text(plan));
-    text.push_str(&range_text(plan));
+    text.push_str(&rates_function(plan));
+    text.push_str(&range_function(plan));
     text.push_str(STEP);
     // Marks also occur in the generated parts, so they are replaced at the end.
-    for (mark, by) in marks(plan) {
+    for (mark, by) in template_marks(plan) {
         text = text.replace(mark, &by);
     }
     text
 }
 
 /// Type definitions of states, inputs and coefficients.
-fn types(plan: &Plan) -> String {
+fn type_definitions(plan: &ExportPlan) -> String {
     let member = |name: &str, remark: &str| format!("    double {name}; /* {remark} */\n");
     let states: String = STATES
         .iter()
@@ -135,8 +136,11 @@ fn types(plan: &Plan) -> String {
         .into_iter()
         .chain(outside.map(|o| member(&o.identifier, &format!("{}, {}", o.meaning, o.unit))))
         .collect();
-    let coefficients: String =
-        plan.coefficients.iter().map(|c| member(&c.identifier, &header::remark(c))).collect();
+    let coefficients: String = plan
+        .coefficients
+        .iter()
+        .map(|c| member(&c.identifier, &header::coefficient_remark(c)))
+        .collect();
     format!(
         "typedef struct {{\n{states}}} @_state;\n\ntypedef struct {{\n{inputs}}} @_inputs;\n\n\
          typedef struct {{\n{coefficients}}} @_coefficients;\n\n"
@@ -144,11 +148,13 @@ fn types(plan: &Plan) -> String {
 }
 
 /// Values of the coefficients, and inputs and state of the approach.
-fn values(plan: &Plan) -> String {
-    let value = |c: &Coefficient| format!("    {:?}, /* {} */\n", c.value, c.identifier);
+fn initial_values(plan: &ExportPlan) -> String {
+    let value = |c: &ExportCoefficient| format!("    {:?}, /* {} */\n", c.value, c.identifier);
     let values: String = plan.coefficients.iter().map(value).collect();
     // Every input has its default value at the approach.
-    let default = |o: &Outside| format!("    in.{} = {};\n", o.identifier, C.number(o.default));
+    let default = |o: &ExternalInput| {
+        format!("    in.{} = {};\n", o.identifier, CFormat.number_literal(o.default))
+    };
     let order = plan.gear.map(|_| "    in.delta_order = 0.0;\n".to_owned());
     let inputs: String = order.into_iter().chain(plan.outside.iter().map(default)).collect();
     format!(
@@ -162,7 +168,7 @@ fn values(plan: &Plan) -> String {
 }
 
 /// Function of the rates of the states, with the steering gear.
-fn rates_text(plan: &Plan) -> String {
+fn rates_function(plan: &ExportPlan) -> String {
     let rudder = match &plan.gear {
         None => "    rate->delta = 0.0;".to_owned(),
         Some(gear) => format!(
@@ -180,7 +186,7 @@ fn rates_text(plan: &Plan) -> String {
             }
         ),
     };
-    let statements = rates::statements(plan, &C).join("\n");
+    let statements = rates::rate_statements(plan, &CFormat).join("\n");
     format!(
         "/* The rates of the states. A gear without a time constant goes to its order within \
          step_s,\n * the step with which the rates are integrated. */\n\
@@ -191,11 +197,13 @@ fn rates_text(plan: &Plan) -> String {
 }
 
 /// Function of the distance outside the range covered by trials.
-fn range_text(plan: &Plan) -> String {
-    let Some(range::Distance { statements, result }) = range::alone(plan, &C) else {
+fn range_function(plan: &ExportPlan) -> String {
+    let Some(range::RangeDistance { statements, result }) =
+        range::standalone_distance(plan, &CFormat)
+    else {
         return String::new();
     };
-    let meaning = wrapped::comment(" *", range::MEANING).join("\n");
+    let meaning = wrapped::wrap_comment(" *", range::MEANING).join("\n");
     format!(
         "/* As a number:\n{meaning} */\ndouble @_{name}(const @_state *s, const @_inputs *in)\n{{\n    \
          (void)in;\n{statements}\n    return {result};\n}}\n\n",
@@ -205,7 +213,7 @@ fn range_text(plan: &Plan) -> String {
 }
 
 /// Marks of the templates with their replacements.
-fn marks(plan: &Plan) -> [(&'static str, String); 7] {
+fn template_marks(plan: &ExportPlan) -> [(&'static str, String); 7] {
     let figure = |value: f64| format!("{value:?}");
     let order = match plan.gear {
         Some(_) => "in.delta_order = rudder_deg*3.14159265358979323846/180.0;",

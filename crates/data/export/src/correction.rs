@@ -8,8 +8,8 @@ use sistership_model::coefficient::Axis;
 use sistership_model::{Law, Model};
 use sistership_simulation::Plant;
 use sistership_simulation::PlantError;
-use sistership_simulation::branch::{AdditionFormulas, LAW_RATES, attached};
-use sistership_simulation::equations::{Coefficients, EquationsOfMotion};
+use sistership_simulation::branch::{AdditionFormulas, LAW_RATES, attached_correction};
+use sistership_simulation::equations::{CoefficientBinding, EquationsOfMotion};
 
 use crate::error::ExportError;
 
@@ -23,10 +23,10 @@ const AXES: [Axis; 4] = [Axis::X, Axis::Y, Axis::K, Axis::N];
 /// # Errors
 /// Returns an error if the weights are not attached, or if the correction depends on accelerations
 /// that are only solved for after all other values.
-pub fn corrected(model: &Model, law: Law) -> Result<Law, ExportError> {
-    let Some(learned) = attached(model)? else { return Ok(law) };
-    let AdditionFormulas { values, added } = learned.formulas();
-    let mut told = told(model, &law, &values, &added)?;
+pub fn with_correction(model: &Model, law: Law) -> Result<Law, ExportError> {
+    let Some(learned) = attached_correction(model)? else { return Ok(law) };
+    let AdditionFormulas { values, added } = learned.addition_formulas();
+    let mut told = correction_inputs(model, &law, &values, &added)?;
     told.extend(values);
     let mut law = law;
     // Values are defined before the additions that use them.
@@ -38,24 +38,24 @@ pub fn corrected(model: &Model, law: Law) -> Result<Law, ExportError> {
 }
 
 /// Named formulas, in the order of their definition.
-type Values = Vec<(String, Expr)>;
+type NamedFormulas = Vec<(String, Expr)>;
 
 /// Formulas of the inputs of a correction other than states and inputs of the law: inputs that the
 /// law does not have are zero, and rates are those of the law.
-fn told(
+fn correction_inputs(
     model: &Model,
     law: &Law,
-    values: &Values,
+    values: &NamedFormulas,
     added: &[Option<Expr>; 3],
-) -> Result<Values, ExportError> {
+) -> Result<NamedFormulas, ExportError> {
     let names = |name: &str| {
         let formulas = values.iter().map(|(_, expr)| expr).chain(added.iter().flatten());
-        formulas.into_iter().any(|expr| expr.names().contains(name))
+        formulas.into_iter().any(|expr| expr.mentioned_names().contains(name))
     };
     // The correction reads zero for a rudder or propeller that the law does not have.
     let absent = |name: &&str| !law.inputs.contains_key(*name);
     let nothing = |name: &str| (name.to_owned(), Expr::Number(0.0));
-    let mut told: Values = ["delta", "n"].into_iter().filter(absent).map(nothing).collect();
+    let mut told: NamedFormulas = ["delta", "n"].into_iter().filter(absent).map(nothing).collect();
     if LAW_RATES.into_iter().any(names) {
         told.extend(law_rates(model, law)?);
     }
@@ -63,13 +63,13 @@ fn told(
 }
 
 /// Rates of the law as formulas: rows of the inverse mass matrix times forces.
-fn law_rates(model: &Model, law: &Law) -> Result<Values, ExportError> {
-    let equations = EquationsOfMotion::of_law(model, Cow::Borrowed(law));
-    let plant = Plant::of(&equations, Coefficients::Names)?;
+fn law_rates(model: &Model, law: &Law) -> Result<NamedFormulas, ExportError> {
+    let equations = EquationsOfMotion::from_law(model, Cow::Borrowed(law));
+    let plant = Plant::from_equations(&equations, CoefficientBinding::Names)?;
     let changing = || ExportError::Correction { model: model.name.clone(), law: law.name.clone() };
     // Only a constant mass matrix has been inverted when the formulas are written.
-    let mobility = plant.listed().mobility.ok_or_else(changing)?;
-    let mut rates = Values::new();
+    let mobility = plant.to_listing().mobility.ok_or_else(changing)?;
+    let mut rates = NamedFormulas::new();
     for (name, (axis, row)) in LAW_RATES.into_iter().zip(CHANGED) {
         rates.push((name.to_owned(), law_rate(&equations, (axis, &mobility[row]))?));
     }
@@ -80,11 +80,11 @@ fn law_rate(
     equations: &EquationsOfMotion<'_>,
     (axis, mobility): (Axis, &[f64; 4]),
 ) -> Result<Expr, PlantError> {
-    let mut rate = equations.addition(axis).unwrap_or(Expr::Number(0.0));
+    let mut rate = equations.added_acceleration(axis).unwrap_or(Expr::Number(0.0));
     for (other, factor) in AXES.into_iter().zip(mobility) {
         // An axis that the law lacks has no force.
         if *factor != 0.0 && equations.axes().contains(&other) {
-            let force = equations.force(other, Coefficients::Names)?;
+            let force = equations.axis_force(other, CoefficientBinding::Names)?;
             let part = Expr::Number(*factor).times(force);
             rate = Expr::Add(Box::new(rate), Box::new(part));
         }

@@ -1,10 +1,10 @@
 //! Trait of the export formats; each format has its own file.
 
 use crate::error::ExportError;
-use crate::plan::Plan;
+use crate::plan::ExportPlan;
 
 /// Format of an exported model.
-pub trait Format: std::fmt::Debug + Send + Sync {
+pub trait ModelFormat: std::fmt::Debug + Send + Sync {
     /// Name on the command line and in requests.
     fn name(&self) -> &'static str;
 
@@ -15,5 +15,5 @@ pub trait Format: std::fmt::Debug + Send + Sync {
     ///
     /// # Errors
     /// Returns an error with the reason why the model cannot be written in this format.
-    fn write(&self, plan: &Plan) -> Result<Vec<u8>, ExportError>;
+    fn write(&self, plan: &ExportPlan) -> Result<Vec<u8>, ExportError>;
 }

@@ -1,16 +1,17 @@
 //! List of the formats.
 
-use crate::c::C;
-use crate::fmu::{Fmu2, Fmu3};
-use crate::format::Format;
-use crate::matlab::Matlab;
-use crate::modelica::Modelica;
-use crate::python::Python;
+use crate::c::CFormat;
+use crate::fmu::{Fmi2Format, Fmi3Format};
+use crate::format::ModelFormat;
+use crate::matlab::MatlabFormat;
+use crate::modelica::ModelicaFormat;
+use crate::python::PythonFormat;
 
 /// All formats.
-pub const FORMATS: [&dyn Format; 6] = [&C, &Python, &Matlab, &Modelica, &Fmu2, &Fmu3];
+pub const FORMATS: [&dyn ModelFormat; 6] =
+    [&CFormat, &PythonFormat, &MatlabFormat, &ModelicaFormat, &Fmi2Format, &Fmi3Format];
 
 /// Returns the format of a name.
-pub fn by_name(name: &str) -> Option<&'static dyn Format> {
+pub fn by_name(name: &str) -> Option<&'static dyn ModelFormat> {
     FORMATS.into_iter().find(|format| format.name() == name)
 }

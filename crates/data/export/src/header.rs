@@ -1,10 +1,10 @@
 //! Header of every export: provenance, units, signs and sources.
 
-use crate::outside::Outside;
-use crate::plan::{Coefficient, Plan, STATES};
+use crate::outside::ExternalInput;
+use crate::plan::{ExportCoefficient, ExportPlan, STATES};
 
 /// Lines that a reader needs before the code: provenance, units, signs, inputs, coefficients.
-pub fn lines(plan: &Plan) -> Vec<String> {
+pub fn header_lines(plan: &ExportPlan) -> Vec<String> {
     // Provenance first, so that a reader sees the model's status at once.
     let mut lines = plan.provenance.clone();
     lines.push(String::new());
@@ -14,15 +14,15 @@ pub fn lines(plan: &Plan) -> Vec<String> {
             .to_owned(),
     );
     lines.push("States:".to_owned());
-    lines.extend(plan.states().map(|place| {
+    lines.extend(plan.moving_states().map(|place| {
         let (name, unit, meaning) = STATES[place];
         format!("  {name} [{unit}] {meaning}")
     }));
     lines.push("Inputs:".to_owned());
-    lines.extend(gear(plan));
+    lines.extend(gear_line(plan));
     lines.extend(plan.outside.iter().map(|outside| {
-        let range = range(outside.range).map_or(String::new(), |range| format!(", {range}"));
-        let Outside { identifier, unit, meaning, .. } = outside;
+        let range = range_words(outside.range).map_or(String::new(), |range| format!(", {range}"));
+        let ExternalInput { identifier, unit, meaning, .. } = outside;
         format!("  {identifier} [{unit}] {meaning}{range}")
     }));
     lines.push(format!(
@@ -36,7 +36,7 @@ pub fn lines(plan: &Plan) -> Vec<String> {
 }
 
 /// Line of the steering gear, if the law has one rudder.
-fn gear(plan: &Plan) -> Option<String> {
+fn gear_line(plan: &ExportPlan) -> Option<String> {
     let gear = plan.gear.as_ref()?;
     let band = match plan.band_rad {
         // Most gears have no dead band.
@@ -53,7 +53,7 @@ fn gear(plan: &Plan) -> Option<String> {
 }
 
 /// Range of an input in words.
-fn range([low, high]: [Option<f64>; 2]) -> Option<String> {
+fn range_words([low, high]: [Option<f64>; 2]) -> Option<String> {
     match (low, high) {
         (Some(low), Some(high)) => Some(format!("trials covered {low:.4} to {high:.4}")),
         (Some(low), None) => Some(format!("above {low}")),
@@ -63,8 +63,8 @@ fn range([low, high]: [Option<f64>; 2]) -> Option<String> {
 }
 
 /// Unit, source and standard error of a coefficient.
-pub fn remark(coefficient: &Coefficient) -> String {
-    let Coefficient { name, unit, source, standard_error, .. } = coefficient;
+pub fn coefficient_remark(coefficient: &ExportCoefficient) -> String {
+    let ExportCoefficient { name, unit, source, standard_error, .. } = coefficient;
     let error =
         standard_error.map_or(String::new(), |error| format!(", standard error {error:.3e}"));
     let unit = if unit == "1" { String::new() } else { format!(" [{unit}]") };

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 /// Identifier of letters, digits and underscores for any text: `X_v|v|` becomes `X_v_abs_v`,
 /// `mariner/abkowitz` becomes `mariner_abkowitz`.
-pub fn identifier(text: &str) -> String {
+pub fn to_identifier(text: &str) -> String {
     let mut name = String::new();
     let mut inside = false;
     for letter in text.chars() {
@@ -31,10 +31,10 @@ pub fn identifier(text: &str) -> String {
 }
 
 /// Identifiers of several texts, made unique by a number.
-pub fn identifiers<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<String> {
+pub fn unique_identifiers<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken = BTreeSet::new();
     let one = |text: &'a str| {
-        let plain = identifier(text);
+        let plain = to_identifier(text);
         let mut name = plain.clone();
         let mut number = 2;
         // Different texts may have the same identifier.
@@ -54,7 +54,7 @@ mod tests {
     #[test]
     fn absolute_values_and_submodels_are_spelled_out() {
         let names = ["X_v|v|", "N_|v|r", "X_u@astern", "mariner/abkowitz", "6-dof", "Y_vvr"];
-        let spelled = names.map(identifier);
+        let spelled = names.map(to_identifier);
         let expected =
             ["X_v_abs_v", "N_abs_v_r", "X_u_at_astern", "mariner_abkowitz", "m_6_dof", "Y_vvr"];
         assert_eq!(spelled, expected);
@@ -62,6 +62,9 @@ mod tests {
 
     #[test]
     fn names_that_come_out_alike_are_told_apart() {
-        assert_eq!(identifiers(["a/b", "a-b", "a b"].into_iter()), ["a_b", "a_b_2", "a_b_3"]);
+        assert_eq!(
+            unique_identifiers(["a/b", "a-b", "a b"].into_iter()),
+            ["a_b", "a_b_2", "a_b_3"]
+        );
     }
 }

@@ -23,8 +23,8 @@ mod subject;
 mod wrapped;
 
 pub use error::ExportError;
-pub use format::Format;
+pub use format::ModelFormat;
 pub use formats::{FORMATS, by_name};
-pub use outside::Outside;
-pub use plan::{Coefficient, Plan};
-pub use subject::Subject;
+pub use outside::ExternalInput;
+pub use plan::{ExportCoefficient, ExportPlan};
+pub use subject::ExportSubject;

@@ -4,17 +4,17 @@
 use sistership_formula::Function;
 
 use crate::error::ExportError;
-use crate::expression::{Language, function};
-use crate::format::Format;
-use crate::outside::Outside;
-use crate::plan::{Coefficient, Plan, STATES};
+use crate::expression::{TargetLanguage, function_name};
+use crate::format::ModelFormat;
+use crate::outside::ExternalInput;
+use crate::plan::{ExportCoefficient, ExportPlan, STATES};
 use crate::{header, range, rates, wrapped};
 
 /// Function file for MATLAB R2016b and later, Octave 6 and later.
 #[derive(Debug)]
-pub struct Matlab;
+pub struct MatlabFormat;
 
-impl Format for Matlab {
+impl ModelFormat for MatlabFormat {
     fn name(&self) -> &'static str {
         "matlab"
     }
@@ -23,49 +23,49 @@ impl Format for Matlab {
         "m"
     }
 
-    fn write(&self, plan: &Plan) -> Result<Vec<u8>, ExportError> {
-        Ok(text(plan).into_bytes())
+    fn write(&self, plan: &ExportPlan) -> Result<Vec<u8>, ExportError> {
+        Ok(source_text(plan).into_bytes())
     }
 }
 
-impl Language for Matlab {
-    fn number(&self, value: f64) -> String {
+impl TargetLanguage for MatlabFormat {
+    fn number_literal(&self, value: f64) -> String {
         if value.is_infinite() {
             return if value > 0.0 { "Inf" } else { "(-Inf)" }.to_owned();
         }
         if value < 0.0 { format!("({value:?})") } else { format!("{value:?}") }
     }
 
-    fn state(&self, place: usize) -> String {
+    fn state_name(&self, place: usize) -> String {
         STATES[place].0.to_owned()
     }
 
-    fn outside(&self, outside: &Outside) -> String {
+    fn input_name(&self, outside: &ExternalInput) -> String {
         outside.identifier.clone()
     }
 
-    fn coefficient(&self, coefficient: &Coefficient) -> String {
+    fn coefficient_name(&self, coefficient: &ExportCoefficient) -> String {
         format!("c.{}", coefficient.identifier)
     }
 
-    fn power(&self, a: &str, b: &str) -> String {
+    fn write_power(&self, a: &str, b: &str) -> String {
         format!("{a}^{b}")
     }
 
-    fn call(&self, of: Function, arguments: &[&str]) -> String {
-        format!("{}({})", function(of), arguments.join(", "))
+    fn write_call(&self, of: Function, arguments: &[&str]) -> String {
+        format!("{}({})", function_name(of), arguments.join(", "))
     }
 
-    fn choice(&self, comparison: &str, [a, b, c, d]: [&str; 4]) -> String {
+    fn write_conditional(&self, comparison: &str, [a, b, c, d]: [&str; 4]) -> String {
         // MATLAB has no conditional expression; the template defines the function `choice`.
         format!("choice({a} {comparison} {b}, {c}, {d})")
     }
 
-    fn assign(&self, name: &str, terms: &[String]) -> String {
-        wrapped::sum(&format!("{name} = "), terms, " ...\n   ") + ";"
+    fn write_assignment(&self, name: &str, terms: &[String]) -> String {
+        wrapped::wrap_sum(&format!("{name} = "), terms, " ...\n   ") + ";"
     }
 
-    fn solve(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
+    fn write_solution(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
         let rows: Vec<String> = mass.iter().map(|row| row.join(", ")).collect();
         let mut lines =
             vec![format!("a = [{}] \\ [{}];", rows.join("; ...\n    "), forces.join("; "))];
@@ -75,7 +75,7 @@ impl Language for Matlab {
         lines
     }
 
-    fn rate(&self, place: usize) -> String {
+    fn rate_target(&self, place: usize) -> String {
         format!("xdot({})", place + 1)
     }
 }
@@ -83,29 +83,31 @@ impl Language for Matlab {
 const TEMPLATE: &str = include_str!("../templates/model.m");
 
 /// Complete function file.
-fn text(plan: &Plan) -> String {
+fn source_text(plan: &ExportPlan) -> String {
     let mut help = vec!["Time derivative of the state of a ship manoeuvring model.".to_owned()];
-    help.extend(header::lines(plan));
+    help.extend(header::header_lines(plan));
     help.push(format!("{}: {}", range::NAME, range::MEANING));
     let help: Vec<String> = help
         .iter()
-        .flat_map(|line| wrapped::comment("%", line))
+        .flat_map(|line| wrapped::wrap_comment("%", line))
         .map(|line| line.trim_end().to_owned())
         .collect();
     TEMPLATE
         .replace("@@help", &help.join("\n"))
-        .replace("@@order_of_inputs", &names(plan).join(", "))
-        .replace("@@unpack", &unpack(plan))
-        .replace("@@statements", &rates::statements(plan, &Matlab).join("\n"))
-        .replace("@@rudder", rudder(plan))
-        .replace("@@range", &range_text(plan))
-        .replace("@@structure", &structure(plan))
+        .replace("@@order_of_inputs", &input_names(plan).join(", "))
+        .replace("@@unpack", &input_statements(plan))
+        .replace("@@statements", &rates::rate_statements(plan, &MatlabFormat).join("\n"))
+        .replace("@@rudder", gear_statements(plan))
+        .replace("@@range", &range_statements(plan))
+        .replace("@@structure", &structure_statements(plan))
         .replace("@@model", &plan.identifier)
 }
 
 /// Statements of the distance outside the range covered by trials; NaN if that range is not known.
-fn range_text(plan: &Plan) -> String {
-    let Some(range::Distance { mut statements, result }) = range::beside(plan, &Matlab) else {
+fn range_statements(plan: &ExportPlan) -> String {
+    let Some(range::RangeDistance { mut statements, result }) =
+        range::distance_after_rates(plan, &MatlabFormat)
+    else {
         return format!("{} = NaN;", range::NAME);
     };
     statements.push(format!("{} = {result};", range::NAME));
@@ -113,19 +115,19 @@ fn range_text(plan: &Plan) -> String {
 }
 
 /// Names of the inputs, in the order of the input vector.
-fn names(plan: &Plan) -> Vec<String> {
+fn input_names(plan: &ExportPlan) -> Vec<String> {
     let order = plan.gear.map(|_| "delta_order".to_owned());
     order.into_iter().chain(plan.outside.iter().map(|o| o.identifier.clone())).collect()
 }
 
 /// Statements that assign the input vector to names.
-fn unpack(plan: &Plan) -> String {
+fn input_statements(plan: &ExportPlan) -> String {
     let one = |(k, name): (usize, String)| format!("{name} = ui({});", k + 1);
-    names(plan).into_iter().enumerate().map(one).collect::<Vec<_>>().join("\n")
+    input_names(plan).into_iter().enumerate().map(one).collect::<Vec<_>>().join("\n")
 }
 
 /// Statements of the steering gear; element 9 of the state is the rudder.
-fn rudder(plan: &Plan) -> &'static str {
+fn gear_statements(plan: &ExportPlan) -> &'static str {
     match plan.gear {
         None => "xdot(9) = 0;",
         Some(_) => {
@@ -138,7 +140,7 @@ fn rudder(plan: &Plan) -> &'static str {
 }
 
 /// Statements that fill the structure of the model.
-fn structure(plan: &Plan) -> String {
+fn structure_statements(plan: &ExportPlan) -> String {
     let mut lines = vec![
         format!("model.name = '{}';", plan.name),
         format!("model.sha256 = '{}';", plan.sha256),
@@ -150,11 +152,12 @@ fn structure(plan: &Plan) -> String {
         ),
         format!("model.x = [{:?}; zeros(8, 1)]; % straight running", plan.speed_m_s),
     ];
-    let inputs: Vec<String> = plan.outside.iter().map(|o| Matlab.number(o.default)).collect();
+    let inputs: Vec<String> =
+        plan.outside.iter().map(|o| MatlabFormat.number_literal(o.default)).collect();
     // The ordered rudder comes first among the inputs, as in the list of names.
     let order = plan.gear.map(|_| "0".to_owned());
     let inputs: Vec<String> = order.into_iter().chain(inputs).collect();
-    lines.push(format!("model.ui = [{}]; % {}", inputs.join("; "), names(plan).join(", ")));
+    lines.push(format!("model.ui = [{}]; % {}", inputs.join("; "), input_names(plan).join(", ")));
     if let Some(gear) = &plan.gear {
         lines.push(format!("model.gear.limit_rad = {:?};", gear.limit_rad()));
         lines.push(format!("model.gear.rate_rad_s = {:?};", gear.rate_rad_s()));
@@ -162,11 +165,9 @@ fn structure(plan: &Plan) -> String {
         lines.push(format!("model.gear.band_rad = {:?};", plan.band_rad));
     }
     lines.push("model.c = struct();".to_owned());
-    lines.extend(
-        plan.coefficients
-            .iter()
-            .map(|c| format!("model.c.{} = {:?}; % {}", c.identifier, c.value, header::remark(c))),
-    );
+    lines.extend(plan.coefficients.iter().map(|c| {
+        format!("model.c.{} = {:?}; % {}", c.identifier, c.value, header::coefficient_remark(c))
+    }));
     lines.push(format!("model.most.speed_m_s = {:?};", plan.envelope.speed_m_s()));
     lines.push(format!("model.most.yaw_rate_rad_s = {:?};", plan.envelope.yaw_rate_rad_s()));
     lines.push(format!("model.most.roll_rad = {:?};", plan.envelope.roll_rad()));

@@ -1,14 +1,14 @@
 //! External inputs of an exported model, with unit, meaning and range.
 
-use sistership_model::effect::qualified;
+use sistership_model::effect::qualified_name;
 use sistership_model::validity::Region;
 use sistership_model::{Model, law, particulars};
 
-use crate::identifier::identifier;
+use crate::identifier::to_identifier;
 
 /// External input of a model.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outside {
+pub struct ExternalInput {
     /// Name in the law.
     pub name: String,
     /// Identifier in exported programs.
@@ -49,10 +49,10 @@ const KNOWN: [(&str, &str, &str, &str); 9] = [
     ("recorded.p", "p_given", "rad/s", "roll rate to starboard, which the law does not simulate"),
 ];
 
-impl Outside {
+impl ExternalInput {
     /// Creates an input of a model's law with effects.
-    pub fn of(model: &Model, name: &str, input: &law::Input) -> Self {
-        if let Some(current) = Self::current(name, input) {
+    pub fn from_law(model: &Model, name: &str, input: &law::LawInput) -> Self {
+        if let Some(current) = Self::current_component(name, input) {
             return current;
         }
         let known = KNOWN.iter().find(|(law, ..)| *law == name);
@@ -60,22 +60,22 @@ impl Outside {
             Some(&(_, identifier, unit, meaning)) => {
                 (identifier.to_owned(), unit.to_owned(), meaning.to_owned())
             }
-            None => (identifier(name), si(input), format!("`{name}` of the law")),
+            None => (to_identifier(name), si_unit(input), format!("`{name}` of the law")),
         };
         let default = match (name, input.default) {
             // Propeller revolutions default to those of the model's approach.
             ("n", None) => model.revolutions_rps.unwrap_or(0.0),
             (_, default) => default.unwrap_or(0.0),
         };
-        let range = range(model, name);
+        let range = valid_range(model, name);
         Self { name: name.to_owned(), identifier, unit, meaning, default, range }
     }
 
     /// Component of the current, if the input is one.
-    fn current(name: &str, input: &law::Input) -> Option<Self> {
+    fn current_component(name: &str, input: &law::LawInput) -> Option<Self> {
         let (effect, form, parameters) = CURRENT;
         // The parameters of the effect are components to the north and to the east.
-        let place = parameters.iter().position(|p| qualified(effect, form, p) == name)?;
+        let place = parameters.iter().position(|p| qualified_name(effect, form, p) == name)?;
         Some(Self {
             name: name.to_owned(),
             identifier: ["current_north", "current_east"][place].to_owned(),
@@ -88,7 +88,7 @@ impl Outside {
 }
 
 /// SI unit of an input. A dimensionless one is an angle.
-fn si(input: &law::Input) -> String {
+fn si_unit(input: &law::LawInput) -> String {
     match input.dimension.to_string().as_str() {
         "1" => "rad".to_owned(),
         "m s^-1" => "m/s".to_owned(),
@@ -98,9 +98,9 @@ fn si(input: &law::Input) -> String {
 }
 
 /// Range of an input: for the depth more than the draught, otherwise the range covered by trials.
-fn range(model: &Model, name: &str) -> [Option<f64>; 2] {
+fn valid_range(model: &Model, name: &str) -> [Option<f64>; 2] {
     if name == "depth" {
-        return [particulars::value(&model.particulars, "draught_m"), None];
+        return [particulars::particular_value(&model.particulars, "draught_m"), None];
     }
     let covered = |region: &Region| region.ranges.get(name).map(|range| range.map(Some));
     model.validity.as_ref().and_then(covered).unwrap_or([None, None])

@@ -3,26 +3,26 @@
 use std::borrow::Cow;
 use std::sync::LazyLock;
 
-use sistership_model::effect::{AppliedEffect, qualified};
-use sistership_model::law::Input;
+use sistership_model::effect::{AppliedEffect, qualified_name};
+use sistership_model::law::LawInput;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Effect, FileError, Law, Model};
-use sistership_simulation::envelope::Envelope;
-use sistership_simulation::equations::{Coefficients, EquationsOfMotion};
-use sistership_simulation::gear::Gear;
-use sistership_simulation::plant::Listed;
-use sistership_simulation::validity::distance;
+use sistership_simulation::envelope::MotionEnvelope;
+use sistership_simulation::equations::{CoefficientBinding, EquationsOfMotion};
+use sistership_simulation::gear::SteeringGear;
+use sistership_simulation::plant::PlantListing;
+use sistership_simulation::validity::distance_formula;
 use sistership_simulation::{Plant, PlantError, Ship};
 
-use crate::correction::corrected;
+use crate::correction::with_correction;
 use crate::error::ExportError;
-use crate::identifier::{identifier, identifiers};
-use crate::outside::{CURRENT, Outside};
-use crate::subject::Subject;
+use crate::identifier::{to_identifier, unique_identifiers};
+use crate::outside::{CURRENT, ExternalInput};
+use crate::subject::ExportSubject;
 
 /// Coefficient of the model.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Coefficient {
+pub struct ExportCoefficient {
     /// Name in the law.
     pub name: String,
     /// Identifier in exported programs.
@@ -39,7 +39,7 @@ pub struct Coefficient {
 
 /// Kind of an input of the tape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Operand {
+pub enum TapeOperand {
     /// State, by its index in the state vector.
     State(usize),
     /// External input, by its index in the list of the plan.
@@ -66,7 +66,7 @@ pub const DELTA: usize = 8;
 
 /// Equations of motion of a model, ready for export.
 #[derive(Debug)]
-pub struct Plan {
+pub struct ExportPlan {
     /// Name of the model.
     pub name: String,
     /// Identifier in exported programs.
@@ -76,17 +76,17 @@ pub struct Plan {
     /// SHA-256 of the exported document.
     pub sha256: String,
     /// External inputs, except the ordered rudder.
-    pub outside: Vec<Outside>,
+    pub outside: Vec<ExternalInput>,
     /// Coefficients of the model.
-    pub coefficients: Vec<Coefficient>,
+    pub coefficients: Vec<ExportCoefficient>,
     /// Kinds of the inputs of the tape.
-    pub operands: Vec<Operand>,
+    pub operands: Vec<TapeOperand>,
     /// Steering gear, if the law has one rudder.
-    pub gear: Option<Gear>,
+    pub gear: Option<SteeringGear>,
     /// Half of the gear's dead band, rad: an order within it is not followed.
     pub band_rad: f64,
     /// Physical range outside which a simulation is not valid.
-    pub envelope: Envelope,
+    pub envelope: MotionEnvelope,
     /// True if the law has roll.
     pub has_roll: bool,
     /// Length between perpendiculars, m.
@@ -96,34 +96,34 @@ pub struct Plan {
     plant: Plant,
 }
 
-impl Plan {
+impl ExportPlan {
     /// Creates the plan of a model, with a current as an additional input.
     ///
     /// # Errors
     /// Returns an error with the reason why the model cannot be exported.
-    pub fn new(subject: &Subject<'_>) -> Result<Self, ExportError> {
+    pub fn new(subject: &ExportSubject<'_>) -> Result<Self, ExportError> {
         let model = with_current(subject.model)?;
-        let law = corrected(&model, dressed(&model, subject.law)?)?;
-        let equations = EquationsOfMotion::of_law(&model, Cow::Borrowed(&law));
-        let known = equations.names();
+        let law = with_correction(&model, law_with_effects(&model, subject.law)?)?;
+        let equations = EquationsOfMotion::from_law(&model, Cow::Borrowed(&law));
+        let known = equations.tape_input_names();
         let is_known = |name: &str| known.iter().any(|known| known == name);
-        let distance = model.validity.as_ref().map(|region| distance(region, &is_known));
-        let plant = Plant::with_distance(&equations, Coefficients::Names, distance.as_ref())?;
+        let distance = model.validity.as_ref().map(|region| distance_formula(region, &is_known));
+        let plant = Plant::with_distance(&equations, CoefficientBinding::Names, distance.as_ref())?;
         // The ship of the original model: gear and envelope do not depend on the current.
         let ship = Ship::new(subject.model, subject.law)?;
         let delta = law.inputs.get_index_of("delta");
         // Dead bands are stored by the index of the input.
-        let band = plant.bands().iter().find(|(place, _)| Some(*place) == delta);
+        let band = plant.dead_bands().iter().find(|(place, _)| Some(*place) == delta);
         // The distance to the trials' range is part of the tape, so its inputs are kept, too.
-        let outside = taken(&model, &law, &plant);
-        let coefficients = coefficients(&model, subject.law)?;
-        let operands = operands(&law, &outside, coefficients.len());
+        let outside = external_inputs(&model, &law, &plant);
+        let coefficients = export_coefficients(&model, subject.law)?;
+        let operands = tape_operands(&law, &outside, coefficients.len());
         Ok(Self {
             name: model.name.clone(),
-            identifier: identifier(&model.name),
-            provenance: subject.provenance(),
+            identifier: to_identifier(&model.name),
+            provenance: subject.provenance_lines(),
             sha256: subject.sha256.clone(),
-            gear: law.inputs.contains_key("delta").then(|| ship.gear()),
+            gear: law.inputs.contains_key("delta").then(|| ship.steering_gear()),
             band_rad: band.map_or(0.0, |(_, half)| *half),
             envelope: *ship.envelope(),
             has_roll: ship.has_roll(),
@@ -137,12 +137,12 @@ impl Plan {
     }
 
     /// Operations of the equations of motion.
-    pub fn listed(&self) -> Listed<'_> {
-        self.plant.listed()
+    pub fn listed_operations(&self) -> PlantListing<'_> {
+        self.plant.to_listing()
     }
 
     /// Indices of the states that are not constant.
-    pub fn states(&self) -> impl Iterator<Item = usize> {
+    pub fn moving_states(&self) -> impl Iterator<Item = usize> {
         let moves = |place: &usize| match place {
             // Indices of roll rate and roll angle.
             3 | 4 => self.has_roll,
@@ -186,7 +186,7 @@ fn with_current(model: &Model) -> Result<Model, ExportError> {
 }
 
 /// Returns the law with the model's effects; the velocity of the current becomes an input.
-fn dressed(model: &Model, law: &Law) -> Result<Law, ExportError> {
+fn law_with_effects(model: &Model, law: &Law) -> Result<Law, ExportError> {
     let mut law = law
         .with_effects(model)
         .map_err(|(field, message)| ExportError::Effect { field, message })?;
@@ -197,51 +197,51 @@ fn dressed(model: &Model, law: &Law) -> Result<Law, ExportError> {
         return Err(ExportError::Band { model: model.name.clone(), input: input.clone() });
     }
     let (effect, form, parameters) = CURRENT;
-    for name in parameters.map(|parameter| qualified(effect, form, parameter)) {
+    for name in parameters.map(|parameter| qualified_name(effect, form, parameter)) {
         // A current that the model already has becomes the default of the input.
         let Some(value) = law.dressing.parameters.remove(&name) else { continue };
         let dimension = law.parameters[&name].dimension;
-        law.inputs.insert(name, Input { dimension, default: Some(value) });
+        law.inputs.insert(name, LawInput { dimension, default: Some(value) });
     }
     Ok(law)
 }
 
 /// Inputs of the law except the rudder; inputs that no operation reads are omitted.
-fn taken(model: &Model, law: &Law, plant: &Plant) -> Vec<Outside> {
-    use sistership_simulation::tape::{Instruction, Op};
+fn external_inputs(model: &Model, law: &Law, plant: &Plant) -> Vec<ExternalInput> {
+    use sistership_simulation::tape::{TapeInstruction, TapeOp};
     let first = sistership_model::law::STATES.len();
     let reads = |place: usize| {
         // Inputs of the tape are the states, then the inputs of the law.
-        let input = Instruction::Op(Op::Input((first + place) as u32));
-        plant.listed().tape.instructions().contains(&input)
+        let input = TapeInstruction::Op(TapeOp::Input((first + place) as u32));
+        plant.to_listing().tape.instructions().contains(&input)
     };
     let inputs = law.inputs.iter().enumerate();
     inputs
         .filter(|(place, (name, _))| name.as_str() != "delta" && reads(*place))
-        .map(|(_, (name, input))| Outside::of(model, name, input))
+        .map(|(_, (name, input))| ExternalInput::from_law(model, name, input))
         .collect()
 }
 
 /// Kind of each input of the tape. An input that no operation reads gets an arbitrary operand.
-fn operands(law: &Law, outside: &[Outside], coefficients: usize) -> Vec<Operand> {
+fn tape_operands(law: &Law, outside: &[ExternalInput], coefficients: usize) -> Vec<TapeOperand> {
     let states = sistership_model::law::STATES.len();
     let of_input = |name: &String| match outside.iter().position(|known| known.name == *name) {
-        Some(place) => Operand::Outside(place),
-        None => Operand::State(DELTA),
+        Some(place) => TapeOperand::Outside(place),
+        None => TapeOperand::State(DELTA),
     };
     (0..states)
-        .map(Operand::State)
+        .map(TapeOperand::State)
         .chain(law.inputs.keys().map(of_input))
-        .chain((0..coefficients).map(Operand::Coefficient))
+        .chain((0..coefficients).map(TapeOperand::Coefficient))
         .collect()
 }
 
 /// Coefficients of the model, with identifiers and units.
-fn coefficients(model: &Model, law: &Law) -> Result<Vec<Coefficient>, ExportError> {
-    let names = identifiers(model.coefficients.keys().map(String::as_str));
+fn export_coefficients(model: &Model, law: &Law) -> Result<Vec<ExportCoefficient>, ExportError> {
+    let names = unique_identifiers(model.coefficients.keys().map(String::as_str));
     let one = |((name, quantity), identifier): ((&String, &Quantity), String)| {
         let unit = law.coefficient_dimension(name).map_err(PlantError::from)?.to_string();
-        Ok(Coefficient {
+        Ok(ExportCoefficient {
             name: name.clone(),
             identifier,
             value: quantity.value,

@@ -4,17 +4,17 @@
 use sistership_formula::Function;
 
 use crate::error::ExportError;
-use crate::expression::{Language, function};
-use crate::format::Format;
-use crate::outside::Outside;
-use crate::plan::{Coefficient, Plan, STATES};
+use crate::expression::{TargetLanguage, function_name};
+use crate::format::ModelFormat;
+use crate::outside::ExternalInput;
+use crate::plan::{ExportCoefficient, ExportPlan, STATES};
 use crate::{header, range, rates, wrapped};
 
 /// Module for Python 3.8 and later.
 #[derive(Debug)]
-pub struct Python;
+pub struct PythonFormat;
 
-impl Format for Python {
+impl ModelFormat for PythonFormat {
     fn name(&self) -> &'static str {
         "python"
     }
@@ -23,71 +23,73 @@ impl Format for Python {
         "py"
     }
 
-    fn write(&self, plan: &Plan) -> Result<Vec<u8>, ExportError> {
-        Ok(text(plan).into_bytes())
+    fn write(&self, plan: &ExportPlan) -> Result<Vec<u8>, ExportError> {
+        Ok(source_text(plan).into_bytes())
     }
 }
 
-impl Language for Python {
-    fn number(&self, value: f64) -> String {
+impl TargetLanguage for PythonFormat {
+    fn number_literal(&self, value: f64) -> String {
         if value.is_infinite() {
             return if value > 0.0 { "math.inf" } else { "(-math.inf)" }.to_owned();
         }
         if value < 0.0 { format!("({value:?})") } else { format!("{value:?}") }
     }
 
-    fn state(&self, place: usize) -> String {
+    fn state_name(&self, place: usize) -> String {
         STATES[place].0.to_owned()
     }
 
-    fn outside(&self, outside: &Outside) -> String {
+    fn input_name(&self, outside: &ExternalInput) -> String {
         outside.identifier.clone()
     }
 
-    fn coefficient(&self, coefficient: &Coefficient) -> String {
+    fn coefficient_name(&self, coefficient: &ExportCoefficient) -> String {
         coefficient.identifier.clone()
     }
 
     /// Quotient. Python raises an error where other languages give an infinity; a non-zero number
     /// as divisor is safe.
-    fn quotient(&self, a: &str, b: &str) -> String {
+    fn write_quotient(&self, a: &str, b: &str) -> String {
         // Negative literals are in brackets.
         let safe = b.trim_matches(['(', ')']).parse::<f64>().is_ok_and(|number| number != 0.0);
         if safe { format!("{a}/{b}") } else { format!("_quotient({a}, {b})") }
     }
 
-    fn power(&self, a: &str, b: &str) -> String {
+    fn write_power(&self, a: &str, b: &str) -> String {
         format!("_safe(math.pow, {a}, {b})")
     }
 
-    fn call(&self, of: Function, arguments: &[&str]) -> String {
+    fn write_call(&self, of: Function, arguments: &[&str]) -> String {
         let all = arguments.join(", ");
         match of {
-            Function::Abs | Function::Min | Function::Max => format!("{}({all})", function(of)),
+            Function::Abs | Function::Min | Function::Max => {
+                format!("{}({all})", function_name(of))
+            }
             Function::Sign => format!("float(({all} > 0.0) - ({all} < 0.0))"),
             // These raise an error outside their domain, where other languages return NaN or
             // infinity.
             Function::Sqrt | Function::Log | Function::Exp => {
-                format!("_safe(math.{}, {all})", function(of))
+                format!("_safe(math.{}, {all})", function_name(of))
             }
-            other => format!("math.{}({all})", function(other)),
+            other => format!("math.{}({all})", function_name(other)),
         }
     }
 
-    fn choice(&self, comparison: &str, [a, b, c, d]: [&str; 4]) -> String {
+    fn write_conditional(&self, comparison: &str, [a, b, c, d]: [&str; 4]) -> String {
         format!("{c} if {a} {comparison} {b} else {d}")
     }
 
-    fn assign(&self, name: &str, terms: &[String]) -> String {
-        let one = wrapped::sum(&format!("    {name} = "), terms, "");
+    fn write_assignment(&self, name: &str, terms: &[String]) -> String {
+        let one = wrapped::wrap_sum(&format!("    {name} = "), terms, "");
         // Brackets are only needed to continue a line.
         if one.len() <= 96 {
             return one;
         }
-        wrapped::sum(&format!("    {name} = ("), terms, "\n       ") + ")"
+        wrapped::wrap_sum(&format!("    {name} = ("), terms, "\n       ") + ")"
     }
 
-    fn solve(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
+    fn write_solution(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
         let row = |(mass, force): (&[String; 4], &String)| {
             format!("        [{}, {force}],", mass.join(", "))
         };
@@ -95,7 +97,7 @@ impl Language for Python {
         vec![format!("    a_u, a_v, a_p, a_r = _solve([\n{}\n    ])", rows.join("\n"))]
     }
 
-    fn rate(&self, place: usize) -> String {
+    fn rate_target(&self, place: usize) -> String {
         format!("{}_dot", STATES[place].0)
     }
 }
@@ -103,20 +105,20 @@ impl Language for Python {
 const TEMPLATE: &str = include_str!("../templates/model.py");
 
 /// Complete module.
-fn text(plan: &Plan) -> String {
-    let lines = header::lines(plan);
+fn source_text(plan: &ExportPlan) -> String {
+    let lines = header::header_lines(plan);
     let lines: Vec<String> = lines
         .iter()
-        .flat_map(|line| wrapped::comment("#", line))
+        .flat_map(|line| wrapped::wrap_comment("#", line))
         .map(|l| l.trim_end().to_owned())
         .collect();
     let body = TEMPLATE
-        .replace("@@coefficients", &dictionary(plan))
-        .replace("@@inputs", &inputs(plan))
-        .replace("@@unpack", &unpack(plan))
-        .replace("@@statements", &rates::statements(plan, &Python).join("\n"))
-        .replace("@@rudder", &rudder(plan))
-        .replace("@@range", &range_text(plan))
+        .replace("@@coefficients", &coefficient_entries(plan))
+        .replace("@@inputs", &input_entries(plan))
+        .replace("@@unpack", &unpack_statements(plan))
+        .replace("@@statements", &rates::rate_statements(plan, &PythonFormat).join("\n"))
+        .replace("@@rudder", &rudder_statements(plan))
+        .replace("@@range", &range_function(plan))
         .replace(
             "@@order",
             if plan.gear.is_some() { "delta_order=math.radians(rudder_deg)" } else { "" },
@@ -131,34 +133,36 @@ fn text(plan: &Plan) -> String {
 }
 
 /// Function of the distance outside the range covered by trials.
-fn range_text(plan: &Plan) -> String {
-    let Some(range::Distance { statements, result }) = range::alone(plan, &Python) else {
+fn range_function(plan: &ExportPlan) -> String {
+    let Some(range::RangeDistance { statements, result }) =
+        range::standalone_distance(plan, &PythonFormat)
+    else {
         return String::new();
     };
-    let meaning = wrapped::comment("    #", range::MEANING).join("\n");
+    let meaning = wrapped::wrap_comment("    #", range::MEANING).join("\n");
     format!(
         "def {name}(state, inputs=INPUTS, coefficients=COEFFICIENTS):\n{meaning}\n    \
-         u, v, r, p, phi, psi, x, y, delta = state\n{unpack}\n{statements}\n    \
+         u, v, r, p, phi, psi, x, y, delta = state\n{unpack_statements}\n{statements}\n    \
          return {result}\n\n\n",
         name = range::NAME,
-        unpack = unpack(plan),
+        unpack = unpack_statements(plan),
         statements = statements.join("\n")
     )
 }
 
-fn dictionary(plan: &Plan) -> String {
-    let one = |c: &Coefficient| {
-        format!("    \"{}\": {:?},  # {}\n", c.identifier, c.value, header::remark(c))
+fn coefficient_entries(plan: &ExportPlan) -> String {
+    let one = |c: &ExportCoefficient| {
+        format!("    \"{}\": {:?},  # {}\n", c.identifier, c.value, header::coefficient_remark(c))
     };
     plan.coefficients.iter().map(one).collect()
 }
 
-fn inputs(plan: &Plan) -> String {
-    let one = |o: &Outside| {
+fn input_entries(plan: &ExportPlan) -> String {
+    let one = |o: &ExternalInput| {
         format!(
             "    \"{}\": {},  # {}, {}\n",
             o.identifier,
-            Python.number(o.default),
+            PythonFormat.number_literal(o.default),
             o.meaning,
             o.unit
         )
@@ -167,7 +171,7 @@ fn inputs(plan: &Plan) -> String {
     order.into_iter().chain(plan.outside.iter().map(one)).collect()
 }
 
-fn unpack(plan: &Plan) -> String {
+fn unpack_statements(plan: &ExportPlan) -> String {
     let from = |what: &str, name: &str| format!("    {name} = {what}[\"{name}\"]");
     let order = plan.gear.map(|_| from("inputs", "delta_order"));
     let outside = plan.outside.iter().map(|o| from("inputs", &o.identifier));
@@ -175,7 +179,7 @@ fn unpack(plan: &Plan) -> String {
     order.into_iter().chain(outside).chain(coefficients).collect::<Vec<_>>().join("\n")
 }
 
-fn rudder(plan: &Plan) -> String {
+fn rudder_statements(plan: &ExportPlan) -> String {
     let Some(gear) = &plan.gear else { return "    delta_dot = 0.0".to_owned() };
     let band = match plan.band_rad {
         0.0 => String::new(),

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use sistership_simulation::tape::{Instruction, Slot, Tape};
+use sistership_simulation::tape::{ResultSlot, Tape, TapeInstruction};
 
-use crate::expression::{Language, operand, terms};
-use crate::plan::Plan;
+use crate::expression::{TargetLanguage, instruction_terms, operand_text};
+use crate::plan::ExportPlan;
 
 /// Name of the output.
 pub const NAME: &str = "outside_range";
@@ -14,7 +14,7 @@ pub const MEANING: &str = "how far speeds, yaw rate, rudder and revolutions are 
     the trials covered, by half their range; 0 inside";
 
 /// Statements of the output, and its result.
-pub struct Distance {
+pub struct RangeDistance {
     /// Statements in the order of their dependence.
     pub statements: Vec<String>,
     /// Operand that holds the distance.
@@ -22,53 +22,67 @@ pub struct Distance {
 }
 
 /// Distance with all statements that it needs; `None` if the range covered by trials is not known.
-pub fn alone(plan: &Plan, language: &dyn Language) -> Option<Distance> {
-    let listed = plan.listed();
-    let slots = needed(listed.tape, [listed.distance?]);
-    Some(stated(plan, language, slots))
+pub fn standalone_distance(
+    plan: &ExportPlan,
+    language: &dyn TargetLanguage,
+) -> Option<RangeDistance> {
+    let listed = plan.listed_operations();
+    let slots = required_slots(listed.tape, [listed.distance?]);
+    Some(distance_statements(plan, language, slots))
 }
 
 /// Distance after the statements of the rates, which are not repeated.
-pub fn beside(plan: &Plan, language: &dyn Language) -> Option<Distance> {
-    let listed = plan.listed();
-    let (own, others) = (needed(listed.tape, [listed.distance?]), others(plan));
+pub fn distance_after_rates(
+    plan: &ExportPlan,
+    language: &dyn TargetLanguage,
+) -> Option<RangeDistance> {
+    let listed = plan.listed_operations();
+    let (own, others) = (required_slots(listed.tape, [listed.distance?]), rate_slots(plan));
     // What the rates have calculated already is not repeated.
-    Some(stated(plan, language, own.difference(&others).copied().collect()))
+    Some(distance_statements(plan, language, own.difference(&others).copied().collect()))
 }
 
-fn stated(plan: &Plan, language: &dyn Language, slots: BTreeSet<Slot>) -> Distance {
-    let statement =
-        |slot: Slot| Some(language.assign(&format!("t{slot}"), &terms(plan, language, slot)?));
-    let result = plan.listed().distance.map(|slot| operand(plan, language, slot));
+fn distance_statements(
+    plan: &ExportPlan,
+    language: &dyn TargetLanguage,
+    slots: BTreeSet<ResultSlot>,
+) -> RangeDistance {
+    let statement = |slot: ResultSlot| {
+        Some(
+            language
+                .write_assignment(&format!("t{slot}"), &instruction_terms(plan, language, slot)?),
+        )
+    };
+    let result = plan.listed_operations().distance.map(|slot| operand_text(plan, language, slot));
     let statements = slots.into_iter().filter_map(statement).collect();
-    Distance { statements, result: result.unwrap_or_default() }
+    RangeDistance { statements, result: result.unwrap_or_default() }
 }
 
 /// Instructions that the rates of the states need.
-pub fn others(plan: &Plan) -> BTreeSet<Slot> {
-    let listed = plan.listed();
+pub fn rate_slots(plan: &ExportPlan) -> BTreeSet<ResultSlot> {
+    let listed = plan.listed_operations();
     let results = listed.forces.iter().chain(listed.mass.iter().flatten());
     let results = results.chain(&listed.accelerations).chain(&listed.kinematics);
-    needed(listed.tape, results.copied().flatten())
+    required_slots(listed.tape, results.copied().flatten())
 }
 
 /// Instructions that the given ones need, including themselves.
-fn needed(tape: &Tape, some: impl IntoIterator<Item = Slot>) -> BTreeSet<Slot> {
+fn required_slots(tape: &Tape, some: impl IntoIterator<Item = ResultSlot>) -> BTreeSet<ResultSlot> {
     let (mut all, mut open) = (BTreeSet::new(), some.into_iter().collect::<Vec<_>>());
     // The set is in ascending order of slots, and every instruction reads earlier slots only.
     while let Some(slot) = open.pop() {
         if all.insert(slot) {
-            open.extend(operands(tape, slot));
+            open.extend(operand_slots(tape, slot));
         }
     }
     all
 }
 
-fn operands(tape: &Tape, slot: Slot) -> Vec<Slot> {
+fn operand_slots(tape: &Tape, slot: ResultSlot) -> Vec<ResultSlot> {
     match tape.instructions()[slot as usize] {
-        Instruction::Op(op) => op.operands().into_iter().flatten().collect(),
-        Instruction::Products { first, from, to } => {
-            let pairs = tape.terms()[from as usize..to as usize].iter().flatten().copied();
+        TapeInstruction::Op(op) => op.operands().into_iter().flatten().collect(),
+        TapeInstruction::Products { first, from, to } => {
+            let pairs = tape.product_terms()[from as usize..to as usize].iter().flatten().copied();
             std::iter::once(first).chain(pairs).collect()
         }
     }

@@ -1,13 +1,13 @@
 //! Subject of an export, and the provenance of its values.
 
-use sistership_model::estimated_particulars::estimated_words;
+use sistership_model::estimated_particulars::describe_estimates;
 use sistership_model::version::code_revision;
 use sistership_model::vessel::Status;
 use sistership_model::{Law, Model};
 
 /// Model to be exported.
 #[derive(Debug, Clone)]
-pub struct Subject<'a> {
+pub struct ExportSubject<'a> {
     /// Model to be exported.
     pub model: &'a Model,
     /// Law of the model.
@@ -18,15 +18,15 @@ pub struct Subject<'a> {
     pub sha256: String,
 }
 
-impl Subject<'_> {
+impl ExportSubject<'_> {
     /// Lines of provenance: the model, and the sources of its values.
-    pub fn provenance(&self) -> Vec<String> {
+    pub fn provenance_lines(&self) -> Vec<String> {
         let Self { model, law, version, sha256 } = self;
         // A model outside the store has no version.
         let version =
             version.as_ref().map_or(String::new(), |version| format!(", version {version}"));
         let mut lines = vec![
-            format!("Model {}{version}: {}", model.name, worth(model.status)),
+            format!("Model {}{version}: {}", model.name, status_words(model.status)),
             format!("SHA-256 {sha256}"),
             format!("Law {}: {}", law.name, law.title),
             format!("Written by sistership {}", code_revision()),
@@ -51,10 +51,12 @@ impl Subject<'_> {
         lines
             .push("Particulars and parameters, which stand as numbers in what follows:".to_owned());
         lines.extend(stated.chain(folded));
-        lines.extend(estimated_words(&model.particulars).map(|words| format!("Note: {words}")));
+        lines.extend(describe_estimates(&model.particulars).map(|words| format!("Note: {words}")));
         lines.extend(trials_environment(model).map(|words| format!("Note: {words}")));
-        lines.extend(sources(model));
-        lines.extend(law.sources.iter().map(|(key, source)| cited("Law's source", key, source)));
+        lines.extend(source_lines(model));
+        lines.extend(
+            law.sources.iter().map(|(key, source)| citation_line("Law's source", key, source)),
+        );
         lines
     }
 }
@@ -73,11 +75,11 @@ fn trials_environment(model: &Model) -> Option<String> {
     ))
 }
 
-fn sources(model: &Model) -> impl Iterator<Item = String> + '_ {
-    model.sources.iter().map(|(key, source)| cited("Source", key, source))
+fn source_lines(model: &Model) -> impl Iterator<Item = String> + '_ {
+    model.sources.iter().map(|(key, source)| citation_line("Source", key, source))
 }
 
-fn cited(what: &str, key: &str, source: &sistership_model::source::Source) -> String {
+fn citation_line(what: &str, key: &str, source: &sistership_model::source::Source) -> String {
     let doi = source.doi.as_ref().map_or(String::new(), |doi| format!(" doi:{doi}"));
     format!("{what} {key}: {}{doi}", one_line(&source.citation))
 }
@@ -87,7 +89,7 @@ fn one_line(text: &str) -> String {
 }
 
 /// Reliability of a model by its status.
-fn worth(status: Status) -> &'static str {
+fn status_words(status: Status) -> &'static str {
     match status {
         Status::Published => "as published",
         Status::Estimated => "ESTIMATED from particulars, not measured",

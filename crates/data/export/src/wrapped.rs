@@ -4,7 +4,7 @@
 const WIDTH: usize = 96;
 
 /// Sum over as many lines as needed; `next` ends one line and begins another.
-pub fn sum(head: &str, terms: &[String], next: &str) -> String {
+pub fn wrap_sum(head: &str, terms: &[String], next: &str) -> String {
     let mut text = head.to_owned();
     let mut line = head.len();
     for (index, term) in terms.iter().enumerate() {
@@ -23,7 +23,7 @@ pub fn sum(head: &str, terms: &[String], next: &str) -> String {
 
 /// Comment over as many lines as needed, each after a comment mark; the indentation of the text is
 /// kept.
-pub fn comment(mark: &str, text: &str) -> Vec<String> {
+pub fn wrap_comment(mark: &str, text: &str) -> Vec<String> {
     let indent = &text[..text.len() - text.trim_start().len()];
     let (mut lines, mut line) = (Vec::new(), format!("{mark}{indent}"));
     for word in text.split_whitespace() {
@@ -45,14 +45,14 @@ mod tests {
     #[test]
     fn sums_break_between_terms() {
         let terms: Vec<String> = (0..40).map(|k| format!("X_{k:02}*t{k:02}")).collect();
-        let text = sum("    X = ", &terms, "\n        ");
+        let text = wrap_sum("    X = ", &terms, "\n        ");
         assert!(text.lines().count() > 3 && text.lines().all(|line| line.len() <= WIDTH));
         assert_eq!(text.replace("\n        ", ""), format!("    X = {}", terms.join(" + ")));
     }
 
     #[test]
     fn comments_break_between_words() {
-        let lines = comment("#", &"abc defghi ".repeat(30));
+        let lines = wrap_comment("#", &"abc defghi ".repeat(30));
         assert!(lines.len() > 3 && lines.iter().all(|line| line.len() <= WIDTH));
         assert!(lines.iter().all(|line| line.starts_with('#')));
     }

@@ -7,9 +7,9 @@ mod shared;
 
 use std::process::Command;
 
-use sistership_export::{FORMATS, Plan, Subject, by_name};
+use sistership_export::{ExportPlan, ExportSubject, FORMATS, by_name};
 use sistership_learned::attach;
-use sistership_model::branch::{BranchMode, Learner};
+use sistership_model::branch::{CorrectionMode, Learner};
 use sistership_model::{Model, Zoo};
 
 use foundation::{Foundation, learners, training};
@@ -18,14 +18,14 @@ use shared::{Circle, Track, largest, plan, sailed};
 
 const MOST: f64 = 1e-6;
 
-fn corrected(name: &str, learner: Learner, mode: BranchMode) -> Model {
+fn corrected(name: &str, learner: Learner, mode: CorrectionMode) -> Model {
     let (mut model, weights) = Foundation::of(name).trained(&training(learner, mode));
     attach(&mut model, &weights).unwrap();
     model
 }
 
-fn sails_alike(name: &str, learner: Learner, mode: BranchMode) {
-    let zoo = Zoo::embedded().unwrap();
+fn sails_alike(name: &str, learner: Learner, mode: CorrectionMode) {
+    let zoo = Zoo::load_embedded().unwrap();
     let what = format!("{name} {} {mode:?}", learner.name());
     let (model, circle) = (corrected(name, learner, mode), Circle::of(&zoo, name, 10.0));
     let own = sailed(&shared::ship(&zoo, &model), &circle);
@@ -34,35 +34,35 @@ fn sails_alike(name: &str, learner: Learner, mode: BranchMode) {
     let difference = largest(&circle, &by_c(folder.path(), &code, &circle.arguments()), &own);
     println!("{what}: {difference:.1e}");
     assert!(difference < MOST, "{what}: {difference:e}");
-    let alone = sailed(&shared::ship(&zoo, &model.foundation()), &circle);
+    let alone = sailed(&shared::ship(&zoo, &model.without_correction()), &circle);
     assert!(largest(&circle, &alone, &own) > 1e-3, "{what}: the correction changes nothing");
 }
 
 #[test]
 fn every_kind_acts_as_in_our_own_simulation() {
     for learner in learners() {
-        sails_alike("mariner", learner, BranchMode::Parallel);
+        sails_alike("mariner", learner, CorrectionMode::Parallel);
     }
     let [_, boosted, kernels, _] = learners();
-    sails_alike("kvlcc2-7m", boosted, BranchMode::Parallel);
-    sails_alike("mariner", kernels, BranchMode::Serial);
+    sails_alike("kvlcc2-7m", boosted, CorrectionMode::Parallel);
+    sails_alike("mariner", kernels, CorrectionMode::Serial);
 }
 
 #[test]
 fn a_correction_in_the_place_of_the_law_does_too() {
     let [_, boosted, kernels, _] = learners();
-    sails_alike("mariner", boosted, BranchMode::Convert);
-    sails_alike("kvlcc2-7m", kernels, BranchMode::Convert);
+    sails_alike("mariner", boosted, CorrectionMode::Convert);
+    sails_alike("kvlcc2-7m", kernels, CorrectionMode::Convert);
 }
 
 #[test]
 fn every_format_writes_it() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let [forest, ..] = learners();
-    let model = corrected("mariner", forest, BranchMode::Parallel);
+    let model = corrected("mariner", forest, CorrectionMode::Parallel);
     for format in FORMATS {
         let own = format.write(&plan(&zoo, &model)).unwrap().len();
-        let alone = format.write(&plan(&zoo, &model.foundation())).unwrap().len();
+        let alone = format.write(&plan(&zoo, &model.without_correction())).unwrap().len();
         assert!(own > alone + 1000, "{}: {own} bytes, {alone} without it", format.name());
     }
 }
@@ -74,9 +74,9 @@ fn python_sails_it_as_we_do() {
         eprintln!("skipped: no python3");
         return;
     }
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let [.., network] = learners();
-    let model = corrected("mariner", network, BranchMode::Parallel);
+    let model = corrected("mariner", network, CorrectionMode::Parallel);
     let circle = Circle::of(&zoo, "mariner", 4.0);
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("model.py");
@@ -89,12 +89,13 @@ fn python_sails_it_as_we_do() {
 
 #[test]
 fn a_correction_without_its_weights_is_refused_by_their_hash() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let [_, boosted, ..] = learners();
-    let (model, _) = Foundation::of("mariner").trained(&training(boosted, BranchMode::Parallel));
+    let (model, _) =
+        Foundation::of("mariner").trained(&training(boosted, CorrectionMode::Parallel));
     let law = zoo.law(&model.law).unwrap();
-    let subject = Subject { model: &model, law, version: None, sha256: String::new() };
-    let refused = Plan::new(&subject).unwrap_err().to_string();
+    let subject = ExportSubject { model: &model, law, version: None, sha256: String::new() };
+    let refused = ExportPlan::new(&subject).unwrap_err().to_string();
     let hash = &model.branch.as_ref().unwrap().weights_sha256;
     assert!(refused.contains(hash), "{refused}");
 }

@@ -3,12 +3,12 @@
 
 mod shared;
 
-use sistership_export::{ExportError, Plan, Subject, by_name};
+use sistership_export::{ExportError, ExportPlan, ExportSubject, by_name};
 use sistership_model::effect::AppliedEffect;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Zoo};
-use sistership_simulation::plant::Work;
-use sistership_simulation::state::{at, straight};
+use sistership_simulation::plant::PlantWorkspace;
+use sistership_simulation::state::{at, straight_state};
 use sistership_simulation::{Method, Ship};
 
 use shared::programs::by_c;
@@ -33,7 +33,7 @@ fn effect(zoo: &Zoo, name: &str, form: &str) -> AppliedEffect {
 }
 
 fn with(zoo: &Zoo, ship: &str, effects: &[(&str, &str)]) -> Model {
-    let mut model = zoo.model(ship).unwrap();
+    let mut model = zoo.find_model(ship).unwrap();
     model.effects = effects.iter().map(|(name, form)| effect(zoo, name, form)).collect();
     model
 }
@@ -41,17 +41,20 @@ fn with(zoo: &Zoo, ship: &str, effects: &[(&str, &str)]) -> Model {
 /// Our own simulation with inputs of the law by name.
 fn own(ship: &Ship, circle: &Circle, given: &[(&str, f64)]) -> Track {
     let names: Vec<String> = ship.law_inputs().map(|(name, _)| name.to_owned()).collect();
-    let (mut state, mut rows, mut work) = (straight(circle.speed_m_s), Vec::new(), Work::default());
+    let (mut state, mut rows, mut work) =
+        (straight_state(circle.speed_m_s), Vec::new(), PlantWorkspace::default());
     let order = circle.rudder_deg.to_radians();
     for _ in 0..=(circle.duration_s / circle.step_s).round() as usize {
         rows.push(std::array::from_fn(|k| state[k]));
-        state = Method::Rk4.step(&state, circle.step_s, |_, state| {
-            let mut inputs = ship.inputs(state[at::DELTA], ship.revolutions_at(circle.speed_m_s));
+        state = Method::Rk4.advance_state(&state, circle.step_s, |_, state| {
+            let mut inputs =
+                ship.inputs_for(state[at::DELTA], ship.revolutions_at(circle.speed_m_s));
             for (name, value) in given {
                 inputs[names.iter().position(|known| known == name).unwrap()] = *value;
             }
             let mut rate = ship.rate_with(state, &inputs, &mut work);
-            rate[at::DELTA] = ship.gear().rate(order, state[at::DELTA], circle.step_s);
+            rate[at::DELTA] =
+                ship.steering_gear().rudder_rate(order, state[at::DELTA], circle.step_s);
             rate
         });
     }
@@ -71,7 +74,7 @@ fn exported(model: &Model, zoo: &Zoo, circle: &Circle, given: &[(&str, f64)]) ->
 }
 
 fn sails_alike(ship: &str, effects: &[(&str, &str)], given: &[(&str, f64)]) {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let (model, circle) = (with(&zoo, ship, effects), Circle::of(&zoo, ship, 10.0));
     let found = exported(&model, &zoo, &circle, given);
     let difference = largest(&circle, &found, &own(&shared::ship(&zoo, &model), &circle, given));
@@ -98,10 +101,10 @@ fn a_law_that_knows_depth_takes_it() {
 
 #[test]
 fn a_current_from_outside_is_that_of_the_effect() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let circle = Circle::of(&zoo, "sr108", 10.0);
     let given = [("current_north", 0.7), ("current_east", -0.4)];
-    let found = exported(&zoo.model("sr108").unwrap(), &zoo, &circle, &given);
+    let found = exported(&zoo.find_model("sr108").unwrap(), &zoo, &circle, &given);
     let mut model = with(&zoo, "sr108", &[("current", "constant")]);
     for (name, value) in [("north_m_s", 0.7), ("east_m_s", -0.4)] {
         model.effects[0].parameters.insert(name.to_owned(), Quantity::new(value, "test"));
@@ -112,11 +115,11 @@ fn a_current_from_outside_is_that_of_the_effect() {
 
 #[test]
 fn what_cannot_be_exported_says_why() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let mut model = with(&zoo, "kvlcc2", &[("rudder-lag", "first-order")]);
     model.effects[0].form.lags = [("n".to_owned(), "time_constant_s".to_owned())].into();
     let law = zoo.law(&model.law).unwrap();
-    let subject = Subject { model: &model, law, version: None, sha256: String::new() };
-    let refused = Plan::new(&subject).unwrap_err();
+    let subject = ExportSubject { model: &model, law, version: None, sha256: String::new() };
+    let refused = ExportPlan::new(&subject).unwrap_err();
     assert!(matches!(&refused, ExportError::Lag { input, .. } if input == "n"), "{refused}");
 }

@@ -47,7 +47,7 @@ fn importer(folder: &Path, version: &str) -> std::path::PathBuf {
 
 /// Sails a model's FMU; the calls are those of co-simulation, then of model exchange.
 fn sailed(version: &str, libraries: &str, exchange: bool) {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let folder = tempfile::tempdir().unwrap();
     let program = importer(folder.path(), version);
     for name in MODELS {
@@ -83,7 +83,7 @@ fn fmi3_sails_as_we_do() {
 
 #[test]
 fn a_hundred_steps_a_second_run_at_a_hundred_times_real_time() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let folder = tempfile::tempdir().unwrap();
     let program = importer(folder.path(), "fmi2");
     unpacked(&exported(&zoo, "kvlcc2", "fmu2"), folder.path());
@@ -109,7 +109,7 @@ fn fmpy_finds_no_fault_and_sails_as_we_do() {
         eprintln!("skipped: SISTERSHIP_FMPY names no Python with FMPy");
         return;
     };
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let folder = tempfile::tempdir().unwrap();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/importer/by_fmpy.py");
     for name in MODELS {

@@ -22,7 +22,7 @@ fn model(zoo: &Zoo) -> Model {
         ("delta", vec![-0.6, 0.6, 0.6, -0.6]),
     ];
     let columns = columns.map(|(name, column)| (name.to_owned(), column)).into();
-    Model { validity: Region::of(&columns), ..zoo.model("kvlcc2").unwrap() }
+    Model { validity: Region::from_samples(&columns), ..zoo.find_model("kvlcc2").unwrap() }
 }
 
 fn written(zoo: &Zoo, format: &str) -> Vec<u8> {
@@ -43,7 +43,7 @@ fn check(printed: &str) {
 
 #[test]
 fn c_says_how_far_outside_it_is() {
-    let (zoo, folder) = (Zoo::embedded().unwrap(), tempfile::tempdir().unwrap());
+    let (zoo, folder) = (Zoo::load_embedded().unwrap(), tempfile::tempdir().unwrap());
     let name = plan(&zoo, &model(&zoo)).identifier;
     let points: String = POINTS
         .iter()
@@ -68,7 +68,7 @@ fn python_says_how_far_outside_it_is() {
         eprintln!("skipped: no python3");
         return;
     }
-    let (zoo, folder) = (Zoo::embedded().unwrap(), tempfile::tempdir().unwrap());
+    let (zoo, folder) = (Zoo::load_embedded().unwrap(), tempfile::tempdir().unwrap());
     std::fs::write(folder.path().join("ship.py"), written(&zoo, "python")).unwrap();
     let say = |([u, n], _): &([f64; 2], f64)| {
         format!("print(ship.outside_range([{u:?}] + [0.0]*8, {{**ship.INPUTS, 'n': {n:?}}}))\n")
@@ -79,13 +79,13 @@ fn python_says_how_far_outside_it_is() {
 
 #[test]
 fn texts_name_the_output_where_a_range_is_known() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let text = |format: &str| String::from_utf8(written(&zoo, format)).unwrap();
     assert!(text("matlab").contains("function [xdot, U, model, outside_range] = kvlcc2"));
     let modelica = text("modelica");
     assert!(modelica.contains("  output Real outside_range(unit = \"1\")"));
     assert_eq!(modelica.matches("\n  outside_range = ").count(), 1);
-    let published = zoo.model("kvlcc2").unwrap();
+    let published = zoo.find_model("kvlcc2").unwrap();
     let modelica = by_name("modelica").unwrap().write(&plan(&zoo, &published)).unwrap();
     assert!(!String::from_utf8(modelica).unwrap().contains("outside_range"));
 }
@@ -111,7 +111,7 @@ fn reference(description: &str, name: &str) -> u32 {
 
 #[test]
 fn fmus_have_it_as_an_output() {
-    let (zoo, folder) = (Zoo::embedded().unwrap(), tempfile::tempdir().unwrap());
+    let (zoo, folder) = (Zoo::load_embedded().unwrap(), tempfile::tempdir().unwrap());
     for format in ["fmu2", "fmu3"] {
         let place = folder.path().join(format);
         unpacked(&written(&zoo, format), &place);

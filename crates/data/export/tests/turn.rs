@@ -48,7 +48,7 @@ fn within(what: &str, name: &str, difference: f64) {
 
 #[test]
 fn c_turns_every_model_of_the_zoo_as_we_do() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let folder = tempfile::tempdir().unwrap();
     for name in models(&zoo) {
         let circle = Circle::of(&zoo, &name, 20.0);
@@ -60,7 +60,7 @@ fn c_turns_every_model_of_the_zoo_as_we_do() {
 
 #[test]
 fn python_and_octave_turn_as_we_do() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let folder = tempfile::tempdir().unwrap();
     for name in ["mariner", "kvlcc2", "sr108", "esso-tanker"] {
         let circle = Circle::of(&zoo, name, 8.0);
@@ -81,7 +81,7 @@ fn modelica_read_by_pymoca_turns_as_we_do() {
         eprintln!("skipped: SISTERSHIP_PYMOCA names no Python with pymoca and casadi");
         return;
     };
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let folder = tempfile::tempdir().unwrap();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/importer/by_pymoca.py");
     for name in ["mariner", "kvlcc2", "sr108"] {

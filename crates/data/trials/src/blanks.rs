@@ -3,20 +3,20 @@
 use std::io::{self, Read};
 
 /// Reader that replaces each run of blanks by a tab, if it is active.
-pub(crate) struct Blanks<R> {
+pub(crate) struct TabbedReader<R> {
     inner: R,
     is_active: bool,
     begins: bool,
     pending: bool,
 }
 
-impl<R: Read> Blanks<R> {
+impl<R: Read> TabbedReader<R> {
     pub(crate) fn new(inner: R, is_active: bool) -> Self {
         Self { inner, is_active, begins: true, pending: false }
     }
 
     /// Copies the bytes with blanks replaced; returns the number of bytes written.
-    fn squeezed(&mut self, read: &[u8], out: &mut [u8]) -> usize {
+    fn squeeze_blanks(&mut self, read: &[u8], out: &mut [u8]) -> usize {
         let mut count = 0;
         for &byte in read {
             match byte {
@@ -42,7 +42,7 @@ impl<R: Read> Blanks<R> {
     }
 }
 
-impl<R: Read> Read for Blanks<R> {
+impl<R: Read> Read for TabbedReader<R> {
     fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
         if !self.is_active || out.len() < 2 {
             return self.inner.read(out);
@@ -51,7 +51,7 @@ impl<R: Read> Read for Blanks<R> {
         let mut taken = vec![0; out.len() - 1];
         loop {
             let read = self.inner.read(&mut taken)?;
-            let count = self.squeezed(&taken[..read], out);
+            let count = self.squeeze_blanks(&taken[..read], out);
             if count > 0 || read == 0 {
                 return Ok(count);
             }
@@ -67,10 +67,12 @@ mod tests {
     #[test]
     fn runs_of_blanks_become_one_tab() {
         let mut text = String::new();
-        Blanks::new(&b"  1.0   2.0 \r\n\n 3\t 4"[..], true).read_to_string(&mut text).unwrap();
+        TabbedReader::new(&b"  1.0   2.0 \r\n\n 3\t 4"[..], true)
+            .read_to_string(&mut text)
+            .unwrap();
         assert_eq!(text, "1.0\t2.0\r\n\n3\t4");
         let mut bytes = Vec::new();
-        let mut small = Blanks::new(&b" a  b\n"[..], true);
+        let mut small = TabbedReader::new(&b" a  b\n"[..], true);
         let mut two = [0; 2];
         while let count @ 1.. = small.read(&mut two).unwrap() {
             bytes.extend_from_slice(&two[..count]);

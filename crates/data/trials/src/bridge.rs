@@ -4,8 +4,8 @@
 use sistership_model::trial::Channel;
 
 use crate::findings::Findings;
-use crate::series::{is_angle, leave_out, shorter_way};
-use crate::table::{Table, Target};
+use crate::series::{drop_incomplete_rows, is_angle, shorter_way};
+use crate::table::{ColumnTarget, Table};
 
 /// Default longest gap that is filled, s. A straight line over T seconds misses a motion of period
 /// P by at most its amplitude times (pi T / P)^2 / 8: with 4 s a tenth of a yawing motion of 14 s,
@@ -16,19 +16,19 @@ pub(crate) const BRIDGED_S: f64 = 4.0;
 const BRIDGED: usize = 40;
 
 /// Fills short gaps, excludes the rows of long ones, and reports the number of each.
-pub(crate) fn bridge(table: &mut Table, limit_s: f64, findings: &mut Findings) {
-    let time = table.columns.iter().position(|column| column.target == Target::Time);
+pub(crate) fn bridge_gaps(table: &mut Table, limit_s: f64, findings: &mut Findings) {
+    let time = table.columns.iter().position(|column| column.target == ColumnTarget::Time);
     let Some(t) = time.map(|at| table.values[at].clone()) else { return };
     for (column, values) in table.columns.iter().zip(&mut table.values) {
-        if column.target == Target::Time {
+        if column.target == ColumnTarget::Time {
             continue;
         }
-        let bounds = Bounds {
+        let bounds = GapBounds {
             is_angle: is_angle(column.target),
             longest_s: limit_s,
-            fastest: fastest(column.target),
+            fastest: max_rate(column.target),
         };
-        let (filled, open) = fill(&t, values, bounds);
+        let (filled, open) = fill_gaps(&t, values, bounds);
         if filled > 0 {
             let message = format!(
                 "{filled} gaps of at most {limit_s} s are filled along the straight line between \
@@ -41,12 +41,12 @@ pub(crate) fn bridge(table: &mut Table, limit_s: f64, findings: &mut Findings) {
             findings.warning(None, Some(&column.header), message);
         }
     }
-    leave_out(table);
+    drop_incomplete_rows(table);
 }
 
 /// Limits of the gaps that are filled.
 #[derive(Debug, Clone, Copy)]
-struct Bounds {
+struct GapBounds {
     is_angle: bool,
     longest_s: f64,
     /// Largest rate of change across a gap, above which it is a jump.
@@ -56,16 +56,16 @@ struct Bounds {
 /// m/s; a position that moves faster across a gap has jumped.
 const FASTEST: f64 = 40.0;
 
-fn fastest(target: Target) -> f64 {
+fn max_rate(target: ColumnTarget) -> f64 {
     match target {
-        Target::Channel(Channel::X | Channel::Y) => FASTEST,
+        ColumnTarget::Channel(Channel::X | Channel::Y) => FASTEST,
         _ => f64::INFINITY,
     }
 }
 
 /// Fills gaps of one channel; returns the number of filled gaps, and of rows in gaps that stay
 /// open.
-fn fill(t: &[f64], values: &mut [f64], bounds: Bounds) -> (usize, usize) {
+fn fill_gaps(t: &[f64], values: &mut [f64], bounds: GapBounds) -> (usize, usize) {
     let (mut filled, mut open, mut k) = (0, 0, 0);
     while k < values.len() {
         if values[k].is_finite() {
@@ -97,21 +97,21 @@ fn fill(t: &[f64], values: &mut [f64], bounds: Bounds) -> (usize, usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{messages, table};
+    use crate::testing::{finding_messages, test_table};
 
     #[test]
     fn short_gaps_are_filled_and_long_ones_left_out() {
         let mut psi = vec![6.2, f64::NAN, 0.1, 0.2, 0.3];
         psi.extend([f64::NAN; 12]);
         psi.extend([0.4, 0.5]);
-        let mut one = table(&[(Channel::Psi, psi)]);
+        let mut one = test_table(&[(Channel::Psi, psi)]);
         let before = one.rows.len();
         let mut findings = Findings::default();
-        bridge(&mut one, 4.0, &mut findings);
+        bridge_gaps(&mut one, 4.0, &mut findings);
         assert_eq!(before - one.rows.len(), 12);
         let filled = one.values.iter().map(|values| values[1]).fold(0.0, f64::max);
         assert!((filled - 6.2 - 0.5 * (std::f64::consts::TAU - 6.1)).abs() < 1e-12, "{filled}");
-        let text = messages(findings);
+        let text = finding_messages(findings);
         assert!(text.contains("1 gaps of at most 4 s") && text.contains("12 rows lie"), "{text}");
     }
 }

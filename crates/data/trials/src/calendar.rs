@@ -14,14 +14,14 @@ fn is_leap(year: i64) -> bool {
 }
 
 /// Day number of 1 January, counted from 1 January 1970.
-fn start_of(year: i64) -> i64 {
+fn year_start(year: i64) -> i64 {
     let past = year - 1;
     365 * past + past / 4 - past / 100 + past / 400 - EPOCH
 }
 
-fn start_of_month(year: i64, month: i64) -> i64 {
+fn month_start(year: i64, month: i64) -> i64 {
     let index = usize::try_from(month - 1).unwrap_or(0).min(11);
-    start_of(year) + BEFORE[index] + i64::from(month > 2 && is_leap(year))
+    year_start(year) + BEFORE[index] + i64::from(month > 2 && is_leap(year))
 }
 
 /// Years that are read: no trial is older, and the nanoseconds between them fit 64 bits.
@@ -29,29 +29,30 @@ const YEARS: std::ops::RangeInclusive<i64> = 1900..=2150;
 
 /// Returns the day of a date, counted from 1970; `None` for a date that does not exist or is out of
 /// range.
-pub(crate) fn day(year: i64, month: i64, of_month: i64) -> Option<i64> {
+pub(crate) fn day_of_date(year: i64, month: i64, of_month: i64) -> Option<i64> {
     if !YEARS.contains(&year) || !(1..=12).contains(&month) || of_month < 1 {
         return None;
     }
-    let start = start_of_month(year, month);
-    let next = if month == 12 { start_of(year + 1) } else { start_of_month(year, month + 1) };
+    let start = month_start(year, month);
+    let next = if month == 12 { year_start(year + 1) } else { month_start(year, month + 1) };
     (of_month <= next - start).then_some(start + of_month - 1)
 }
 
 /// Returns year, month and day of the month.
-pub(crate) fn date(day: i64) -> (i64, i64, i64) {
+pub(crate) fn date_of_day(day: i64) -> (i64, i64, i64) {
     // Division by 366 never overestimates the year; the loop corrects the rest.
     let mut year = (day + EPOCH) / 366 + 1;
-    while start_of(year + 1) <= day {
+    while year_start(year + 1) <= day {
         year += 1;
     }
-    let month = (1..=12).rev().find(|&month| start_of_month(year, month) <= day).unwrap_or(1);
-    (year, month, day - start_of_month(year, month) + 1)
+    let month = (1..=12).rev().find(|&month| month_start(year, month) <= day).unwrap_or(1);
+    (year, month, day - month_start(year, month) + 1)
 }
 
 /// Formats nanoseconds since 1970 as `2024-05-01T12:00:03.25`.
-pub(crate) fn iso(instant: i64) -> String {
-    let ((year, month, of_month), rest) = (date(instant.div_euclid(DAY)), instant.rem_euclid(DAY));
+pub(crate) fn format_iso(instant: i64) -> String {
+    let ((year, month, of_month), rest) =
+        (date_of_day(instant.div_euclid(DAY)), instant.rem_euclid(DAY));
     let seconds = rest / SECOND;
     let fraction = format!("{:09}", rest % SECOND);
     let fraction = fraction.trim_end_matches('0');
@@ -66,21 +67,24 @@ mod tests {
 
     #[test]
     fn days_and_dates_are_each_others_inverse() {
-        assert_eq!(day(1970, 1, 1), Some(0));
-        assert_eq!(day(2024, 5, 1), Some(19_844));
-        assert_eq!((day(1900, 1, 1), day(1899, 12, 30)), (Some(-25_567), None));
-        assert_eq!((day(2023, 2, 29), day(2024, 2, 30), day(2024, 13, 1)), (None, None, None));
+        assert_eq!(day_of_date(1970, 1, 1), Some(0));
+        assert_eq!(day_of_date(2024, 5, 1), Some(19_844));
+        assert_eq!((day_of_date(1900, 1, 1), day_of_date(1899, 12, 30)), (Some(-25_567), None));
+        assert_eq!(
+            (day_of_date(2023, 2, 29), day_of_date(2024, 2, 30), day_of_date(2024, 13, 1)),
+            (None, None, None)
+        );
         for at in (-25_567..65_000).step_by(17) {
-            let (year, month, of_month) = date(at);
-            assert_eq!(day(year, month, of_month), Some(at));
+            let (year, month, of_month) = date_of_day(at);
+            assert_eq!(day_of_date(year, month, of_month), Some(at));
         }
     }
 
     #[test]
     fn instants_are_written_as_iso_8601() {
         let noon = 19_844 * DAY + (12 * 3600 + 3) * SECOND;
-        assert_eq!(iso(noon), "2024-05-01T12:00:03");
-        assert_eq!(iso(noon + SECOND / 4), "2024-05-01T12:00:03.25");
-        assert_eq!(iso(-SECOND), "1969-12-31T23:59:59");
+        assert_eq!(format_iso(noon), "2024-05-01T12:00:03");
+        assert_eq!(format_iso(noon + SECOND / 4), "2024-05-01T12:00:03.25");
+        assert_eq!(format_iso(-SECOND), "1969-12-31T23:59:59");
     }
 }

@@ -15,7 +15,7 @@ const NAMED: usize = 5;
 
 /// Result of the count of the cells of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Cells {
+pub(crate) enum CellCount {
     /// The row is read.
     Fit,
     /// The row is not read: it has too few cells.
@@ -26,7 +26,7 @@ pub(crate) enum Cells {
 
 /// Rows with one kind of wrong count: the first few, their number, and the last.
 #[derive(Debug, Default)]
-struct Rows {
+struct MiscountedRows {
     first: Vec<(usize, usize)>,
     count: usize,
     last: usize,
@@ -34,20 +34,20 @@ struct Rows {
 
 /// Counts the cells of each row.
 #[derive(Debug)]
-pub(crate) struct Counter {
+pub(crate) struct CellCounter {
     separator: u8,
     width: usize,
     exact: bool,
     point: bool,
     decimal_commas: usize,
     /// Rows with one more separator than the header.
-    closed: Rows,
-    few: Rows,
-    many: Rows,
+    closed: MiscountedRows,
+    few: MiscountedRows,
+    many: MiscountedRows,
 }
 
-impl Rows {
-    fn add(&mut self, row: usize, cells: usize) {
+impl MiscountedRows {
+    fn record_row(&mut self, row: usize, cells: usize) {
         if self.first.len() < NAMED {
             self.first.push((row, cells));
         }
@@ -56,7 +56,7 @@ impl Rows {
     }
 
     /// `row 3 has 7 cells, row 5 has 8, and so on in 12 further rows, the last of them row 90`
-    fn named(&self) -> String {
+    fn describe_rows(&self) -> String {
         let cells =
             |count: usize| if count == 1 { "1 cell".to_owned() } else { format!("{count} cells") };
         let first: Vec<String> = self
@@ -75,10 +75,10 @@ impl Rows {
     }
 }
 
-impl Counter {
+impl CellCounter {
     /// Creates a counter for a file with the given number of headings.
     pub(crate) fn new(separator: u8, width: usize) -> Self {
-        let none = Rows::default;
+        let none = MiscountedRows::default;
         Self {
             separator,
             width,
@@ -92,34 +92,34 @@ impl Counter {
     }
 
     /// Counts one row.
-    pub(crate) fn row(&mut self, row: usize, record: &ByteRecord) -> Cells {
+    pub(crate) fn count_row(&mut self, row: usize, record: &ByteRecord) -> CellCount {
         let count = record.len();
         // A decimal point anywhere shows that commas are no decimal marks.
         self.point = self.point || record.as_slice().contains(&b'.');
         if count == self.width {
             self.exact = true;
-            return Cells::Fit;
+            return CellCount::Fit;
         }
         if count < self.width {
-            self.few.add(row, count);
-            return Cells::Few(count);
+            self.few.record_row(row, count);
+            return CellCount::Few(count);
         }
         // One empty cell more may be a separator at the end of every line.
         if count == self.width + 1
             && record.get(self.width).is_some_and(|cell| cell.trim_ascii().is_empty())
         {
-            self.closed.add(row, count);
-            return Cells::Fit;
+            self.closed.record_row(row, count);
+            return CellCount::Fit;
         }
-        self.many.add(row, count);
+        self.many.record_row(row, count);
         self.decimal_commas +=
             usize::from(self.separator == b',' && is_decimal_comma(record, self.width));
-        Cells::Many
+        CellCount::Many
     }
 
     /// Reports every row with a wrong count; those with too few cells only if they are not
     /// excluded.
-    pub(crate) fn tell(&self, drops: bool, findings: &mut Findings) {
+    pub(crate) fn report_counts(&self, drops: bool, findings: &mut Findings) {
         if self.many.count > 0 {
             let what = match self.decimal_commas {
                 0 => "quote a cell that holds the separator, or name every column in the header",
@@ -128,17 +128,17 @@ impl Counter {
                      01): write decimals with a point, as 7.01"
                 }
             };
-            self.error(&self.many, what, findings);
+            self.report_rows(&self.many, what, findings);
         }
         if self.closed.count > 0 && !self.is_closed_throughout() {
             let what = "the last is empty: close the header with a separator too, or take it from \
                         these rows; if it comes of a decimal comma, write decimals with a point";
-            self.error(&self.closed, what, findings);
+            self.report_rows(&self.closed, what, findings);
         }
         if self.few.count > 0 && !drops {
             let what = "complete the rows (an empty cell still has its separator), or set \
                         `missing: drop` in the manifest's conventions to leave them out";
-            self.error(&self.few, what, findings);
+            self.report_rows(&self.few, what, findings);
         }
     }
 
@@ -148,14 +148,14 @@ impl Counter {
         alone && (self.separator != b',' || self.point)
     }
 
-    fn error(&self, rows: &Rows, what: &str, findings: &mut Findings) {
+    fn report_rows(&self, rows: &MiscountedRows, what: &str, findings: &mut Findings) {
         let separator = if self.separator == b'\t' {
             "tab".to_owned()
         } else {
             format!("`{}`", self.separator as char)
         };
         let row = rows.first.first().map(|&(row, _)| row);
-        let (named, width) = (rows.named(), self.width);
+        let (named, width) = (rows.describe_rows(), self.width);
         findings.error(
             row,
             None,

@@ -1,23 +1,32 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::testing::messages;
+use crate::testing::finding_messages;
 
 fn read(header: &str, unit: &str, cells: &[&str]) -> (Vec<f64>, Option<String>, String) {
-    let to_si = crate::units::Kind::Time.factor(unit).unwrap();
-    let column =
-        Column { index: 0, header: header.into(), target: Target::Time, unit: unit.into(), to_si };
-    let mut clock = Clock::of(std::slice::from_ref(&column));
+    let to_si = crate::units::UnitKind::Time.unit_to_si(unit).unwrap();
+    let column = TableColumn {
+        index: 0,
+        header: header.into(),
+        target: ColumnTarget::Time,
+        unit: unit.into(),
+        to_si,
+    };
+    let mut clock = ColumnClock::from_columns(std::slice::from_ref(&column));
     let (mut values, mut faults) = (Vec::new(), String::new());
     for (row, cell) in (2..).zip(cells) {
-        match clock.cell(row, cell.as_bytes()) {
+        match clock.read_cell(row, cell.as_bytes()) {
             Ok(value) => values.push(value * to_si),
             Err(fault) => faults += &format!("row {row}: {fault}\n"),
         }
     }
     let mut table = Table { columns: vec![column], values: vec![values], ..Table::default() };
     let mut findings = Findings::default();
-    clock.finish(&mut table, &mut findings);
-    (table.values.remove(0), table.start.map(|start| start.text), faults + &messages(findings))
+    clock.rebase_table(&mut table, &mut findings);
+    (
+        table.values.remove(0),
+        table.start.map(|start| start.text),
+        faults + &finding_messages(findings),
+    )
 }
 
 fn seconds(unit: &str, cells: &[&str], wanted: &[f64], start: &str) {

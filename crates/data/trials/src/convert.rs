@@ -8,12 +8,12 @@ use sistership_model::trial::{Channel, Trial};
 use crate::declarations::North;
 use crate::findings::Findings;
 use crate::mapping::Mapping;
-use crate::pairs::means;
+use crate::pairs::pair_means;
 use crate::recording::Recording;
-use crate::table::{Table, Target};
+use crate::table::{ColumnTarget, Table};
 
 /// Converts a table to a recording, with rudder sign, wind direction and continuous heading.
-pub(crate) fn convert(
+pub(crate) fn convert_table(
     name: &str,
     table: Table,
     mapping: &Mapping,
@@ -35,31 +35,31 @@ pub(crate) fn convert(
     };
     for (column, mut values) in table.columns.into_iter().zip(table.values) {
         match column.target {
-            Target::Time => {
+            ColumnTarget::Time => {
                 recording.trial.t_s = values;
                 recording.time = column.header;
             }
-            Target::Channel(channel) => {
+            ColumnTarget::Channel(channel) => {
                 recording.columns.insert(channel, column);
-                sign(channel, &mut values, mapping, &recording, findings);
+                apply_sign(channel, &mut values, mapping, &recording, findings);
                 recording.trial.channels.insert(channel, values);
             }
-            Target::Raw(raw) => {
+            ColumnTarget::Raw(raw) => {
                 recording.raw.insert(raw, values);
             }
-            Target::Unidentified(_) => {}
+            ColumnTarget::Unidentified(_) => {}
         }
     }
     // Means of port and starboard are formed in the signs of the file, and converted like any
     // channel.
-    for (channel, mut values) in means(&mut recording, findings) {
-        sign(channel, &mut values, mapping, &recording, findings);
+    for (channel, mut values) in pair_means(&mut recording, findings) {
+        apply_sign(channel, &mut values, mapping, &recording, findings);
         recording.trial.channels.insert(channel, values);
     }
     recording
 }
 
-fn sign(
+fn apply_sign(
     channel: Channel,
     values: &mut [f64],
     mapping: &Mapping,
@@ -74,16 +74,16 @@ fn sign(
         Channel::Psi => {
             // The unit is checked before unwrapping, which would hide the jump of a heading in
             // degrees.
-            degree_wrap(values, recording, findings);
+            check_heading_unit(values, recording, findings);
             if let (North::Magnetic, Some(variation)) = (declared.heading, declared.variation_deg) {
                 values.iter_mut().for_each(|value| *value += variation.to_radians());
             }
             unwrap_heading(values);
         }
         Channel::WindFrom | Channel::ApparentWindFrom => {
-            degree_wind(channel, values, recording, findings);
+            check_wind_unit(channel, values, recording, findings);
             let turn = if conventions.wind.direction == WindDirection::To { PI } else { 0.0 };
-            values.iter_mut().for_each(|value| *value = wrap(*value + turn));
+            values.iter_mut().for_each(|value| *value = wrap_positive(*value + turn));
         }
         _ => {}
     }
@@ -105,7 +105,7 @@ fn unwrap_heading(values: &mut [f64]) {
 }
 
 /// Wraps an angle into [0, 2 pi).
-fn wrap(angle: f64) -> f64 {
+fn wrap_positive(angle: f64) -> f64 {
     let wrapped = angle.rem_euclid(TAU);
     // A tiny negative angle rounds up to a full turn.
     if wrapped >= TAU { 0.0 } else { wrapped }
@@ -113,29 +113,39 @@ fn wrap(angle: f64) -> f64 {
 
 /// Reports a heading that jumps by about 360 "rad" between two samples: a compass in degrees that
 /// passes north.
-fn degree_wrap(values: &[f64], recording: &Recording, findings: &mut Findings) {
+fn check_heading_unit(values: &[f64], recording: &Recording, findings: &mut Findings) {
     let jump =
         (1..values.len()).find(|&k| (300.0..=361.0).contains(&(values[k] - values[k - 1]).abs()));
     if let Some(k) = jump {
-        let (header, unit) = (recording.header(Channel::Psi), recording.unit(Channel::Psi));
+        let (header, unit) =
+            (recording.column_header(Channel::Psi), recording.declared_unit(Channel::Psi));
         let message = format!(
             "the heading jumps from {:.1} to {:.1} as a compass in degrees does, but its unit is \
              `{unit}`; declare `deg`",
             values[k - 1],
             values[k]
         );
-        findings.error(Some(recording.row(k)), Some(header), message);
+        findings.error(Some(recording.row_number(k)), Some(header), message);
     }
 }
 
 /// Reports a wind direction of more than two turns, which must be in degrees.
-fn degree_wind(channel: Channel, values: &[f64], recording: &Recording, findings: &mut Findings) {
+fn check_wind_unit(
+    channel: Channel,
+    values: &[f64],
+    recording: &Recording,
+    findings: &mut Findings,
+) {
     if let Some(k) = values.iter().position(|value| value.abs() > 2.0 * TAU) {
         let message = format!(
             "{:.1} rad is more than two turns; the values look like degrees: declare `deg`",
             values[k]
         );
-        findings.error(Some(recording.row(k)), Some(recording.header(channel)), message);
+        findings.error(
+            Some(recording.row_number(k)),
+            Some(recording.column_header(channel)),
+            message,
+        );
     }
 }
 
@@ -144,18 +154,19 @@ mod tests {
     use sistership_model::manifest::TrialConventions;
 
     use super::*;
-    use crate::testing::{messages, table};
+    use crate::testing::{finding_messages, test_table};
 
     fn run(
         channel: Channel,
         values: &[f64],
         change: impl Fn(&mut TrialConventions),
     ) -> (Vec<f64>, String) {
-        let mut mapping = Mapping::canonical();
+        let mut mapping = Mapping::with_canonical_names();
         change(&mut mapping.conventions);
         let mut findings = Findings::default();
-        let recording = convert("a", table(&[(channel, values.to_vec())]), &mapping, &mut findings);
-        (recording.trial.channels[&channel].clone(), messages(findings))
+        let recording =
+            convert_table("a", test_table(&[(channel, values.to_vec())]), &mapping, &mut findings);
+        (recording.trial.channels[&channel].clone(), finding_messages(findings))
     }
 
     #[test]
@@ -187,11 +198,11 @@ mod tests {
 
     #[test]
     fn a_magnetic_heading_is_corrected_by_the_variation() {
-        let mut mapping = Mapping::canonical();
+        let mut mapping = Mapping::with_canonical_names();
         mapping.declared.heading = North::Magnetic;
         mapping.declared.variation_deg = Some(-2.0);
-        let psi = table(&[(Channel::Psi, vec![0.5; 3])]);
-        let recording = convert("a", psi, &mapping, &mut Findings::default());
+        let psi = test_table(&[(Channel::Psi, vec![0.5; 3])]);
+        let recording = convert_table("a", psi, &mapping, &mut Findings::default());
         assert!((recording.trial.channels[&Channel::Psi][0] - 0.5 + PI / 90.0).abs() < 1e-12);
     }
 }

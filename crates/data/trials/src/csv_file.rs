@@ -4,20 +4,20 @@ use std::io::{Chain, Cursor, Read};
 
 use csv::{ByteRecord, ReaderBuilder};
 
-use crate::blanks::Blanks;
-use crate::cells::{Cells, Counter};
-use crate::clock::Clock;
-use crate::decimals::Decimals;
+use crate::blanks::TabbedReader;
+use crate::cells::{CellCount, CellCounter};
+use crate::clock::ColumnClock;
+use crate::decimals::DecimalMarks;
 use crate::findings::Findings;
-use crate::layout::{self, Layout};
-use crate::limits::too_many;
+use crate::layout::{self, TableLayout};
+use crate::limits::too_many_rows;
 use crate::mapping::Mapping;
-use crate::metered::{Meter, Metered};
-use crate::number::{Fault, number};
-use crate::resolve::{Heading, resolve_heading};
+use crate::metered::{MeteredReader, RowMeter};
+use crate::number::{CellFault, parse_number};
+use crate::resolve::{HeaderRows, resolve_heading};
 use crate::stream;
-use crate::table::{Column, Table, Target, width};
-use crate::taker::{RowsFile, Taker, time_at};
+use crate::table::{ColumnTarget, Table, TableColumn, memory_columns};
+use crate::taker::{RowSink, RowSource, time_column};
 
 /// Number of bytes that are read at a time in the search for the header.
 const CHUNK: u64 = 4096;
@@ -26,17 +26,21 @@ const CHUNK: u64 = 4096;
 ///
 /// The number of a row is that of the line in which it starts, as an editor shows it: the first
 /// line is 1, and blank lines and those within quoted cells count.
-pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
-    stream::whole(CsvRows::open(input, mapping, findings)?, mapping, findings)
+pub(crate) fn read_csv(
+    input: impl Read,
+    mapping: &Mapping,
+    findings: &mut Findings,
+) -> Option<Table> {
+    stream::read_whole(CsvRows::open(input, mapping, findings)?, mapping, findings)
 }
 
 /// Rows of a CSV file whose header has been read.
 pub(crate) struct CsvRows<R> {
-    reader: csv::Reader<Blanks<Chain<Cursor<Vec<u8>>, Metered<R>>>>,
-    meter: Meter,
-    columns: Vec<Column>,
+    reader: csv::Reader<TabbedReader<Chain<Cursor<Vec<u8>>, MeteredReader<R>>>>,
+    meter: RowMeter,
+    columns: Vec<TableColumn>,
     room: usize,
-    cells: Reading,
+    cells: RowReader,
     /// Row and reason at which reading stopped.
     stopped: Option<(usize, String)>,
 }
@@ -44,45 +48,45 @@ pub(crate) struct CsvRows<R> {
 impl<R: Read> CsvRows<R> {
     /// Reads the header; returns `None` after errors.
     pub(crate) fn open(input: R, mapping: &Mapping, findings: &mut Findings) -> Option<Self> {
-        let (mut metered, meter) = Metered::new(input, mapping.limits.line_bytes);
-        let start = start(&mut metered, &meter, mapping, findings)?;
-        let layout = layout::find(&start, mapping);
-        let whole = Cursor::new(layout::body(&start, &layout)).chain(metered);
-        let mut reader = opened(whole, layout.separator);
-        let headers = headers(&mut reader, mapping, findings)?;
+        let (mut metered, meter) = MeteredReader::new(input, mapping.limits.line_bytes);
+        let start = read_start(&mut metered, &meter, mapping, findings)?;
+        let layout = layout::find_table(&start, mapping);
+        let whole = Cursor::new(layout::table_body(&start, &layout)).chain(metered);
+        let mut reader = open_reader(whole, layout.separator);
+        let headers = read_headers(&mut reader, mapping, findings)?;
         // The header is no part of the first row's length.
-        meter.reset();
-        let columns = resolve_heading(heading(&headers, &layout), mapping, findings)?;
-        let cells = Reading {
-            shift: layout.shift(),
+        meter.end_row();
+        let columns = resolve_heading(file_heading(&headers, &layout), mapping, findings)?;
+        let cells = RowReader {
+            shift: layout.line_shift(),
             most: mapping.limits.rows,
             units: !layout.units.is_empty(),
-            time: time_at(&columns).map(|at| columns[at].clone()),
-            clock: Clock::of(&columns),
-            counter: Counter::new(layout.separator, headers.len()),
-            decimals: Decimals::new(layout.separator),
+            time: time_column(&columns).map(|at| columns[at].clone()),
+            clock: ColumnClock::from_columns(&columns),
+            counter: CellCounter::new(layout.separator, headers.len()),
+            decimals: DecimalMarks::new(layout.separator),
         };
         Some(Self { reader, meter, columns, room: mapping.room, cells, stopped: None })
     }
 }
 
-impl<R: Read> RowsFile for CsvRows<R> {
-    fn columns(&self) -> &[Column] {
+impl<R: Read> RowSource for CsvRows<R> {
+    fn columns(&self) -> &[TableColumn] {
         &self.columns
     }
 
-    fn room(&self) -> usize {
+    fn expected_rows(&self) -> usize {
         self.room
     }
 
-    fn each(&mut self, taker: &mut impl Taker) {
-        self.stopped = self.cells.rows(&mut self.reader, &self.meter, taker).err();
+    fn feed_rows(&mut self, taker: &mut impl RowSink) {
+        self.stopped = self.cells.read_rows(&mut self.reader, &self.meter, taker).err();
     }
 
-    fn finish(&mut self, drops: bool, table: &mut Table, findings: &mut Findings) {
-        self.cells.counter.tell(drops, findings);
-        self.cells.decimals.tell(findings);
-        self.cells.clock.finish(table, findings);
+    fn complete_table(&mut self, drops: bool, table: &mut Table, findings: &mut Findings) {
+        self.cells.counter.report_counts(drops, findings);
+        self.cells.decimals.report_marks(findings);
+        self.cells.clock.rebase_table(table, findings);
         if let Some((row, message)) = &self.stopped {
             findings.error(Some(*row), None, message.clone());
         }
@@ -91,10 +95,10 @@ impl<R: Read> RowsFile for CsvRows<R> {
 
 /// Returns an upper bound of the number of rows, and the number of columns that are read; `None` if
 /// the header is invalid.
-pub(crate) fn measure(mut input: impl Read, mapping: &Mapping) -> Option<(usize, usize)> {
+pub(crate) fn measure_csv(mut input: impl Read, mapping: &Mapping) -> Option<(usize, usize)> {
     let (mut rows, mut before, mut start) = (1, 0, Vec::new());
     input.by_ref().take(mapping.limits.line_bytes as u64).read_to_end(&mut start).ok()?;
-    let columns = columns(&start[..], mapping)?;
+    let columns = count_columns(&start[..], mapping)?;
     let mut buffer = vec![0; 64 << 10];
     // Every line end counts, `\r\n` once; quoted cells can only make the number of rows smaller.
     let mut count = |bytes: &[u8]| {
@@ -113,31 +117,31 @@ pub(crate) fn measure(mut input: impl Read, mapping: &Mapping) -> Option<(usize,
 }
 
 /// Returns the number of columns that are read of a file with this start.
-fn columns(start: &[u8], mapping: &Mapping) -> Option<usize> {
+fn count_columns(start: &[u8], mapping: &Mapping) -> Option<usize> {
     let mut findings = Findings::default();
-    let layout = layout::find(start, mapping);
-    let mut reader = opened(Cursor::new(layout::body(start, &layout)), layout.separator);
-    let headers = headers(&mut reader, mapping, &mut findings)?;
-    let columns = resolve_heading(heading(&headers, &layout), mapping, &mut findings)?;
-    Some(width(&columns))
+    let layout = layout::find_table(start, mapping);
+    let mut reader = open_reader(Cursor::new(layout::table_body(start, &layout)), layout.separator);
+    let headers = read_headers(&mut reader, mapping, &mut findings)?;
+    let columns = resolve_heading(file_heading(&headers, &layout), mapping, &mut findings)?;
+    Some(memory_columns(&columns))
 }
 
-fn opened<R: Read>(input: R, separator: u8) -> csv::Reader<Blanks<R>> {
+fn open_reader<R: Read>(input: R, separator: u8) -> csv::Reader<TabbedReader<R>> {
     let by_blanks = separator == b' ';
     let delimiter = if by_blanks { b'\t' } else { separator };
-    let input = Blanks::new(input, by_blanks);
+    let input = TabbedReader::new(input, by_blanks);
     ReaderBuilder::new().delimiter(delimiter).flexible(true).from_reader(input)
 }
 
-fn heading<'a>(names: &'a [String], layout: &'a Layout) -> Heading<'a> {
-    Heading { names, units: &layout.units, row: layout.lines + 1 }
+fn file_heading<'a>(names: &'a [String], layout: &'a TableLayout) -> HeaderRows<'a> {
+    HeaderRows { names, units: &layout.units, row: layout.lines + 1 }
 }
 
 /// Reads the file at least up to the line below the header, however small the pieces that the
 /// reader returns.
-fn start(
+fn read_start(
     input: &mut impl Read,
-    meter: &Meter,
+    meter: &RowMeter,
     mapping: &Mapping,
     findings: &mut Findings,
 ) -> Option<Vec<u8>> {
@@ -162,12 +166,12 @@ fn start(
         }
         // Lines before the header are complete rows for the limit of their length.
         if start[start.len() - read..].contains(&b'\n') {
-            meter.reset();
+            meter.end_row();
         }
     }
 }
 
-fn headers(
+fn read_headers(
     reader: &mut csv::Reader<impl Read>,
     mapping: &Mapping,
     findings: &mut Findings,
@@ -179,7 +183,7 @@ fn headers(
             return None;
         }
     };
-    let headers: Vec<String> = record.iter().map(layout::name).collect();
+    let headers: Vec<String> = record.iter().map(layout::header_text).collect();
     let problem = match headers.len() {
         0 => "the file is empty; it needs a header with column names".to_owned(),
         n if n > mapping.limits.columns => {
@@ -192,7 +196,7 @@ fn headers(
 }
 
 /// State of reading that changes from row to row.
-struct Reading {
+struct RowReader {
     /// Number of lines before those that are read; negative if a header was added.
     shift: isize,
     /// Largest number of rows that are read.
@@ -200,19 +204,19 @@ struct Reading {
     /// True if the first row holds units.
     units: bool,
     /// The column of time.
-    time: Option<Column>,
-    clock: Clock,
-    counter: Counter,
-    decimals: Decimals,
+    time: Option<TableColumn>,
+    clock: ColumnClock,
+    counter: CellCounter,
+    decimals: DecimalMarks,
 }
 
-impl Reading {
+impl RowReader {
     /// Passes every row to the sink; returns the row and the reason if reading cannot continue.
-    fn rows(
+    fn read_rows(
         &mut self,
         reader: &mut csv::Reader<impl Read>,
-        meter: &Meter,
-        taker: &mut impl Taker,
+        meter: &RowMeter,
+        taker: &mut impl RowSink,
     ) -> Result<(), (usize, String)> {
         let mut record = ByteRecord::new();
         loop {
@@ -226,64 +230,74 @@ impl Reading {
             if !more {
                 return Ok(());
             }
-            let row = line(reader, &record).saturating_add_signed(self.shift);
-            meter.reset();
+            let row = record_line(reader, &record).saturating_add_signed(self.shift);
+            meter.end_row();
             if std::mem::take(&mut self.units) {
                 continue;
             }
-            if !self.row(row, &record, taker) {
-                return Err((row, too_many(self.most)));
+            if !self.read_row(row, &record, taker) {
+                return Err((row, too_many_rows(self.most)));
             }
         }
     }
 
     /// Passes a row to the sink; returns false if it exceeds the number of rows.
-    fn row<T: Taker>(&mut self, row: usize, record: &ByteRecord, taker: &mut T) -> bool {
-        match self.counter.row(row, record) {
-            Cells::Fit if T::TIMED => return self.timed(row, record, taker),
-            Cells::Fit if taker.held() >= self.most => return false,
-            Cells::Fit => taker.row(row, |_, column| self.cell(row, record, column)),
-            Cells::Few(_) => taker.short(row),
-            Cells::Many => {}
+    fn read_row<T: RowSink>(&mut self, row: usize, record: &ByteRecord, taker: &mut T) -> bool {
+        match self.counter.count_row(row, record) {
+            CellCount::Fit if T::TIMED => return self.read_timed_row(row, record, taker),
+            CellCount::Fit if taker.stored_rows() >= self.most => return false,
+            CellCount::Fit => taker.take_row(row, |_, column| self.read_cell(row, record, column)),
+            CellCount::Few(_) => taker.take_short_row(row),
+            CellCount::Many => {}
         }
         true
     }
 
     /// Converts the time of a row, and passes the row on if the sink accepts it.
-    fn timed(&mut self, row: usize, record: &ByteRecord, taker: &mut impl Taker) -> bool {
+    fn read_timed_row(
+        &mut self,
+        row: usize,
+        record: &ByteRecord,
+        taker: &mut impl RowSink,
+    ) -> bool {
         // Taken out and put back, since `read_cell` borrows `self` mutably.
         let Some(column) = self.time.take() else { return true };
-        let time = self.cell(row, record, &column);
+        let time = self.read_cell(row, record, &column);
         let si = time.as_ref().ok().map(|time| time * column.to_si);
         self.time = Some(column);
-        let t_s = si.and_then(|si| self.clock.since_start(si));
-        if !taker.wants(row, t_s, &self.clock) {
+        let t_s = si.and_then(|si| self.clock.seconds_since_start(si));
+        if !taker.accepts_row(row, t_s, &self.clock) {
             return true;
         }
-        if taker.held() >= self.most {
+        if taker.stored_rows() >= self.most {
             return false;
         }
-        taker.row(row, |_, column| match column.target {
-            Target::Time => time.clone(),
-            _ => self.cell(row, record, column),
+        taker.take_row(row, |_, column| match column.target {
+            ColumnTarget::Time => time.clone(),
+            _ => self.read_cell(row, record, column),
         });
         true
     }
 
     #[inline]
-    fn cell(&mut self, row: usize, record: &ByteRecord, column: &Column) -> Result<f64, Fault> {
-        let cell = record.get(column.index).ok_or(Fault::Absent)?;
-        let cell = self.decimals.point(row, cell);
+    fn read_cell(
+        &mut self,
+        row: usize,
+        record: &ByteRecord,
+        column: &TableColumn,
+    ) -> Result<f64, CellFault> {
+        let cell = record.get(column.index).ok_or(CellFault::Absent)?;
+        let cell = self.decimals.with_point(row, cell);
         match column.target {
-            Target::Time => self.clock.cell(row, &cell),
-            _ => number(&cell),
+            ColumnTarget::Time => self.clock.read_cell(row, &cell),
+            _ => parse_number(&cell),
         }
     }
 }
 
 /// Returns the line in which the record just read starts: its end is the current line, less one
 /// line end after it and those within it.
-fn line(reader: &csv::Reader<impl Read>, record: &ByteRecord) -> usize {
+fn record_line(reader: &csv::Reader<impl Read>, record: &ByteRecord) -> usize {
     let inside = record.as_slice().iter().filter(|&&byte| byte == b'\n').count();
     usize::try_from(reader.position().line()).unwrap_or(usize::MAX).saturating_sub(1 + inside)
 }
@@ -295,11 +309,11 @@ mod tests {
 
     fn run(text: &str, mapping: &Mapping) -> (Option<Table>, Vec<String>) {
         let mut findings = Findings::default();
-        let table = read(text.as_bytes(), mapping, &mut findings);
+        let table = read_csv(text.as_bytes(), mapping, &mut findings);
         (
             table,
             findings
-                .finish()
+                .into_lists()
                 .0
                 .iter()
                 .map(|error| format!("{:?} {}", error.row, error.message))
@@ -310,26 +324,31 @@ mod tests {
     #[test]
     fn commas_semicolons_and_tabs_are_told_apart() {
         for text in ["t_s,u_kn\n0,1\n", "\u{feff}t_s;u_kn\r\n0; 1\r\n", "t_s\tu_kn\n0\t1"] {
-            let table = run(text, &Mapping::canonical()).0.unwrap();
+            let table = run(text, &Mapping::with_canonical_names()).0.unwrap();
             assert!((table.values[1][0] - 0.514_444).abs() < 1e-5);
         }
     }
 
     #[test]
     fn faulty_cells_name_row_and_reason() {
-        let (_, errors) = run("t_s,u_m_s\n0,1\n1,\n2,nan\n3,abc\n4\n", &Mapping::canonical());
+        let (_, errors) =
+            run("t_s,u_m_s\n0,1\n1,\n2,nan\n3,abc\n4\n", &Mapping::with_canonical_names());
         assert!(errors[0].starts_with("Some(3) the cell is empty"), "{errors:?}");
         assert!(errors[1].contains("not a finite number") && errors[2].contains("`abc`"));
         assert!(errors[3].contains("row 6 has 1 cell; the header has 2"), "{errors:?}");
-        let (_, errors) = run("t_s;u_m_s\n0;1,5\n1;1.5\n", &Mapping::canonical());
+        let (_, errors) = run("t_s;u_m_s\n0;1,5\n1;1.5\n", &Mapping::with_canonical_names());
         assert!(errors[0].contains("with a point"));
     }
 
     #[test]
     fn sizes_are_bounded() {
-        let mut mapping = Mapping::canonical();
-        mapping.limits =
-            crate::Limits { rows: 2, columns: 2, line_bytes: 100, ..crate::Limits::default() };
+        let mut mapping = Mapping::with_canonical_names();
+        mapping.limits = crate::FileLimits {
+            rows: 2,
+            columns: 2,
+            line_bytes: 100,
+            ..crate::FileLimits::default()
+        };
         assert!(run("t_s,u_m_s\n0,1\n1,1\n", &mapping).1.is_empty());
         assert!(run("t_s,u_m_s\n0,1\n1,1\n2,1\n", &mapping).1[0].contains("more than the 2 rows"));
         assert!(run("t_s,u_m_s,v_m_s\n", &mapping).1[0].contains("3 columns"));

@@ -1,30 +1,30 @@
 #![allow(clippy::unwrap_used)]
 use std::io::{self, Read};
 
-use sistership_model::manifest::Missing;
+use sistership_model::manifest::MissingValues;
 
 use super::*;
-use crate::testing::messages;
+use crate::testing::finding_messages;
 
 fn run(text: &str, mapping: &Mapping) -> (Option<Table>, String) {
     let mut findings = Findings::default();
-    let table = read(text.as_bytes(), mapping, &mut findings);
-    (table, messages(findings))
+    let table = read_csv(text.as_bytes(), mapping, &mut findings);
+    (table, finding_messages(findings))
 }
 
 fn said(text: &str) -> String {
-    run(text, &Mapping::canonical()).1
+    run(text, &Mapping::with_canonical_names()).1
 }
 
 fn accepted(text: &str) -> Table {
-    let (table, text) = run(text, &Mapping::canonical());
+    let (table, text) = run(text, &Mapping::with_canonical_names());
     assert!(!text.contains("error"), "{text}");
     table.unwrap()
 }
 
 fn drops() -> Mapping {
-    let mut mapping = Mapping::canonical();
-    mapping.conventions.missing = Missing::Drop;
+    let mut mapping = Mapping::with_canonical_names();
+    mapping.conventions.missing = MissingValues::Drop;
     mapping
 }
 
@@ -117,7 +117,9 @@ fn the_separator_does_not_depend_on_how_the_bytes_arrive() {
         ["t_s;u_m_s\r\n0;1\r\n1;2\r\n", "\u{feff}\n\"t_s\";\"a, b, c\";u_m_s\n0;1;1\n1;1;2\n"]
     {
         let mut findings = Findings::default();
-        let table = read(Slow(file.as_bytes()), &Mapping::canonical(), &mut findings).unwrap();
+        let table =
+            read_csv(Slow(file.as_bytes()), &Mapping::with_canonical_names(), &mut findings)
+                .unwrap();
         assert_eq!(
             (table.values[0].clone(), table.values[1].clone()),
             (vec![0.0, 1.0], vec![1.0, 2.0])
@@ -130,8 +132,8 @@ fn what_is_no_utf8_text_is_told() {
     let mut findings = Findings::default();
     let utf16: Vec<u8> =
         "\u{feff}t_s,u_m_s\n0,1\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
-    assert!(read(utf16.as_slice(), &Mapping::canonical(), &mut findings).is_none());
-    assert!(messages(findings).contains("save it as UTF-8"));
+    assert!(read_csv(utf16.as_slice(), &Mapping::with_canonical_names(), &mut findings).is_none());
+    assert!(finding_messages(findings).contains("save it as UTF-8"));
     assert!(said("t_s,u_m_s\n0,1\0\n").contains("NUL"));
 }
 
@@ -147,10 +149,10 @@ fn lines_above_the_header_and_units_below_it_are_passed_over() {
     let latin: Vec<u8> = text.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
     for bytes in [text.as_bytes(), &latin] {
         let mut findings = Findings::default();
-        let table = read(bytes, &Mapping::canonical(), &mut findings).unwrap();
+        let table = read_csv(bytes, &Mapping::with_canonical_names(), &mut findings).unwrap();
         assert_eq!(table.rows, [7, 8]);
         assert!((table.values[1][1] - 2.5_f64.to_radians()).abs() < 1e-12);
-        let text = messages(findings);
+        let text = finding_messages(findings);
         assert!(text.contains("warning Some(5) None columns not read: Bemerkung"), "{text}");
         assert!(!text.contains("error"), "{text}");
     }
@@ -162,7 +164,7 @@ fn lines_above_the_header_and_units_below_it_are_passed_over() {
 
 #[test]
 fn ignored_columns_are_not_told_and_empty_ones_once() {
-    let mut mapping = Mapping::canonical();
+    let mut mapping = Mapping::with_canonical_names();
     mapping.declared.ignore = vec!["note".into(), "u_m_s".into()];
     let (table, text) = run("t_s,u_m_s,v_m_s,r_rad_s,note\n0,1,1,,a\n1,1,1,,b\n", &mapping);
     assert_eq!(table.unwrap().columns.len(), 2);
@@ -171,7 +173,7 @@ fn ignored_columns_are_not_told_and_empty_ones_once() {
 
 #[test]
 fn percentages_are_of_what_is_declared() {
-    let mut mapping = Mapping::canonical();
+    let mut mapping = Mapping::with_canonical_names();
     let column = |column: &str| sistership_model::manifest::ColumnMapping::new(column, "%");
     mapping.columns = vec![("n_s".into(), column("n port")), ("delta".into(), column("helm"))];
     let full = |value, unit: &str| crate::declarations::Maximum { value, unit: unit.into() };

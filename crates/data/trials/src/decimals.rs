@@ -6,20 +6,20 @@ use crate::findings::Findings;
 
 /// Decimal marks that a file has used so far, with the row of the first of each.
 #[derive(Debug, Default)]
-pub(crate) struct Decimals {
+pub(crate) struct DecimalMarks {
     commas: bool,
     comma: Option<usize>,
     point: Option<usize>,
 }
 
-impl Decimals {
+impl DecimalMarks {
     pub(crate) fn new(separator: u8) -> Self {
         // Where commas separate cells, they are no decimal marks.
         Self { commas: separator != b',', ..Self::default() }
     }
 
     /// Returns the cell with a decimal point, where a comma can only be a decimal mark.
-    pub(crate) fn point<'a>(&mut self, row: usize, cell: &'a [u8]) -> Cow<'a, [u8]> {
+    pub(crate) fn with_point<'a>(&mut self, row: usize, cell: &'a [u8]) -> Cow<'a, [u8]> {
         if !self.commas || !is_plain(cell) {
             return Cow::Borrowed(cell);
         }
@@ -38,7 +38,7 @@ impl Decimals {
     }
 
     /// Reports that commas were read as decimal marks, or that the file has points, too.
-    pub(crate) fn tell(&self, findings: &mut Findings) {
+    pub(crate) fn report_marks(&self, findings: &mut Findings) {
         match (self.comma, self.point) {
             (Some(comma), Some(point)) => {
                 let message = format!(
@@ -68,21 +68,21 @@ fn is_plain(cell: &[u8]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::messages;
+    use crate::testing::finding_messages;
 
     #[test]
     fn a_comma_is_a_point_where_it_separates_nothing() {
-        let mut decimals = Decimals::new(b';');
-        assert_eq!(*decimals.point(2, b" -1,5e3"), *b" -1.5e3");
+        let mut decimals = DecimalMarks::new(b';');
+        assert_eq!(*decimals.with_point(2, b" -1,5e3"), *b" -1.5e3");
         for cell in [&b"1.234,5"[..], b"1,2,3", b"12:00:03,25", b"12", b""] {
-            assert_eq!(*decimals.point(3, cell), *cell);
+            assert_eq!(*decimals.with_point(3, cell), *cell);
         }
-        assert_eq!(*Decimals::new(b',').point(2, b"1,5"), *b"1,5");
+        assert_eq!(*DecimalMarks::new(b',').with_point(2, b"1,5"), *b"1,5");
         let mut findings = Findings::default();
-        decimals.tell(&mut findings);
-        decimals.point(9, b"1.5");
-        decimals.tell(&mut findings);
-        let text = messages(findings);
+        decimals.report_marks(&mut findings);
+        decimals.with_point(9, b"1.5");
+        decimals.report_marks(&mut findings);
+        let text = finding_messages(findings);
         assert!(text.contains("warning Some(2)") && text.contains("error Some(9)"), "{text}");
     }
 }

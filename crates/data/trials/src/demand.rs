@@ -13,7 +13,7 @@ use crate::mat_file;
 use crate::nmea_file;
 use crate::parquet_file;
 use crate::samples::GROUP_ROWS;
-use crate::source::{Content, Source};
+use crate::source::{InputContent, TrialFile};
 
 /// Bytes in memory for each byte of the footer of a Parquet file: a conservative assumption, since
 /// numbers of a few bytes become fields of eight.
@@ -26,7 +26,7 @@ const EVERY: u64 = 1 << 20;
 
 /// Memory for reading a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Demand {
+pub struct MemoryDemand {
     /// Upper bound of the number of rows.
     pub rows: usize,
     /// Number of columns that are kept, time included.
@@ -39,7 +39,7 @@ pub struct Demand {
 ///
 /// # Errors
 /// Returns an error if the file cannot be read.
-pub fn measuring(path: &Path) -> io::Result<u64> {
+pub fn measuring_bytes(path: &Path) -> io::Result<u64> {
     let mut file = File::open(path)?;
     let mut end = [0; 8];
     // A Parquet file ends with the length of its footer (four bytes) and `PAR1`.
@@ -49,7 +49,7 @@ pub fn measuring(path: &Path) -> io::Result<u64> {
         }
         _ => 0,
     };
-    Ok(EVERY / 4 + BY_FOOTER * footer.min(crate::Limits::default().footer_bytes as u64))
+    Ok(EVERY / 4 + BY_FOOTER * footer.min(crate::FileLimits::default().footer_bytes as u64))
 }
 
 /// Returns the memory that [`crate::read_trial`] needs for a file, and then
@@ -58,33 +58,33 @@ pub fn measuring(path: &Path) -> io::Result<u64> {
 ///
 /// # Errors
 /// Returns an error if the file cannot be read.
-pub fn demand(path: &Path, mapping: &Mapping) -> io::Result<Demand> {
-    let (size, holding) = match Source::open("", path)?.content {
-        Content::Csv(input) => {
-            (csv_file::measure(input, mapping), 4 * mapping.limits.line_bytes as u64)
+pub fn memory_demand(path: &Path, mapping: &Mapping) -> io::Result<MemoryDemand> {
+    let (size, holding) = match TrialFile::open("", path)?.content {
+        InputContent::Csv(input) => {
+            (csv_file::measure_csv(input, mapping), 4 * mapping.limits.line_bytes as u64)
         }
-        Content::ParquetFile(file) => of_parquet(&file, mapping),
-        Content::ParquetBytes(bytes) => of_parquet(&bytes, mapping),
-        Content::Workbook(mut input) => {
+        InputContent::ParquetFile(file) => parquet_demand(&file, mapping),
+        InputContent::ParquetBytes(bytes) => parquet_demand(&bytes, mapping),
+        InputContent::Workbook(mut input) => {
             // A damaged archive is refused before anything is unpacked, and needs no memory.
-            let claimed = archive::claimed(&mut input).unwrap_or(0);
+            let claimed = archive::claimed_bytes(&mut input).unwrap_or(0);
             (None, UNPACKED * claimed.min(mapping.limits.unpacked_bytes as u64))
         }
-        Content::Matlab(input) => (mat_file::measure(input, mapping), 0),
-        Content::Nmea(input) => (nmea_file::measure(input, mapping), 0),
-        Content::Other(_) => (None, 0),
+        InputContent::Matlab(input) => (mat_file::measure_mat(input, mapping), 0),
+        InputContent::Nmea(input) => (nmea_file::measure_nmea(input, mapping), 0),
+        InputContent::Other(_) => (None, 0),
     };
     let (rows, columns) = size.unwrap_or_default();
     let rows = rows.min(mapping.limits.rows);
     // Per row: the numbers, the row number, the flag of way ahead, and one more column: first the
     // steps of time for their median, later a smoothed column before it replaces the original.
-    let row = 8 * columns as u64 + 5 + 8 + deriving(mapping);
+    let row = 8 * columns as u64 + 5 + 8 + derivation_bytes(mapping);
     // A column in compressed form.
     let writing = 8 * rows.min(GROUP_ROWS) as u64;
-    Ok(Demand {
+    Ok(MemoryDemand {
         rows,
         columns,
-        bytes: EVERY + measuring(path)? + holding + rows as u64 * row + writing,
+        bytes: EVERY + measuring_bytes(path)? + holding + rows as u64 * row + writing,
     })
 }
 
@@ -97,10 +97,10 @@ pub fn demand_of_trial(
     path: &Path,
     mapping: &Mapping,
     sensors: &[(SensorFile, PathBuf)],
-) -> io::Result<Demand> {
-    let mut whole = demand(path, mapping)?;
+) -> io::Result<MemoryDemand> {
+    let mut whole = memory_demand(path, mapping)?;
     for (sensor, path) in sensors {
-        let own = demand(path, &mapping.of_sensor(sensor))?;
+        let own = memory_demand(path, &mapping.for_sensor(sensor))?;
         // The columns of the sensor once with its own rows, and once with the rows of the trial.
         whole.bytes += own.bytes + 8 * (own.columns * whole.rows) as u64;
         whole.columns += own.columns;
@@ -110,18 +110,18 @@ pub fn demand_of_trial(
 
 /// Returns the bytes for each row that the derivation of channels needs: a state and its
 /// covariance, the smoothed values of three quantities, and values and variances of the result.
-fn deriving(mapping: &Mapping) -> u64 {
+fn derivation_bytes(mapping: &Mapping) -> u64 {
     match mapping.declared.derive.len() as u64 {
         0 => 0,
         channels => 8 * (12 + 3 * 4 + 2 + 2 * channels),
     }
 }
 
-fn of_parquet<R: parquet::file::reader::ChunkReader + 'static>(
+fn parquet_demand<R: parquet::file::reader::ChunkReader + 'static>(
     input: &R,
     mapping: &Mapping,
 ) -> (Option<(usize, usize)>, u64) {
-    match parquet_file::measure(input, mapping) {
+    match parquet_file::measure_parquet(input, mapping) {
         Some((rows, columns, holding)) => (Some((rows, columns)), holding),
         None => (None, 0),
     }
@@ -134,10 +134,10 @@ mod tests {
     use crate::samples::to_parquet;
     use sistership_model::trial::{Channel, Trial};
 
-    fn at(content: &[u8]) -> Demand {
+    fn at(content: &[u8]) -> MemoryDemand {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), content).unwrap();
-        demand(file.path(), &Mapping::canonical()).unwrap()
+        memory_demand(file.path(), &Mapping::with_canonical_names()).unwrap()
     }
 
     #[test]

@@ -8,28 +8,37 @@ use crate::declarations::Derivable;
 use crate::derived_channel::DerivedChannel;
 use crate::findings::Findings;
 use crate::recording::Recording;
-use crate::smoother::{Noise, Smoothed, choose, smooth};
-use crate::stats::quantile;
+use crate::smoother::{NoiseLevels, SmoothedState, estimate_noise, rts_smooth};
+use crate::stats::nearest_quantile;
 use crate::water::is_water_only;
 
 /// Minimum number of samples of a segment without gaps for its rates to be derived.
 const FEWEST: usize = 8;
 
 /// Derives the yaw rate from the heading if it is declared and was not measured.
-pub(crate) fn yaw_rate(recording: &mut Recording, wanted: &[Derivable], findings: &mut Findings) {
-    if !wanted.contains(&Derivable::R) || measured(recording, Channel::R, findings) {
+pub(crate) fn derive_yaw_rate(
+    recording: &mut Recording,
+    wanted: &[Derivable],
+    findings: &mut Findings,
+) {
+    if !wanted.contains(&Derivable::R) || warn_if_measured(recording, Channel::R, findings) {
         return;
     }
-    let Some(segments) = stretches(recording, &[Channel::Psi], findings) else { return };
-    let Some((noise, smoothed)) = smoothed(recording, &[Channel::Psi], &segments, findings) else {
+    let Some(segments) = gapless_segments(recording, &[Channel::Psi], findings) else { return };
+    let Some((noise, smoothed)) = smooth_channels(recording, &[Channel::Psi], &segments, findings)
+    else {
         return;
     };
     let rates = smoothed[0].iter().map(|smoothed| (smoothed.rate, smoothed.rate_variance));
-    insert(recording, Channel::R, rates.unzip(), noise, findings);
+    insert_derived(recording, Channel::R, rates.unzip(), noise, findings);
 }
 
 /// Derives `u` and `v` from the track, rotated by the heading, if declared and not measured.
-pub(crate) fn velocities(recording: &mut Recording, wanted: &[Derivable], findings: &mut Findings) {
+pub(crate) fn derive_velocities(
+    recording: &mut Recording,
+    wanted: &[Derivable],
+    findings: &mut Findings,
+) {
     let pairs = [(Derivable::U, Channel::U), (Derivable::V, Channel::V)];
     let open: Vec<Channel> = pairs
         .into_iter()
@@ -38,7 +47,7 @@ pub(crate) fn velocities(recording: &mut Recording, wanted: &[Derivable], findin
                 // One velocity over the ground and one through the water do not describe one
                 // motion, so that both are derived.
                 || (is_water_only(recording, channel) && derives_velocity(wanted));
-            is_wanted && !measured(recording, channel, findings)
+            is_wanted && !warn_if_measured(recording, channel, findings)
         })
         .map(|(_, channel)| channel)
         .collect();
@@ -46,19 +55,19 @@ pub(crate) fn velocities(recording: &mut Recording, wanted: &[Derivable], findin
         return;
     }
     let needed = [Channel::X, Channel::Y, Channel::Psi];
-    let Some(segments) = stretches(recording, &needed, findings) else { return };
-    let Some((noise, track)) = smoothed(recording, &needed[..2], &segments, findings) else {
+    let Some(segments) = gapless_segments(recording, &needed, findings) else { return };
+    let Some((noise, track)) = smooth_channels(recording, &needed[..2], &segments, findings) else {
         return;
     };
-    let Some((_, heading)) = smoothed(recording, &needed[2..], &segments, findings) else {
+    let Some((_, heading)) = smooth_channels(recording, &needed[2..], &segments, findings) else {
         return;
     };
     for channel in open {
         let along = channel == Channel::U;
         let samples = (0..heading[0].len())
-            .map(|k| component(along, track[0][k], track[1][k], heading[0][k]));
+            .map(|k| velocity_component(along, track[0][k], track[1][k], heading[0][k]));
         let samples = samples.unzip();
-        insert(recording, channel, samples, noise, findings);
+        insert_derived(recording, channel, samples, noise, findings);
     }
 }
 
@@ -68,7 +77,12 @@ fn derives_velocity(wanted: &[Derivable]) -> bool {
 
 /// Returns a velocity along the heading or across it, and its variance from the rates of the track
 /// and from the heading.
-fn component(along: bool, x: Smoothed, y: Smoothed, psi: Smoothed) -> (f64, f64) {
+fn velocity_component(
+    along: bool,
+    x: SmoothedState,
+    y: SmoothedState,
+    psi: SmoothedState,
+) -> (f64, f64) {
     let (sin, cos) = psi.value.sin_cos();
     let (ahead, starboard) = (x.rate * cos + y.rate * sin, y.rate * cos - x.rate * sin);
     let (value, other, north, east) =
@@ -79,10 +93,10 @@ fn component(along: bool, x: Smoothed, y: Smoothed, psi: Smoothed) -> (f64, f64)
     (value, track + other * other * psi.value_variance)
 }
 
-fn measured(recording: &Recording, channel: Channel, findings: &mut Findings) -> bool {
+fn warn_if_measured(recording: &Recording, channel: Channel, findings: &mut Findings) -> bool {
     let is_measured = recording.channel(channel).is_some();
     if is_measured {
-        let header = recording.header(channel).to_owned();
+        let header = recording.column_header(channel).to_owned();
         findings.warning(None, Some(&header), format!("{channel} was measured and is not derived"));
     }
     is_measured
@@ -90,7 +104,7 @@ fn measured(recording: &Recording, channel: Channel, findings: &mut Findings) ->
 
 /// Returns the ranges without gaps that are long enough; samples outside are excluded from the
 /// recording.
-fn stretches(
+fn gapless_segments(
     recording: &mut Recording,
     needed: &[Channel],
     findings: &mut Findings,
@@ -125,16 +139,16 @@ fn stretches(
     Some(recording.trial.segments().into_iter().filter(|range| !short(range)).collect())
 }
 
-fn smoothed(
+fn smooth_channels(
     recording: &Recording,
     channels: &[Channel],
     segments: &[Range<usize>],
     findings: &mut Findings,
-) -> Option<(Noise, Vec<Vec<Smoothed>>)> {
+) -> Option<(NoiseLevels, Vec<Vec<SmoothedState>>)> {
     let t = recording.time();
     let values: Vec<&[f64]> =
         channels.iter().filter_map(|&channel| recording.channel(channel)).collect();
-    let Some(noise) = choose(t, &values, segments) else {
+    let Some(noise) = estimate_noise(t, &values, segments) else {
         let message =
             format!("no stretch without a gap has {FEWEST} samples; nothing can be derived");
         findings.error(None, None, message);
@@ -142,16 +156,16 @@ fn smoothed(
     };
     let whole = |values: &&[f64]| {
         let parts = segments.iter().map(|range| (&t[range.clone()], &values[range.clone()]));
-        parts.flat_map(|(t, values)| smooth(t, values, noise)).collect()
+        parts.flat_map(|(t, values)| rts_smooth(t, values, noise)).collect()
     };
     Some((noise, values.iter().map(whole).collect()))
 }
 
-fn insert(
+fn insert_derived(
     recording: &mut Recording,
     channel: Channel,
     (values, variance): (Vec<f64>, Vec<f64>),
-    noise: Noise,
+    noise: NoiseLevels,
     findings: &mut Findings,
 ) {
     if !values.iter().chain(&variance).all(|value| value.is_finite()) {
@@ -164,7 +178,7 @@ fn insert(
         _ => ("positions and heading", "m"),
     };
     // Typical and largest standard deviation over the samples.
-    let sd = |share| quantile(variance.iter().map(|variance| variance.sqrt()), share);
+    let sd = |share| nearest_quantile(variance.iter().map(|variance| variance.sqrt()), share);
     let message = format!(
         "derived of {of}, not measured: a Rauch-Tung-Striebel smoother with white noise of \
          {process_noise:.3e} {unit}2/s5 on the third derivative and \
@@ -183,21 +197,21 @@ fn insert(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{messages, recording, zigzag};
+    use crate::testing::{finding_messages, test_recording, zigzag_channels};
 
     const ALL: [Derivable; 3] = [Derivable::U, Derivable::V, Derivable::R];
 
     fn without(channels: &[Channel]) -> Recording {
-        let mut kept = zigzag();
+        let mut kept = zigzag_channels();
         kept.retain(|(channel, _)| !channels.contains(channel));
-        recording(&kept)
+        test_recording(&kept)
     }
 
     fn derive(recording: &mut Recording) -> String {
         let mut findings = Findings::default();
-        yaw_rate(recording, &ALL, &mut findings);
-        velocities(recording, &ALL, &mut findings);
-        messages(findings)
+        derive_yaw_rate(recording, &ALL, &mut findings);
+        derive_velocities(recording, &ALL, &mut findings);
+        finding_messages(findings)
     }
 
     #[test]
@@ -205,7 +219,7 @@ mod tests {
         let mut ship = without(&[Channel::U, Channel::V, Channel::R]);
         let text = derive(&mut ship);
         assert!(text.contains("Some(\"v\") derived of positions and heading"), "{text}");
-        for (channel, truth) in zigzag() {
+        for (channel, truth) in zigzag_channels() {
             if [Channel::U, Channel::V, Channel::R].contains(&channel) {
                 let found = &ship.trial.channels[&channel];
                 let errors = found.iter().zip(&truth).map(|(a, b)| (a - b).abs());
@@ -231,7 +245,7 @@ mod tests {
     fn a_log_through_the_water_is_no_velocity_over_the_ground() {
         let mut ship = without(&[Channel::U, Channel::V]);
         ship.trial.channels.insert(Channel::UWater, vec![9.0; ship.trial.len()]);
-        velocities(&mut ship, &[Derivable::V], &mut Findings::default());
+        derive_velocities(&mut ship, &[Derivable::V], &mut Findings::default());
         let derived: Vec<Channel> = ship.derived.iter().map(|derived| derived.channel).collect();
         assert_eq!(derived, [Channel::U, Channel::V]);
         assert!(ship.trial.channels[&Channel::U][0] < 8.9);

@@ -9,8 +9,8 @@ use sistership_model::manifest::FileTime;
 use sistership_model::trial::Finding;
 
 use crate::findings::Findings;
-use crate::stretches::Stretch;
-use crate::table::{Table, Target};
+use crate::stretches::FileSegment;
+use crate::table::{ColumnTarget, Table};
 
 /// Values that are excluded as faulty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -45,7 +45,7 @@ impl Exclusion {
     }
 
     /// Adds the rows of another exclusion.
-    pub(crate) fn add(&mut self, other: &Self) {
+    pub(crate) fn add_rows(&mut self, other: &Self) {
         // Merged row by row, since ranges of both may overlap.
         let mut rows: Vec<u32> = [self, other]
             .iter()
@@ -54,11 +54,11 @@ impl Exclusion {
             .collect();
         rows.sort_unstable();
         rows.dedup();
-        self.rows = Some(RowRanges::of_rows(rows));
+        self.rows = Some(RowRanges::from_rows(rows));
     }
 
     /// Returns the number of excluded values in words: `43 values of psi: spikes`.
-    pub fn summary(&self) -> String {
+    pub fn summary_text(&self) -> String {
         let count = self.rows.as_ref().map_or(0, RowRanges::count);
         let what = match &self.channel {
             Some(channel) => format!("values of {channel}"),
@@ -68,9 +68,9 @@ impl Exclusion {
     }
 
     /// Returns the finding that a check reports for these faults.
-    pub(crate) fn remark(&self) -> Finding {
+    pub(crate) fn to_finding(&self) -> Finding {
         let rows = self.rows.as_ref().map_or(String::new(), |rows| format!(" (rows {rows})"));
-        let summary = self.summary();
+        let summary = self.summary_text();
         let message = format!("{summary}{rows}; `sistership import` leaves them out");
         Finding { row: None, column: self.channel.clone(), message }
     }
@@ -119,7 +119,7 @@ impl fmt::Display for RowRanges {
 
 impl RowRanges {
     /// Returns the ranges of rows in ascending order.
-    pub fn of_rows(rows: impl IntoIterator<Item = u32>) -> Self {
+    pub fn from_rows(rows: impl IntoIterator<Item = u32>) -> Self {
         let mut ranges: Vec<RangeInclusive<u32>> = Vec::new();
         for row in rows {
             match ranges.last_mut().filter(|last| *last.end() + 1 == row) {
@@ -137,10 +137,14 @@ impl RowRanges {
 }
 
 /// Applies exclusions to a table: excluded values become gaps, excluded rows are removed.
-pub(crate) fn exclude(table: &mut Table, exclusions: &[Exclusion], findings: &mut Findings) {
+pub(crate) fn apply_exclusions(
+    table: &mut Table,
+    exclusions: &[Exclusion],
+    findings: &mut Findings,
+) {
     let mut removed = vec![false; table.rows.len()];
     for exclusion in exclusions {
-        let places = match places(table, exclusion) {
+        let places = match excluded_samples(table, exclusion) {
             Ok(places) => places,
             Err(message) => {
                 findings.error(None, exclusion.channel.as_deref(), message);
@@ -154,7 +158,7 @@ pub(crate) fn exclude(table: &mut Table, exclusions: &[Exclusion], findings: &mu
         match &exclusion.channel {
             None => places.into_iter().flatten().for_each(|k| removed[k] = true),
             Some(channel) => {
-                let Some(at) = position(table, channel) else { continue };
+                let Some(at) = column_position(table, channel) else { continue };
                 let values = &mut table.values[at];
                 places.into_iter().flatten().for_each(|k| values[k] = f64::NAN);
             }
@@ -164,31 +168,34 @@ pub(crate) fn exclude(table: &mut Table, exclusions: &[Exclusion], findings: &mu
         findings.warning(None, None, format!("{count} {what} excluded: {}", exclusion.why));
     }
     // Rows are removed last, so that the indices of all exclusions refer to the same table.
-    remove(table, &removed);
+    remove_rows(table, &removed);
 }
 
-fn position(table: &Table, channel: &str) -> Option<usize> {
-    let target = Target::by_name(channel)?;
+fn column_position(table: &Table, channel: &str) -> Option<usize> {
+    let target = ColumnTarget::from_name(channel)?;
     table.columns.iter().position(|column| column.target == target)
 }
 
 /// Returns the ranges of samples that an exclusion refers to.
-fn places(table: &Table, exclusion: &Exclusion) -> Result<Vec<std::ops::Range<usize>>, String> {
+fn excluded_samples(
+    table: &Table,
+    exclusion: &Exclusion,
+) -> Result<Vec<std::ops::Range<usize>>, String> {
     if let Some(rows) = &exclusion.rows {
         // Row numbers of the file ascend, but rows may be missing: search instead of indexing.
         let at = |row: u32| table.rows.partition_point(|&known| known < row);
         return Ok(rows.0.iter().map(|range| at(*range.start())..at(range.end() + 1)).collect());
     }
-    let stretch = Stretch { from: exclusion.from.clone(), to: exclusion.to.clone() };
-    let window = stretch.window(table.start.as_ref()).map_err(|fault| fault.to_string())?;
-    let time = table.columns.iter().position(|column| column.target == Target::Time);
+    let stretch = FileSegment { from: exclusion.from.clone(), to: exclusion.to.clone() };
+    let window = stretch.time_window(table.start.as_ref()).map_err(|fault| fault.to_string())?;
+    let time = table.columns.iter().position(|column| column.target == ColumnTarget::Time);
     let Some(t) = time.map(|at| &table.values[at]) else { return Ok(Vec::new()) };
     // Single samples, since times need not be in order yet.
     let inside = (0..t.len()).filter(|&k| window.from_s <= t[k] && t[k] <= window.to_s);
     Ok(inside.map(|k| k..k + 1).collect())
 }
 
-fn remove(table: &mut Table, removed: &[bool]) {
+fn remove_rows(table: &mut Table, removed: &[bool]) {
     if !removed.contains(&true) {
         return;
     }
@@ -213,12 +220,12 @@ fn remove(table: &mut Table, removed: &[bool]) {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::testing::{messages, table};
+    use crate::testing::{finding_messages, test_table};
     use sistership_model::trial::Channel;
 
     #[test]
     fn rows_are_written_as_they_are_read() {
-        let ranges = RowRanges::of_rows([3, 4, 5, 9]);
+        let ranges = RowRanges::from_rows([3, 4, 5, 9]);
         assert_eq!((ranges.to_string().as_str(), ranges.count()), ("3-5, 9", 4));
         assert_eq!(RowRanges::try_from("3-5,9".to_owned()), Ok(ranges));
         assert!(RowRanges::try_from("5-3".to_owned()).unwrap_err().contains("204-209"));
@@ -226,9 +233,9 @@ mod tests {
 
     #[test]
     fn values_become_gaps_and_rows_go() {
-        let mut one = table(&[(Channel::U, vec![1.0; 6]), (Channel::Psi, vec![0.0; 6])]);
+        let mut one = test_table(&[(Channel::U, vec![1.0; 6]), (Channel::Psi, vec![0.0; 6])]);
         let row = |k: usize| one.rows[k];
-        let rows = [RowRanges::of_rows([row(1)]), RowRanges::of_rows([row(4), row(5)])];
+        let rows = [RowRanges::from_rows([row(1)]), RowRanges::from_rows([row(4), row(5)])];
         let exclusion = |channel: Option<&str>, rows: &RowRanges| Exclusion {
             file: "a".into(),
             channel: channel.map(str::to_owned),
@@ -239,10 +246,10 @@ mod tests {
         };
         let all = [exclusion(Some("psi"), &rows[0]), exclusion(None, &rows[1])];
         let mut findings = Findings::default();
-        exclude(&mut one, &all, &mut findings);
+        apply_exclusions(&mut one, &all, &mut findings);
         assert_eq!((one.rows.len(), one.values[0].len()), (4, 4));
         let gaps = one.values.iter().flatten().filter(|value| value.is_nan()).count();
         assert_eq!(gaps, 1);
-        assert!(messages(findings).contains("1 values of psi excluded: spikes"));
+        assert!(finding_messages(findings).contains("1 values of psi excluded: spikes"));
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::shape::Shape;
+use crate::shape::ColumnSet;
 
 /// A file of a set.
 #[derive(Debug, Clone)]
@@ -13,12 +13,12 @@ pub(crate) struct SetFile {
     /// Index of its column set.
     pub shape: usize,
     /// First and last time, s, of the calendar where that is known.
-    pub span: Option<Span>,
+    pub span: Option<ClockSpan>,
 }
 
 /// A span of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Span {
+pub(crate) struct ClockSpan {
     pub from_s: f64,
     pub to_s: f64,
     /// True if the times are calendar times.
@@ -27,7 +27,7 @@ pub(crate) struct Span {
 
 /// Role of a file in a set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Part {
+pub(crate) enum FileRole {
     Trial,
     /// A sensor of the trial with this index among the files.
     SensorOf(usize),
@@ -37,36 +37,38 @@ pub(crate) enum Part {
 /// none, the file with most channels in each folder is the trial. Other files are sensors: of the
 /// trial with the largest overlap in time, and among equals of the one that shares most parts of
 /// its name.
-pub(crate) fn parts(files: &[SetFile], shapes: &[Shape]) -> Vec<Part> {
+pub(crate) fn classify_files(files: &[SetFile], shapes: &[ColumnSet]) -> Vec<FileRole> {
     let complete = |file: &SetFile| shapes[file.shape].is_complete();
     let any = files.iter().any(complete);
     // Without any complete file, a trial is spread over files: each folder has a base.
     let base = |file: &SetFile| match any {
         true => complete(file),
-        false => Some(file.shape) == richest(files, shapes, &file.folder),
+        false => Some(file.shape) == richest_shape(files, shapes, &file.folder),
     };
     let trials: Vec<usize> = (0..files.len()).filter(|&at| base(&files[at])).collect();
     (0..files.len())
         .map(|at| match trials.contains(&at) {
-            true => Part::Trial,
-            false => owner(files, &trials, &files[at]).map_or(Part::Trial, Part::SensorOf),
+            true => FileRole::Trial,
+            false => {
+                owning_trial(files, &trials, &files[at]).map_or(FileRole::Trial, FileRole::SensorOf)
+            }
         })
         .collect()
 }
 
 /// Returns the column set with most channels among the files of a folder.
-fn richest(files: &[SetFile], shapes: &[Shape], folder: &Path) -> Option<usize> {
+fn richest_shape(files: &[SetFile], shapes: &[ColumnSet], folder: &Path) -> Option<usize> {
     let here = files.iter().filter(|file| file.folder == folder).map(|file| file.shape);
     // `max_by_key` returns the last of equals: reversed, it is the first.
-    here.rev().max_by_key(|&shape| shapes[shape].channels())
+    here.rev().max_by_key(|&shape| shapes[shape].channel_count())
 }
 
 /// Returns the trial to which a sensor belongs.
-fn owner(files: &[SetFile], trials: &[usize], sensor: &SetFile) -> Option<usize> {
+fn owning_trial(files: &[SetFile], trials: &[usize], sensor: &SetFile) -> Option<usize> {
     let near: Vec<usize> =
         trials.iter().copied().filter(|&at| files[at].folder == sensor.folder).collect();
     let among = if near.is_empty() { trials.to_vec() } else { near };
-    let overlap = |at: usize| overlap(files[at].span, sensor.span);
+    let overlap = |at: usize| clock_overlap(files[at].span, sensor.span);
     let most = among.iter().map(|&at| overlap(at)).fold(0.0, f64::max);
     let parts = name_parts(&sensor.name);
     let shared =
@@ -77,7 +79,7 @@ fn owner(files: &[SetFile], trials: &[usize], sensor: &SetFile) -> Option<usize>
 }
 
 /// Returns the fraction of the shorter span that both share; 1 for clocks that cannot be compared.
-fn overlap(one: Option<Span>, other: Option<Span>) -> f64 {
+fn clock_overlap(one: Option<ClockSpan>, other: Option<ClockSpan>) -> f64 {
     let (Some(one), Some(other)) = (one, other) else { return 1.0 };
     if one.is_dated != other.is_dated {
         return 1.0;
@@ -110,9 +112,9 @@ mod tests {
 
     #[test]
     fn spans_overlap_by_the_shorter() {
-        let span = |from_s, to_s| Some(Span { from_s, to_s, is_dated: true });
-        assert_eq!(overlap(span(0.0, 10.0), span(8.0, 12.0)), 0.5);
-        assert_eq!(overlap(span(0.0, 10.0), span(20.0, 30.0)), 0.0);
-        assert_eq!(overlap(None, span(20.0, 30.0)), 1.0);
+        let span = |from_s, to_s| Some(ClockSpan { from_s, to_s, is_dated: true });
+        assert_eq!(clock_overlap(span(0.0, 10.0), span(8.0, 12.0)), 0.5);
+        assert_eq!(clock_overlap(span(0.0, 10.0), span(20.0, 30.0)), 0.0);
+        assert_eq!(clock_overlap(None, span(20.0, 30.0)), 1.0);
     }
 }

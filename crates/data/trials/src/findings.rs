@@ -18,15 +18,15 @@ pub(crate) enum Severity {
 
 /// Samples with the same fault: the first few with their rows, and the total count.
 #[derive(Debug, Default)]
-pub(crate) struct Hits {
+pub(crate) struct FaultySamples {
     first: Vec<(usize, usize)>,
     count: usize,
     /// Row of the last sample.
     last: Option<usize>,
 }
 
-impl Hits {
-    pub(crate) fn add(&mut self, hit: (usize, usize)) {
+impl FaultySamples {
+    pub(crate) fn record_sample(&mut self, hit: (usize, usize)) {
         if self.count < MAX_ROWS {
             self.first.push(hit);
         }
@@ -54,7 +54,7 @@ impl Findings {
         column: Option<&str>,
         message: impl Into<String>,
     ) {
-        self.add(Severity::Error, row, column, message.into());
+        self.push_finding(Severity::Error, row, column, message.into());
     }
 
     pub(crate) fn warning(
@@ -63,10 +63,10 @@ impl Findings {
         column: Option<&str>,
         message: impl Into<String>,
     ) {
-        self.add(Severity::Warning, row, column, message.into());
+        self.push_finding(Severity::Warning, row, column, message.into());
     }
 
-    fn add(
+    fn push_finding(
         &mut self,
         severity: Severity,
         row: Option<usize>,
@@ -86,18 +86,18 @@ impl Findings {
     }
 
     /// Adds a fault of several rows: the first few one by one, the rest as a count.
-    pub(crate) fn rows(
+    pub(crate) fn report_rows(
         &mut self,
         severity: Severity,
         column: &str,
-        hits: &Hits,
+        hits: &FaultySamples,
         message: impl Fn(usize) -> String,
     ) {
         for &(sample, row) in &hits.first {
-            self.add(severity, Some(row), Some(column), message(sample));
+            self.push_finding(severity, Some(row), Some(column), message(sample));
         }
         if let (Some(more @ 1..), Some(last)) = (hits.count.checked_sub(MAX_ROWS), hits.last) {
-            self.add(
+            self.push_finding(
                 severity,
                 None,
                 Some(column),
@@ -107,15 +107,15 @@ impl Findings {
     }
 
     /// Adds the findings on another file, each with the name of that file.
-    pub(crate) fn absorb(&mut self, file: &str, other: Self) {
-        let (errors, warnings) = other.finish();
+    pub(crate) fn absorb_file(&mut self, file: &str, other: Self) {
+        let (errors, warnings) = other.into_lists();
         let errors = errors.into_iter().map(|finding| (Severity::Error, finding));
         for (severity, finding) in
             errors.chain(warnings.into_iter().map(|finding| (Severity::Warning, finding)))
         {
             // The row is one of the other file, hence its name in the message.
             let Finding { row, column, message } = finding;
-            self.add(severity, row, column.as_deref(), format!("{file}: {message}"));
+            self.push_finding(severity, row, column.as_deref(), format!("{file}: {message}"));
         }
     }
 
@@ -124,7 +124,7 @@ impl Findings {
     }
 
     /// Returns errors and warnings, each with a last line about those that are not listed.
-    pub(crate) fn finish(mut self) -> (Vec<Finding>, Vec<Finding>) {
+    pub(crate) fn into_lists(mut self) -> (Vec<Finding>, Vec<Finding>) {
         for (list, more, what) in [
             (&mut self.errors, self.more_errors, "errors"),
             (&mut self.warnings, self.more_warnings, "warnings"),
@@ -148,13 +148,13 @@ mod tests {
     #[test]
     fn equal_faults_are_counted_and_the_list_is_bounded() {
         let mut findings = Findings::default();
-        let mut hits = Hits::default();
-        (0..10).for_each(|k| hits.add((k, k + 2)));
-        findings.rows(Severity::Error, "u", &hits, |k| format!("fault {k}"));
+        let mut hits = FaultySamples::default();
+        (0..10).for_each(|k| hits.record_sample((k, k + 2)));
+        findings.report_rows(Severity::Error, "u", &hits, |k| format!("fault {k}"));
         for k in 0..30 {
             findings.error(Some(k), None, "other");
         }
-        let (errors, warnings) = findings.finish();
+        let (errors, warnings) = findings.into_lists();
         assert_eq!(errors[3].message, "the same in 7 further rows, the last of them row 11");
         assert_eq!(errors.len(), MAX_ERRORS + 1);
         assert_eq!(errors[MAX_ERRORS].message, "14 further errors are not listed");

@@ -6,16 +6,17 @@ use sistership_model::trial::Channel;
 use crate::declarations::Antenna;
 use crate::findings::Findings;
 use crate::recording::Recording;
-use crate::table::Raw;
+use crate::table::RawQuantity;
 
 /// Computes `u` and `v` from course, speed and heading, where they were not measured.
-pub(crate) fn velocities(
+pub(crate) fn ground_velocities(
     recording: &mut Recording,
     antenna: Option<Antenna>,
     findings: &mut Findings,
 ) {
-    earth_fixed(recording, findings);
-    let given = (recording.raw.remove(&Raw::Course), recording.raw.remove(&Raw::Speed));
+    earth_velocities(recording, findings);
+    let given =
+        (recording.raw.remove(&RawQuantity::Course), recording.raw.remove(&RawQuantity::Speed));
     if given == (None, None) {
         return;
     }
@@ -54,8 +55,9 @@ pub(crate) fn velocities(
 }
 
 /// Computes `u` and `v` from velocities north and east, where they were not measured.
-fn earth_fixed(recording: &mut Recording, findings: &mut Findings) {
-    let given = (recording.raw.remove(&Raw::VNorth), recording.raw.remove(&Raw::VEast));
+fn earth_velocities(recording: &mut Recording, findings: &mut Findings) {
+    let given =
+        (recording.raw.remove(&RawQuantity::VNorth), recording.raw.remove(&RawQuantity::VEast));
     if given == (None, None) {
         return;
     }
@@ -85,16 +87,16 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     use super::*;
-    use crate::testing::{messages, recording};
+    use crate::testing::{finding_messages, test_recording};
 
     fn ship(antenna: Option<Antenna>) -> (Recording, String) {
         let mut ship =
-            recording(&[(Channel::Psi, vec![FRAC_PI_2; 3]), (Channel::R, vec![0.01; 3])]);
-        ship.raw.insert(Raw::Course, vec![FRAC_PI_2 + 0.1; 3]);
-        ship.raw.insert(Raw::Speed, vec![5.0; 3]);
+            test_recording(&[(Channel::Psi, vec![FRAC_PI_2; 3]), (Channel::R, vec![0.01; 3])]);
+        ship.raw.insert(RawQuantity::Course, vec![FRAC_PI_2 + 0.1; 3]);
+        ship.raw.insert(RawQuantity::Speed, vec![5.0; 3]);
         let mut findings = Findings::default();
-        velocities(&mut ship, antenna, &mut findings);
-        (ship, messages(findings))
+        ground_velocities(&mut ship, antenna, &mut findings);
+        (ship, finding_messages(findings))
     }
 
     #[test]
@@ -111,11 +113,11 @@ mod tests {
 
     #[test]
     fn without_a_heading_nothing_is_made_up() {
-        let mut ship = recording(&[(Channel::R, vec![0.01; 3])]);
-        ship.raw.insert(Raw::Speed, vec![5.0; 3]);
+        let mut ship = test_recording(&[(Channel::R, vec![0.01; 3])]);
+        ship.raw.insert(RawQuantity::Speed, vec![5.0; 3]);
         let mut findings = Findings::default();
-        velocities(&mut ship, None, &mut findings);
-        assert!(messages(findings).contains("one is missing"));
+        ground_velocities(&mut ship, None, &mut findings);
+        assert!(finding_messages(findings).contains("one is missing"));
         assert_eq!(ship.trial.channels.len(), 1);
     }
 }

@@ -2,7 +2,7 @@
 
 /// Channel, unit and sign identified for a column.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Guess {
+pub struct ColumnGuess {
     /// File, as named by the manifest.
     pub file: String,
     /// Header of the column; `#3` for the third of a file without a header.

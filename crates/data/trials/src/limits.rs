@@ -2,7 +2,7 @@
 
 /// Limits that keep a file from filling the memory of the reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Limits {
+pub struct FileLimits {
     /// Rows of data in memory at a time; a file of which segments are read may have more.
     pub rows: usize,
     /// Columns, mapped or not.
@@ -18,14 +18,14 @@ pub struct Limits {
 }
 
 /// Returns the message on a file with more rows than the limit.
-pub(crate) fn too_many(most: usize) -> String {
+pub(crate) fn too_many_rows(most: usize) -> String {
     format!(
         "the file has more than the {most} rows that are read; split it, or let `sistership \
          import` find the stretches of it that matter"
     )
 }
 
-impl Default for Limits {
+impl Default for FileLimits {
     fn default() -> Self {
         Self {
             rows: 5_000_000,

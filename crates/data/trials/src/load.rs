@@ -14,12 +14,12 @@ use crate::exclusion::Exclusion;
 use crate::manifest::read_local_manifest;
 use crate::mapping::Mapping;
 use crate::outcome::{CheckOutcome, Refusal};
-use crate::read::{Examined, StretchRequest, examine, stretches};
-use crate::source::Source;
+use crate::read::{CheckedRecording, SegmentRequest, examine_source, read_segments};
+use crate::source::TrialFile;
 
 /// Trials read from a path, with the manifest.
 #[derive(Debug)]
-pub struct Loaded {
+pub struct LoadedTrials {
     /// The manifest, if the path named one.
     pub manifest: Option<Manifest>,
     /// Trial of each file, in the order of the manifest.
@@ -32,10 +32,10 @@ pub struct Loaded {
 /// # Errors
 /// Returns an error if the manifest is invalid or the path cannot be read. A single trial that is
 /// refused is no error of the whole.
-pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
-    let (manifest, mut trials) = each(path, false, |name, examined| match examined {
-        Ok(examined) => examined.trial(name),
-        Err(error) => Err(Refusal { file: name, findings: vec![unreadable(&error)] }),
+pub fn load_path(path: &Path) -> Result<LoadedTrials, FileError> {
+    let (manifest, mut trials) = read_each(path, false, |name, examined| match examined {
+        Ok(examined) => examined.into_trial(name),
+        Err(error) => Err(Refusal { file: name, findings: vec![unreadable_finding(&error)] }),
     })?;
     if manifest.is_none()
         && let (Some(Ok(trial)), Some(name)) = (trials.first_mut(), path.file_name())
@@ -43,7 +43,7 @@ pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
         // The folder of the file on this machine must not become part of the recipe of a version.
         trial.name = name.to_string_lossy().into_owned();
     }
-    Ok(Loaded { manifest, trials })
+    Ok(LoadedTrials { manifest, trials })
 }
 
 /// Checks the files that [`load_path`] would read, and returns the outcomes only.
@@ -51,13 +51,13 @@ pub fn load_path(path: &Path) -> Result<Loaded, FileError> {
 /// # Errors
 /// Returns the errors of [`load_path`].
 pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
-    let outcomes = each(path, true, |name, examined| match examined {
-        Ok(examined) => examined.outcome(name),
+    let outcomes = read_each(path, true, |name, examined| match examined {
+        Ok(examined) => examined.into_outcome(name),
         Err(error) => CheckOutcome {
             file: name,
             rows: 0,
             duration_s: 0.0,
-            errors: vec![unreadable(&error)],
+            errors: vec![unreadable_finding(&error)],
             warnings: Vec::new(),
         },
     })?;
@@ -70,10 +70,10 @@ pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
 /// # Errors
 /// Returns the errors of [`load_path`].
 pub fn find_faults(path: &Path) -> Result<Vec<Exclusion>, FileError> {
-    let (manifest, mut listed) = listed(path)?;
+    let (manifest, mut listed) = list_files(path)?;
     listed.iter_mut().for_each(|one| one.mapping.seeks_faults = true);
-    let found = each_listed(&listed, |_, examined| {
-        examined.map(|examined| examined.faults().to_vec()).unwrap_or_default()
+    let found = examine_each(&listed, |_, examined| {
+        examined.map(|examined| examined.found_faults().to_vec()).unwrap_or_default()
     });
     let trials = manifest.iter().flat_map(|manifest| &manifest.trials);
     let mut all: Vec<Exclusion> = Vec::new();
@@ -83,7 +83,7 @@ pub fn find_faults(path: &Path) -> Result<Vec<Exclusion>, FileError> {
             // Segments of one file are checked separately; faults of the same kind become one
             // entry.
             match all.iter_mut().find(|one| one.is_like(&fault)) {
-                Some(known) => known.add(&fault),
+                Some(known) => known.add_rows(&fault),
                 None => all.push(fault),
             }
         }
@@ -92,16 +92,16 @@ pub fn find_faults(path: &Path) -> Result<Vec<Exclusion>, FileError> {
 }
 
 /// File to be read, and the files of sensors that belong to it.
-struct Listed {
+struct ListedFile {
     name: String,
     path: PathBuf,
     mapping: Mapping,
     sensors: Vec<(SensorFile, PathBuf)>,
 }
 
-impl Listed {
-    fn open(&self) -> io::Result<Source<'static>> {
-        Source::open_trial(&self.name, &self.path, &self.mapping, &self.sensors)
+impl ListedFile {
+    fn open(&self) -> io::Result<TrialFile<'static>> {
+        TrialFile::open_trial(&self.name, &self.path, &self.mapping, &self.sensors)
     }
 
     /// Returns true if both are segments of one file, which is then read once.
@@ -113,37 +113,37 @@ impl Listed {
 
 /// Applies `take` to each trial of a path, and returns the results in the order of the manifest;
 /// files are read in parallel.
-fn each<T: Send>(
+fn read_each<T: Send>(
     path: &Path,
     seeks_faults: bool,
-    take: impl Fn(String, io::Result<Examined>) -> T + Sync,
+    take: impl Fn(String, io::Result<CheckedRecording>) -> T + Sync,
 ) -> Result<(Option<Manifest>, Vec<T>), FileError> {
-    let (manifest, mut listed) = listed(path)?;
+    let (manifest, mut listed) = list_files(path)?;
     if seeks_faults {
         listed.iter_mut().for_each(|one| one.mapping.seeks_faults = true);
     }
-    Ok((manifest, each_listed(&listed, take)))
+    Ok((manifest, examine_each(&listed, take)))
 }
 
-fn each_listed<T: Send>(
-    listed: &[Listed],
-    take: impl Fn(String, io::Result<Examined>) -> T + Sync,
+fn examine_each<T: Send>(
+    listed: &[ListedFile],
+    take: impl Fn(String, io::Result<CheckedRecording>) -> T + Sync,
 ) -> Vec<T> {
     let taken = |places: Vec<usize>| -> Vec<(usize, T)> {
-        let group: Vec<&Listed> = places.iter().map(|&k| &listed[k]).collect();
-        let each = places.iter().zip(examined(&group));
+        let group: Vec<&ListedFile> = places.iter().map(|&k| &listed[k]).collect();
+        let each = places.iter().zip(examine_group(&group));
         each.map(|(&k, examined)| (k, take(listed[k].name.clone(), examined))).collect()
     };
     // One task per file (`with_max_len`), since files differ in size; sorted again afterwards so
     // that the result does not depend on the order of completion.
     let mut all: Vec<(usize, T)> =
-        by_file(listed).into_par_iter().with_max_len(1).flat_map_iter(taken).collect();
+        group_by_file(listed).into_par_iter().with_max_len(1).flat_map_iter(taken).collect();
     all.sort_by_key(|(place, _)| *place);
     all.into_iter().map(|(_, taken)| taken).collect()
 }
 
 /// Groups the indices of segments that are read in one pass.
-fn by_file(listed: &[Listed]) -> Vec<Vec<usize>> {
+fn group_by_file(listed: &[ListedFile]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (place, this) in listed.iter().enumerate() {
         match groups.iter_mut().find(|group| listed[group[0]].shares_file(this)) {
@@ -155,47 +155,47 @@ fn by_file(listed: &[Listed]) -> Vec<Vec<usize>> {
 }
 
 /// Reads and checks one file, or several segments of one file in one pass.
-fn examined(group: &[&Listed]) -> Vec<io::Result<Examined>> {
+fn examine_group(group: &[&ListedFile]) -> Vec<io::Result<CheckedRecording>> {
     // A single entry needs no distribution of rows.
     if let [alone] = group {
-        return vec![alone.open().map(|source| examine(source, &alone.mapping))];
+        return vec![alone.open().map(|source| examine_source(source, &alone.mapping))];
     }
-    let sources: io::Result<Vec<Source>> = group.iter().map(|listed| listed.open()).collect();
+    let sources: io::Result<Vec<TrialFile>> = group.iter().map(|listed| listed.open()).collect();
     let mut sources = match sources {
         Ok(sources) => sources.into_iter(),
         Err(error) => {
             // `io::Error` cannot be cloned: each segment gets a copy of kind and message.
-            let told = |_: &&Listed| Err(io::Error::new(error.kind(), error.to_string()));
+            let told = |_: &&ListedFile| Err(io::Error::new(error.kind(), error.to_string()));
             return group.iter().map(told).collect();
         }
     };
-    let Some(Source { content, sensors, .. }) = sources.next() else { return Vec::new() };
+    let Some(TrialFile { content, sensors, .. }) = sources.next() else { return Vec::new() };
     let sensors = std::iter::once(sensors).chain(sources.map(|source| source.sensors));
-    let requests = group.iter().zip(sensors).map(|(listed, sensors)| StretchRequest {
+    let requests = group.iter().zip(sensors).map(|(listed, sensors)| SegmentRequest {
         name: &listed.name,
         mapping: &listed.mapping,
         sensors,
     });
-    stretches(content, requests.collect()).into_iter().map(Ok).collect()
+    read_segments(content, requests.collect()).into_iter().map(Ok).collect()
 }
 
 /// Returns the files named by a path: those of a manifest, or the file itself.
-fn listed(path: &Path) -> Result<(Option<Manifest>, Vec<Listed>), FileError> {
+fn list_files(path: &Path) -> Result<(Option<Manifest>, Vec<ListedFile>), FileError> {
     let shown = path.display().to_string();
     if !is_manifest(path) {
-        std::fs::metadata(path).map_err(|error| missing(&shown, &error))?;
-        let (mapping, sensors) = (Mapping::canonical(), Vec::new());
-        let alone = Listed { name: shown, path: path.to_owned(), mapping, sensors };
+        std::fs::metadata(path).map_err(|error| unreadable_file(&shown, &error))?;
+        let (mapping, sensors) = (Mapping::with_canonical_names(), Vec::new());
+        let alone = ListedFile { name: shown, path: path.to_owned(), mapping, sensors };
         return Ok((None, vec![alone]));
     }
-    let text = std::fs::read_to_string(path).map_err(|error| missing(&shown, &error))?;
+    let text = std::fs::read_to_string(path).map_err(|error| unreadable_file(&shown, &error))?;
     let written = read_local_manifest(&shown, &text)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let listed =
-        written.manifest.trials.iter().zip(&written.sensors).map(|(trial, sensors)| Listed {
-            name: trial.label(),
+        written.manifest.trials.iter().zip(&written.sensors).map(|(trial, sensors)| ListedFile {
+            name: trial.trial_label(),
             path: folder.join(&trial.file),
-            mapping: written.mapping(trial),
+            mapping: written.trial_mapping(trial),
             sensors: sensors.iter().map(|one| (one.clone(), folder.join(&one.file))).collect(),
         });
     let listed = listed.collect();
@@ -208,7 +208,7 @@ fn is_manifest(path: &Path) -> bool {
     })
 }
 
-fn missing(file: &str, error: &io::Error) -> FileError {
+fn unreadable_file(file: &str, error: &io::Error) -> FileError {
     FileError {
         file: file.to_owned(),
         line: None,
@@ -218,7 +218,7 @@ fn missing(file: &str, error: &io::Error) -> FileError {
     }
 }
 
-fn unreadable(error: &io::Error) -> Finding {
+fn unreadable_finding(error: &io::Error) -> Finding {
     Finding { row: None, column: None, message: format!("cannot be read: {error}") }
 }
 
@@ -247,7 +247,10 @@ mod tests {
                 .contains("lost.csv is refused:\n  cannot be read")
         );
         let outcomes = check_path(&folder.path().join("m.yaml")).unwrap();
-        assert_eq!(outcomes.iter().map(CheckOutcome::accepted).collect::<Vec<_>>(), [true, false]);
+        assert_eq!(
+            outcomes.iter().map(CheckOutcome::is_accepted).collect::<Vec<_>>(),
+            [true, false]
+        );
     }
 
     #[test]

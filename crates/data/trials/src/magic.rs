@@ -2,7 +2,7 @@
 
 /// Format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum FormatKind {
     Csv,
     Parquet,
     Workbook,
@@ -40,29 +40,31 @@ const OTHERS: [(&[u8], &str); 18] = [
 ];
 
 /// Returns the format of a file by its first bytes.
-pub(crate) fn kind(start: &[u8]) -> Kind {
+pub(crate) fn detect_format(start: &[u8]) -> FormatKind {
     if start.starts_with(b"PAR1") {
-        return Kind::Parquet;
+        return FormatKind::Parquet;
     }
     if start.starts_with(b"PK\x03\x04") {
-        return Kind::Workbook;
+        return FormatKind::Workbook;
     }
     if start.starts_with(b"MATLAB 5.0") {
-        return Kind::Matlab;
+        return FormatKind::Matlab;
     }
     if start.starts_with(b"MATLAB 7.3") {
-        return Kind::Other("a MATLAB 7.3 file, which is HDF5; save it by `save(..., '-v7')`");
+        return FormatKind::Other(
+            "a MATLAB 7.3 file, which is HDF5; save it by `save(..., '-v7')`",
+        );
     }
     if let Some((_, what)) = OTHERS.iter().find(|(magic, _)| start.starts_with(magic)) {
-        return Kind::Other(what);
+        return FormatKind::Other(what);
     }
     // Known binary formats come first, so that the advice names them.
     if is_binary(start) {
-        return Kind::Other(
+        return FormatKind::Other(
             "binary, of a kind that is not known here; export it as CSV or Parquet",
         );
     }
-    if is_nmea(start) { Kind::Nmea } else { Kind::Csv }
+    if is_nmea(start) { FormatKind::Nmea } else { FormatKind::Csv }
 }
 
 /// Returns true if more than one byte in sixteen is zero; text in UTF-16, which has more, begins
@@ -94,21 +96,23 @@ mod tests {
     #[test]
     fn files_are_told_by_their_first_bytes() {
         for (start, wanted) in [
-            (&b"PAR1"[..], Kind::Parquet),
-            (b"PK\x03\x04", Kind::Workbook),
-            (b"MATLAB 5.0 MAT-file, Platform: GLNXA64", Kind::Matlab),
-            (b"$GPHDT,274.1,T*33\r\n", Kind::Nmea),
-            (b"12:00:01 $GPHDT,274.1,T*33\n", Kind::Nmea),
-            (b"t_s,u_m_s\n0,1\n", Kind::Csv),
-            (b"price $,u\n$1,2\n$12345,\n", Kind::Csv),
-            (b"", Kind::Csv),
-            (b"\xff\xfet\0_\0s\0", Kind::Csv),
+            (&b"PAR1"[..], FormatKind::Parquet),
+            (b"PK\x03\x04", FormatKind::Workbook),
+            (b"MATLAB 5.0 MAT-file, Platform: GLNXA64", FormatKind::Matlab),
+            (b"$GPHDT,274.1,T*33\r\n", FormatKind::Nmea),
+            (b"12:00:01 $GPHDT,274.1,T*33\n", FormatKind::Nmea),
+            (b"t_s,u_m_s\n0,1\n", FormatKind::Csv),
+            (b"price $,u\n$1,2\n$12345,\n", FormatKind::Csv),
+            (b"", FormatKind::Csv),
+            (b"\xff\xfet\0_\0s\0", FormatKind::Csv),
         ] {
-            assert_eq!(kind(start), wanted, "{start:?}");
+            assert_eq!(detect_format(start), wanted, "{start:?}");
         }
         assert!(
-            matches!(kind(b"\x89HDF\r\n\x1a\n..."), Kind::Other(what) if what.contains("HDF5"))
+            matches!(detect_format(b"\x89HDF\r\n\x1a\n..."), FormatKind::Other(what) if what.contains("HDF5"))
         );
-        assert!(matches!(kind(b"\x01\0\0\0abc"), Kind::Other(what) if what.contains("binary")));
+        assert!(
+            matches!(detect_format(b"\x01\0\0\0abc"), FormatKind::Other(what) if what.contains("binary"))
+        );
     }
 }

@@ -7,11 +7,11 @@ use sistership_model::manifest::Manifest;
 
 use crate::declarations::{Declarations, North, SensorFile};
 use crate::manifest_file::{ManifestFile, Written};
-use crate::resolve::{channel_names, factor};
+use crate::resolve::{channel_names, unit_factor};
 use crate::smoothing;
 use crate::stretches::{self, same_file};
-use crate::table::Target;
-use crate::units::Kind;
+use crate::table::ColumnTarget;
+use crate::units::UnitKind;
 
 /// Reads a manifest with all its declarations; `file_name` is for messages only.
 ///
@@ -21,10 +21,10 @@ use crate::units::Kind;
 /// declaration.
 pub fn read_manifest_file(file_name: &str, text: &str) -> Result<ManifestFile, FileError> {
     let inside = |file: &ManifestFile| {
-        let trials = outside(file).into_iter();
+        let trials = trials_outside(file).into_iter();
         trials.chain(sensors_outside(file)).collect()
     };
-    read(file_name, text, inside)
+    read_checked(file_name, text, inside)
 }
 
 /// Reads a manifest on disk, which may name files outside its folder.
@@ -32,79 +32,79 @@ pub fn read_manifest_file(file_name: &str, text: &str) -> Result<ManifestFile, F
 /// # Errors
 /// Returns the errors of [`read_manifest_file`].
 pub(crate) fn read_local_manifest(file_name: &str, text: &str) -> Result<ManifestFile, FileError> {
-    read(file_name, text, |_| Vec::new())
+    read_checked(file_name, text, |_| Vec::new())
 }
 
-fn read(
+fn read_checked(
     file_name: &str,
     text: &str,
-    further: impl Fn(&ManifestFile) -> Vec<Problem>,
+    further: impl Fn(&ManifestFile) -> Vec<ManifestProblem>,
 ) -> Result<ManifestFile, FileError> {
-    let written: Written =
-        sistership_model::yaml::read(text).map_err(|error| FileError::of_yaml(file_name, error))?;
+    let written: Written = sistership_model::yaml::read_document(text)
+        .map_err(|error| FileError::from_yaml(file_name, error))?;
     let file = ManifestFile::from(written);
     let manifest = &file.manifest;
     // All problems are collected before any of them is reported.
-    let problems = columns(&file)
-        .chain(trials(manifest))
-        .chain(sensors(&file))
+    let problems = column_problems(&file)
+        .chain(trial_problems(manifest))
+        .chain(sensor_problems(&file))
         .chain(further(&file))
-        .chain(conventions(manifest))
-        .chain(exclusions(&file))
-        .chain(declarations(&file.declarations));
+        .chain(convention_problem(manifest))
+        .chain(exclusion_problems(&file))
+        .chain(declaration_problems(&file.declarations));
     // The line is found by a text near the problem, as parsing has lost the positions.
-    let refused = |Problem { field, near, message }: Problem| FileError {
+    let refused = |ManifestProblem { field, near, message }: ManifestProblem| FileError {
         file: file_name.to_owned(),
         line: line_of(text, &near),
         field,
         message,
         further: Vec::new(),
     };
-    FileError::of_all(problems.map(refused)).map_or(Ok(()), Err)?;
+    FileError::from_faults(problems.map(refused)).map_or(Ok(()), Err)?;
     Ok(file)
 }
 
-struct Problem {
+struct ManifestProblem {
     field: String,
     /// Text by which the line of the problem is found.
     near: String,
     message: String,
 }
 
-fn columns(file: &ManifestFile) -> impl Iterator<Item = Problem> {
+fn column_problems(file: &ManifestFile) -> impl Iterator<Item = ManifestProblem> {
     let sensors = file.sensors.iter().flatten().flat_map(|sensor| &sensor.columns);
     let own = file.manifest.trials.iter().flat_map(|trial| &trial.columns);
     file.manifest.columns.iter().chain(own).chain(sensors).filter_map(|(name, mapped)| {
-        let problem = |message: String| Problem {
+        let problem = |message: String| ManifestProblem {
             field: format!("columns.{name}"),
             near: format!("{name}:"),
             message,
         };
-        let Some(target) = Target::by_name(name) else {
+        let Some(target) = ColumnTarget::from_name(name) else {
             return Some(problem(format!(
                 "`{name}` is not a channel; channels are {}",
                 channel_names()
             )));
         };
-        factor(target, &mapped.unit, &file.declarations).err().map(problem)
+        unit_factor(target, &mapped.unit, &file.declarations).err().map(problem)
     })
 }
 
-fn trials(manifest: &Manifest) -> impl Iterator<Item = Problem> {
-    let none = manifest.trials.is_empty().then(|| Problem {
+fn trial_problems(manifest: &Manifest) -> impl Iterator<Item = ManifestProblem> {
+    let none = manifest.trials.is_empty().then(|| ManifestProblem {
         field: "trials".into(),
         near: "trials:".into(),
         message: "lists no file".into(),
     });
     let each = manifest.trials.iter().enumerate().filter_map(|(index, trial)| {
         let earlier = &manifest.trials[..index];
-        if let Some((field, message)) = stretches::problem(trial, earlier) {
+        if let Some((field, message)) = stretches::segment_problem(trial, earlier) {
             let (field, near) = (format!("trials[{index}].{field}"), trial.file.clone());
-            return Some(Problem { field, near, message });
+            return Some(ManifestProblem { field, near, message });
         }
         // Several segments of one file may be listed, but the whole file only once.
         let twice = earlier.iter().any(|other| {
-            same_file(&other.file, &trial.file) && !(other.is_stretch() && trial.is_stretch())
+            same_file(&other.file, &trial.file) && !(other.is_segment() && trial.is_segment())
         });
         let message = match trial.depth_m {
             _ if twice => "is listed twice; the same data would count twice".to_owned(),
@@ -113,7 +113,7 @@ fn trials(manifest: &Manifest) -> impl Iterator<Item = Problem> {
             }
             _ => return None,
         };
-        Some(Problem {
+        Some(ManifestProblem {
             field: format!("trials[{index}].file"),
             near: trial.file.clone(),
             message: format!("`{}` {message}", trial.file),
@@ -122,10 +122,10 @@ fn trials(manifest: &Manifest) -> impl Iterator<Item = Problem> {
     none.into_iter().chain(each)
 }
 
-fn sensors(file: &ManifestFile) -> impl Iterator<Item = Problem> {
+fn sensor_problems(file: &ManifestFile) -> impl Iterator<Item = ManifestProblem> {
     let is_wrong =
         |sensor: &&SensorFile| sensor.clock_offset_s.is_some_and(|offset| !offset.is_finite());
-    file.sensors.iter().flatten().filter(is_wrong).map(|sensor| Problem {
+    file.sensors.iter().flatten().filter(is_wrong).map(|sensor| ManifestProblem {
         field: "trials.sensors".into(),
         near: sensor.file.clone(),
         message: format!("`{}`: clock_offset_s must be a number", sensor.file),
@@ -133,33 +133,33 @@ fn sensors(file: &ManifestFile) -> impl Iterator<Item = Problem> {
 }
 
 /// Returns the trials whose file is outside the folder of the manifest.
-fn outside(file: &ManifestFile) -> Vec<Problem> {
+fn trials_outside(file: &ManifestFile) -> Vec<ManifestProblem> {
     let trials = file.manifest.trials.iter().enumerate();
     trials
         .filter(|(_, trial)| !stays_inside(&trial.file))
-        .map(|(index, trial)| left_folder(format!("trials[{index}].file"), &trial.file))
+        .map(|(index, trial)| folder_problem(format!("trials[{index}].file"), &trial.file))
         .collect()
 }
 
-fn sensors_outside(file: &ManifestFile) -> Vec<Problem> {
+fn sensors_outside(file: &ManifestFile) -> Vec<ManifestProblem> {
     let sensors = file.sensors.iter().flatten().filter(|sensor| !stays_inside(&sensor.file));
-    sensors.map(|sensor| left_folder("trials.sensors".into(), &sensor.file)).collect()
+    sensors.map(|sensor| folder_problem("trials.sensors".into(), &sensor.file)).collect()
 }
 
-fn left_folder(field: String, path: &str) -> Problem {
+fn folder_problem(field: String, path: &str) -> ManifestProblem {
     let message =
         format!("`{path}` must be a path relative to the manifest that stays in its folder");
-    Problem { field, near: path.to_owned(), message }
+    ManifestProblem { field, near: path.to_owned(), message }
 }
 
-fn exclusions(file: &ManifestFile) -> impl Iterator<Item = Problem> {
-    let problem = |near: &str, message: String| Problem {
+fn exclusion_problems(file: &ManifestFile) -> impl Iterator<Item = ManifestProblem> {
+    let problem = |near: &str, message: String| ManifestProblem {
         field: "exclude".into(),
         near: near.to_owned(),
         message,
     };
     file.declarations.exclude.iter().filter_map(move |one| {
-        let unknown = one.channel.as_deref().filter(|name| Target::by_name(name).is_none());
+        let unknown = one.channel.as_deref().filter(|name| ColumnTarget::from_name(name).is_none());
         if let Some(name) = unknown {
             let message = format!("`{name}` is not a channel; channels are {}", channel_names());
             return Some(problem(name, message));
@@ -173,8 +173,8 @@ fn exclusions(file: &ManifestFile) -> impl Iterator<Item = Problem> {
     })
 }
 
-fn declarations(declared: &Declarations) -> impl Iterator<Item = Problem> {
-    let problem = |field: &str, message: String| Problem {
+fn declaration_problems(declared: &Declarations) -> impl Iterator<Item = ManifestProblem> {
+    let problem = |field: &str, message: String| ManifestProblem {
         field: field.into(),
         near: format!("{}:", field.rsplit('.').next().unwrap_or(field)),
         message,
@@ -202,12 +202,12 @@ fn declarations(declared: &Declarations) -> impl Iterator<Item = Problem> {
     let antenna =
         (!is_aboard).then(|| problem("antenna", "must be on the ship, in m from midship".into()));
     let maximum = declared.maximum.iter().filter_map(move |(name, maximum)| {
-        let message = match Target::by_name(name) {
+        let message = match ColumnTarget::from_name(name) {
             None => format!("`{name}` is not a channel; channels are {}", channel_names()),
             Some(_) if !(maximum.value > 0.0 && maximum.value.is_finite()) => {
                 format!("must be positive, not {}", maximum.value)
             }
-            Some(target) => Kind::of(target).factor(&maximum.unit).err()?,
+            Some(target) => UnitKind::from_target(target).unit_to_si(&maximum.unit).err()?,
         };
         Some(problem(&format!("maximum.{name}"), message))
     });
@@ -221,18 +221,18 @@ fn stays_inside(path: &str) -> bool {
     !path.is_empty() && !path.contains(['\\', ':', '\0']) && Path::new(path).components().all(plain)
 }
 
-fn conventions(manifest: &Manifest) -> Option<Problem> {
+fn convention_problem(manifest: &Manifest) -> Option<ManifestProblem> {
     // Negated comparison, so that NaN is refused.
     if let Some(limit) = manifest.conventions.bridge_s.filter(|limit| !(*limit >= 0.0)) {
-        return Some(Problem {
+        return Some(ManifestProblem {
             field: "conventions.bridge_s".into(),
             near: "bridge_s:".into(),
             message: format!("must be a number of seconds, not {limit}"),
         });
     }
     let smoothing = manifest.conventions.smoothing?;
-    let message = smoothing::check(smoothing.window, smoothing.degree).err()?;
-    Some(Problem {
+    let message = smoothing::check_settings(smoothing.window, smoothing.degree).err()?;
+    Some(ManifestProblem {
         field: "conventions.smoothing".into(),
         near: "smoothing:".into(),
         message: message.to_string(),

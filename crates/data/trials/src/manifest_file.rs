@@ -114,17 +114,17 @@ impl JsonSchema for ManifestFile {
 
 impl ManifestFile {
     /// Returns the mapping of one file of the manifest.
-    pub fn mapping(&self, trial: &ManifestTrial) -> Mapping {
+    pub fn trial_mapping(&self, trial: &ManifestTrial) -> Mapping {
         let of_file = self.declarations.exclude.iter().filter(|one| one.file == trial.file);
         Mapping {
             declared: self.declarations.clone(),
             exclude: of_file.cloned().collect(),
-            ..Mapping::of(&self.manifest, trial)
+            ..Mapping::from_manifest(&self.manifest, trial)
         }
     }
 
     /// Returns the manifest reduced to one of its trials.
-    pub fn only(&self, index: usize) -> Self {
+    pub fn only_trial(&self, index: usize) -> Self {
         // Field by field, so that the other trials are not copied: an upload may have hundreds.
         let Manifest { kind, ship, conventions, columns, trials } = &self.manifest;
         let manifest = Manifest {

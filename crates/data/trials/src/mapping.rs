@@ -4,8 +4,8 @@ use sistership_model::manifest::{ColumnMapping, Manifest, ManifestTrial, TrialCo
 
 use crate::declarations::{Declarations, SensorFile};
 use crate::exclusion::Exclusion;
-use crate::limits::Limits;
-use crate::stretches::Stretch;
+use crate::limits::FileLimits;
+use crate::stretches::FileSegment;
 
 /// Mapping of columns to channels, with signs and limits on the size of the file.
 ///
@@ -23,9 +23,9 @@ pub struct Mapping {
     /// Further declarations on the file.
     pub declared: Declarations,
     /// Segment of the file that is read; `None` for the whole file.
-    pub stretch: Option<Stretch>,
+    pub stretch: Option<FileSegment>,
     /// Limits on the size of the file.
-    pub limits: Limits,
+    pub limits: FileLimits,
     /// Number of rows for which memory is reserved, so that columns need not grow; see
     /// [`crate::demand`].
     pub room: usize,
@@ -44,12 +44,12 @@ pub(crate) struct WrittenTime(pub Option<(usize, &'static str)>);
 
 impl Mapping {
     /// Returns the mapping of a file with canonical column names and signs.
-    pub fn canonical() -> Self {
+    pub fn with_canonical_names() -> Self {
         Self::default()
     }
 
     /// Returns the mapping of one file of a manifest.
-    pub fn of(manifest: &Manifest, trial: &ManifestTrial) -> Self {
+    pub fn from_manifest(manifest: &Manifest, trial: &ManifestTrial) -> Self {
         Self {
             columns: match trial.columns.is_empty() {
                 true => &manifest.columns,
@@ -62,8 +62,8 @@ impl Mapping {
             manoeuvre: trial.manoeuvre.clone(),
             depth_m: trial.depth_m,
             declared: Declarations::default(),
-            stretch: Stretch::of(trial),
-            limits: Limits::default(),
+            stretch: FileSegment::from_trial(trial),
+            limits: FileLimits::default(),
             room: 0,
             exclude: Vec::new(),
             unidentified: None,
@@ -72,7 +72,7 @@ impl Mapping {
     }
 
     /// Returns the mapping of the file of a sensor that belongs to this file.
-    pub(crate) fn of_sensor(&self, sensor: &SensorFile) -> Self {
+    pub(crate) fn for_sensor(&self, sensor: &SensorFile) -> Self {
         let columns = sensor.columns.iter();
         Self {
             columns: columns.map(|(name, column)| (name.clone(), column.clone())).collect(),

@@ -5,7 +5,7 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
 use super::*;
-use crate::testing::messages;
+use crate::testing::finding_messages;
 
 fn element(kind: u32, data: &[u8]) -> Vec<u8> {
     let mut bytes = kind.to_le_bytes().to_vec();
@@ -63,7 +63,7 @@ fn example() -> Vec<u8> {
 }
 
 fn mapping() -> Mapping {
-    let mut mapping = Mapping::canonical();
+    let mut mapping = Mapping::with_canonical_names();
     let column =
         |column: &str, unit: &str| sistership_model::manifest::ColumnMapping::new(column, unit);
     mapping.columns =
@@ -73,8 +73,8 @@ fn mapping() -> Mapping {
 
 fn run(bytes: Vec<u8>, mapping: &Mapping) -> (Option<Table>, String) {
     let mut findings = Findings::default();
-    let table = read(Box::new(Cursor::new(bytes)), mapping, &mut findings);
-    (table, messages(findings))
+    let table = read_mat(Box::new(Cursor::new(bytes)), mapping, &mut findings);
+    (table, finding_messages(findings))
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn vectors_matrices_and_fields_are_columns() {
     assert_eq!(of("log.psi"), &[0.1, 0.2, 0.3]);
     assert!((of("u_kn")[1] + 11.0 * 0.514_444).abs() < 1e-4);
     assert!(text.contains("columns not read: track(:,1)"), "{text}");
-    let measured = measure(Box::new(Cursor::new(example())), &mapping()).unwrap();
+    let measured = measure_mat(Box::new(Cursor::new(example())), &mapping()).unwrap();
     assert_eq!(measured, (3, 8));
 }
 

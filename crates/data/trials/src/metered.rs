@@ -6,11 +6,11 @@ use std::rc::Rc;
 
 /// Number of bytes returned since the last complete row, shared with the reader of rows.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Meter(Rc<Cell<usize>>);
+pub(crate) struct RowMeter(Rc<Cell<usize>>);
 
-impl Meter {
+impl RowMeter {
     /// Marks the end of a row.
-    pub(crate) fn reset(&self) {
+    pub(crate) fn end_row(&self) {
         self.0.set(0);
     }
 }
@@ -21,21 +21,21 @@ impl Meter {
 /// The limit bounds the memory of the CSV parser: a physical line, or a quoted cell whose quote
 /// never closes. Every line end (`\r\n`, `\r`, `\n`, also mixed) is returned as `\n`, and the last
 /// line has one, so that the lines of the parser are those that an editor shows.
-pub(crate) struct Metered<R> {
+pub(crate) struct MeteredReader<R> {
     inner: R,
-    meter: Meter,
+    meter: RowMeter,
     limit: usize,
     last: u8,
 }
 
-impl<R: Read> Metered<R> {
-    pub(crate) fn new(inner: R, limit: usize) -> (Self, Meter) {
-        let meter = Meter::default();
+impl<R: Read> MeteredReader<R> {
+    pub(crate) fn new(inner: R, limit: usize) -> (Self, RowMeter) {
+        let meter = RowMeter::default();
         (Self { inner, meter: meter.clone(), limit, last: b'\n' }, meter)
     }
 
     /// Replaces every line end in the buffer by `\n`; returns the number of bytes that remain.
-    fn line_ends(&mut self, bytes: &mut [u8]) -> usize {
+    fn normalise_line_ends(&mut self, bytes: &mut [u8]) -> usize {
         // `\r\n` may be split between two reads: the last byte is remembered.
         let last = bytes.last().copied().unwrap_or(self.last);
         let before = std::mem::replace(&mut self.last, last);
@@ -55,7 +55,7 @@ impl<R: Read> Metered<R> {
     }
 }
 
-impl<R: Read> Read for Metered<R> {
+impl<R: Read> Read for MeteredReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         loop {
             if self.meter.0.get() > self.limit {
@@ -73,7 +73,7 @@ impl<R: Read> Read for Metered<R> {
                 (buffer[0], self.last) = (b'\n', b'\n');
                 return Ok(1);
             }
-            let kept = self.line_ends(&mut buffer[..read]);
+            let kept = self.normalise_line_ends(&mut buffer[..read]);
             if kept > 0 || read == 0 {
                 return Ok(kept);
             }
@@ -88,14 +88,14 @@ mod tests {
 
     #[test]
     fn an_endless_row_is_given_up_and_finished_rows_are_not() {
-        let (mut endless, _) = Metered::new(io::repeat(b'1'), 1000);
+        let (mut endless, _) = MeteredReader::new(io::repeat(b'1'), 1000);
         let mut buffer = [0; 300];
         let reads = (0..10).take_while(|_| endless.read(&mut buffer).is_ok()).count();
         assert_eq!(reads, 4);
-        let (mut rows, meter) = Metered::new(io::repeat(b'1'), 1000);
+        let (mut rows, meter) = MeteredReader::new(io::repeat(b'1'), 1000);
         for _ in 0..100 {
             rows.read_exact(&mut buffer).unwrap();
-            meter.reset();
+            meter.end_row();
         }
     }
 
@@ -106,7 +106,7 @@ mod tests {
         {
             for size in 1..5 {
                 let mut out = Vec::new();
-                let (mut reader, _) = Metered::new(text.as_bytes(), 1000);
+                let (mut reader, _) = MeteredReader::new(text.as_bytes(), 1000);
                 let mut buffer = vec![0; size];
                 while let Ok(read @ 1..) = reader.read(&mut buffer) {
                     out.extend_from_slice(&buffer[..read]);

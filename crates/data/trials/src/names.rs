@@ -2,16 +2,20 @@
 
 use sistership_model::trial::Channel;
 
-use crate::table::{Raw, Target};
-use crate::units::Kind;
+use crate::table::{ColumnTarget, RawQuantity};
+use crate::units::UnitKind;
 
 /// Other common names of channels; a wind direction without a qualifier is where the wind comes
 /// from.
 const ALIASES: [(&str, Channel); 2] =
     [("wind_dir", Channel::WindFrom), ("apparent_wind_dir", Channel::ApparentWindFrom)];
 
-const RAW_ALIASES: [(&str, Raw); 4] =
-    [("lat", Raw::Latitude), ("lon", Raw::Longitude), ("cog", Raw::Course), ("sog", Raw::Speed)];
+const RAW_ALIASES: [(&str, RawQuantity); 4] = [
+    ("lat", RawQuantity::Latitude),
+    ("lon", RawQuantity::Longitude),
+    ("cog", RawQuantity::Course),
+    ("sog", RawQuantity::Speed),
+];
 
 /// Common headers of time, whose unit is detected from the cells.
 const TIMES: [&str; 9] = [
@@ -33,23 +37,25 @@ pub(crate) fn is_time(header: &str) -> bool {
 
 /// Returns the target and unit named by a header, such as `r_radps` or `wind_speed_kn`. The name of
 /// a channel followed by anything but a unit of its kind (`delta_ordered_rad`) is another quantity.
-pub(crate) fn canonical(header: &str) -> Option<(Target, &'static str)> {
-    let channels = Channel::all().map(|channel| (channel.name(), Target::Channel(channel)));
-    let aliases = ALIASES.iter().map(|&(name, channel)| (name, Target::Channel(channel)));
-    let raw = Raw::all().map(|raw| (raw.name(), Target::Raw(raw)));
-    let raw = raw.chain(RAW_ALIASES.iter().map(|&(name, raw)| (name, Target::Raw(raw))));
-    let mut known = std::iter::once(("t", Target::Time)).chain(channels).chain(aliases).chain(raw);
+pub(crate) fn canonical_target(header: &str) -> Option<(ColumnTarget, &'static str)> {
+    let channels =
+        Channel::all_channels().map(|channel| (channel.name(), ColumnTarget::Channel(channel)));
+    let aliases = ALIASES.iter().map(|&(name, channel)| (name, ColumnTarget::Channel(channel)));
+    let raw = RawQuantity::all_quantities().map(|raw| (raw.name(), ColumnTarget::Raw(raw)));
+    let raw = raw.chain(RAW_ALIASES.iter().map(|&(name, raw)| (name, ColumnTarget::Raw(raw))));
+    let mut known =
+        std::iter::once(("t", ColumnTarget::Time)).chain(channels).chain(aliases).chain(raw);
     known.find_map(|(name, target)| {
         let suffix = header.strip_prefix(name)?.strip_prefix('_')?;
-        Kind::of(target).suffix(suffix).map(|unit| (target, unit))
+        UnitKind::from_target(target).unit_of_suffix(suffix).map(|unit| (target, unit))
     })
 }
 
 /// Returns the target of a name without unit suffix, such as `psi`, if the unit given elsewhere is
 /// of its kind.
-pub(crate) fn with_unit(header: &str, unit: &str) -> Option<Target> {
-    let target = Target::by_name(header)?;
-    Kind::of(target).factor(unit).ok().map(|_| target)
+pub(crate) fn target_with_unit(header: &str, unit: &str) -> Option<ColumnTarget> {
+    let target = ColumnTarget::from_name(header)?;
+    UnitKind::from_target(target).unit_to_si(unit).ok().map(|_| target)
 }
 
 #[cfg(test)]
@@ -57,18 +63,18 @@ mod tests {
     use super::*;
 
     fn channel(header: &str) -> Option<(Channel, &'static str)> {
-        match canonical(header) {
-            Some((Target::Channel(channel), unit)) => Some((channel, unit)),
+        match canonical_target(header) {
+            Some((ColumnTarget::Channel(channel), unit)) => Some((channel, unit)),
             _ => None,
         }
     }
 
     #[test]
     fn canonical_columns_and_other_units_are_known() {
-        for known in Channel::all() {
-            assert_eq!(channel(known.column()).map(|(found, _)| found), Some(known));
+        for known in Channel::all_channels() {
+            assert_eq!(channel(known.column_name()).map(|(found, _)| found), Some(known));
         }
-        assert_eq!(canonical("t_s"), Some((Target::Time, "s")));
+        assert_eq!(canonical_target("t_s"), Some((ColumnTarget::Time, "s")));
         assert_eq!(channel("r_radps"), Some((Channel::R, "rad/s")));
         assert_eq!(channel("p_deg_s"), Some((Channel::P, "deg/s")));
         assert_eq!(channel("n_rpm"), Some((Channel::N, "rpm")));
@@ -80,7 +86,7 @@ mod tests {
     #[test]
     fn other_quantities_are_not_taken_for_a_channel() {
         for header in ["delta_ordered_rad", "u", "n_rad_s", "r_rpm", "psi_m", "", "x_"] {
-            assert_eq!(canonical(header), None, "{header}");
+            assert_eq!(canonical_target(header), None, "{header}");
         }
     }
 }

@@ -3,14 +3,14 @@
 use std::fmt;
 
 use sistership_model::coefficient::Axis;
-use sistership_model::effect::{TIME, input_channel};
+use sistership_model::effect::{TIME_INPUT, input_channel};
 use sistership_model::law::Law;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::{Channel, Trial};
 
 /// Channel that is missing.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Lack {
+pub struct MissingChannel {
     /// Name in manifests, or that of an input for which there is no channel.
     pub name: String,
     /// Reason why the law needs it.
@@ -19,14 +19,14 @@ pub struct Lack {
     pub remedy: String,
 }
 
-impl fmt::Display for Lack {
+impl fmt::Display for MissingChannel {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "`{}` is missing: {}; {}", self.name, self.why, self.remedy)
     }
 }
 
 /// Returns every channel that the law needs and the trial does not have.
-pub fn lacking(law: &Law, trial: &Trial) -> Vec<Lack> {
+pub fn missing_channels(law: &Law, trial: &Trial) -> Vec<MissingChannel> {
     let state = "it is part of the state that a simulation starts from";
     let mut needed: Vec<(Channel, &'static str)> =
         vec![(Channel::U, state), (Channel::V, state), (Channel::R, state)];
@@ -36,10 +36,10 @@ pub fn lacking(law: &Law, trial: &Trial) -> Vec<Lack> {
         needed.extend([(Channel::Phi, rolls), (Channel::P, rolls)]);
     }
     let mut lacks = Vec::new();
-    for (name, input) in law.inputs.iter().filter(|(name, _)| name.as_str() != TIME) {
+    for (name, input) in law.inputs.iter().filter(|(name, _)| name.as_str() != TIME_INPUT) {
         match input_channel(name) {
-            Some(channel) => needed.extend(given_by(trial, channel, input.default)),
-            None if input.default.is_none() => lacks.push(Lack {
+            Some(channel) => needed.extend(required_input(trial, channel, input.default)),
+            None if input.default.is_none() => lacks.push(MissingChannel {
                 name: name.clone(),
                 why: "it is an input of the law",
                 remedy: "no channel of a trial holds it; choose another law".into(),
@@ -51,14 +51,18 @@ pub fn lacking(law: &Law, trial: &Trial) -> Vec<Lack> {
     for (at, &(channel, why)) in needed.iter().enumerate() {
         let named_before = needed[..at].iter().any(|&(before, _)| before == channel);
         if !named_before && trial.channel(channel).is_none() {
-            lacks.push(Lack { name: channel.name().into(), why, remedy: remedy(trial, channel) });
+            lacks.push(MissingChannel {
+                name: channel.name().into(),
+                why,
+                remedy: channel_remedy(trial, channel),
+            });
         }
     }
     lacks
 }
 
 /// Returns an input that must be recorded: it has no default, and is no constant of the trial.
-fn given_by(
+fn required_input(
     trial: &Trial,
     channel: Channel,
     default: Option<f64>,
@@ -67,7 +71,7 @@ fn given_by(
     (default.is_none() && !constant).then_some((channel, "it is an input of the law"))
 }
 
-fn remedy(trial: &Trial, channel: Channel) -> String {
+fn channel_remedy(trial: &Trial, channel: Channel) -> String {
     let has = |channels: &[Channel]| channels.iter().all(|&one| trial.channel(one).is_some());
     let derived = match channel {
         Channel::U | Channel::V => has(&[Channel::X, Channel::Y, Channel::Psi]),
@@ -97,19 +101,20 @@ mod tests {
 
     #[test]
     fn everything_that_is_missing_is_named_at_once() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let law = zoo.law("abkowitz").unwrap();
         let mut trial = Trial { t_s: vec![0.0; 3], ..Trial::default() };
         for channel in [Channel::X, Channel::Y, Channel::Psi] {
             trial.channels.insert(channel, vec![0.0; 3]);
         }
-        let names: Vec<String> = lacking(law, &trial).into_iter().map(|lack| lack.name).collect();
+        let names: Vec<String> =
+            missing_channels(law, &trial).into_iter().map(|lack| lack.name).collect();
         assert_eq!(names[..4], ["u", "v", "r", "delta"]);
-        let text = lacking(law, &trial)[2].to_string();
+        let text = missing_channels(law, &trial)[2].to_string();
         assert!(text.contains("derive: [r]"), "{text}");
-        for channel in Channel::all() {
+        for channel in Channel::all_channels() {
             trial.channels.insert(channel, vec![0.0; 3]);
         }
-        assert_eq!(lacking(law, &trial), []);
+        assert_eq!(missing_channels(law, &trial), []);
     }
 }

@@ -7,14 +7,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead, BufReader, Read};
 
-use crate::calendar::{DAY, SECOND, iso};
+use crate::calendar::{DAY, SECOND, format_iso};
 use crate::findings::Findings;
 use crate::mapping::Mapping;
-use crate::nmea_sentence::{Line, Sentence, line};
-use crate::series::{Series, join};
-use crate::stamp::{Date, Order, stamp};
-use crate::table::{Column, Raw, Start, Table, Target};
-use crate::units::Kind;
+use crate::nmea_sentence::{NmeaLine, NmeaSentence, parse_line};
+use crate::series::{SensorSeries, join_series};
+use crate::stamp::{DateOrder, StampDate, parse_stamp};
+use crate::table::{ColumnTarget, RawQuantity, Table, TableColumn, TimeOrigin};
+use crate::units::UnitKind;
 
 /// Largest time between two marks, ns, for lines between them to have a time.
 const LONGEST: i64 = 5 * SECOND;
@@ -24,23 +24,27 @@ const MIDNIGHT: i64 = DAY / 2;
 const DAYS: i64 = 1000;
 
 /// Reads every sentence that is of use for a trial.
-pub(crate) fn read(input: impl Read, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
-    let mut log = Log::default();
-    if let Err(message) = lines(input, mapping, |row, text| log.line(row, text)) {
+pub(crate) fn read_nmea(
+    input: impl Read,
+    mapping: &Mapping,
+    findings: &mut Findings,
+) -> Option<Table> {
+    let mut log = NmeaLog::default();
+    if let Err(message) = for_each_line(input, mapping, |row, text| log.add_line(row, text)) {
         findings.error(None, None, message);
         return None;
     }
-    log.table(findings)
+    log.into_table(findings)
 }
 
 /// Returns the sentences at the start of a log with their contents, such as `GPGGA` with
 /// `latitude`.
-pub(crate) fn contents(start: &str) -> Vec<(String, Target)> {
+pub(crate) fn sentence_contents(start: &str) -> Vec<(String, ColumnTarget)> {
     let mut found = BTreeSet::new();
     for text in start.lines() {
-        if let Line::Sentence(sentence) = line(text) {
+        if let NmeaLine::Sentence(sentence) = parse_line(text) {
             let name = format!("{}{}", sentence.talker, sentence.kind);
-            let readings = sentence.readings().into_iter();
+            let readings = sentence.usable_readings().into_iter();
             found.extend(readings.map(|(target, _)| (target, name.clone())));
         }
     }
@@ -48,9 +52,9 @@ pub(crate) fn contents(start: &str) -> Vec<(String, Target)> {
 }
 
 /// Returns upper bounds of the number of rows and of columns.
-pub(crate) fn measure(input: impl Read, mapping: &Mapping) -> Option<(usize, usize)> {
+pub(crate) fn measure_nmea(input: impl Read, mapping: &Mapping) -> Option<(usize, usize)> {
     let mut rows = 0;
-    lines(input, mapping, |row, _| {
+    for_each_line(input, mapping, |row, _| {
         rows = row;
         Ok(())
     })
@@ -60,7 +64,7 @@ pub(crate) fn measure(input: impl Read, mapping: &Mapping) -> Option<(usize, usi
     Some((rows, 24))
 }
 
-fn lines(
+fn for_each_line(
     input: impl Read,
     mapping: &Mapping,
     mut each: impl FnMut(usize, &str) -> Result<(), String>,
@@ -87,26 +91,26 @@ fn lines(
 }
 
 /// Origin of a series: sentences of one kind from one talker, such as `HEHDT`.
-type Origin = (Target, [u8; 5]);
+type SeriesOrigin = (ColumnTarget, [u8; 5]);
 
 /// Largest number of lines that wait for the next mark.
 const PENDING: usize = 10_000;
 
 #[derive(Default)]
-struct Readings {
+struct SeriesReadings {
     t: Vec<f64>,
     values: Vec<f64>,
     rows: Vec<u32>,
 }
 
 /// Line whose time is known at the next mark.
-struct Pending {
+struct PendingLine {
     row: usize,
-    readings: Vec<(Origin, f64)>,
+    readings: Vec<(SeriesOrigin, f64)>,
 }
 
 #[derive(Default)]
-struct Log {
+struct NmeaLog {
     /// First mark, from which time is counted, and last mark: line and ns, continuous over
     /// midnights.
     first: Option<i64>,
@@ -116,27 +120,28 @@ struct Log {
     days: i64,
     /// True if the log has its own time before each sentence.
     own: bool,
-    pending: Vec<Pending>,
-    series: BTreeMap<Origin, Readings>,
+    pending: Vec<PendingLine>,
+    series: BTreeMap<SeriesOrigin, SeriesReadings>,
     damaged: (usize, usize),
     timeless: usize,
 }
 
-impl Log {
-    fn line(&mut self, row: usize, text: &str) -> Result<(), String> {
-        match line(text) {
-            Line::Sentence(sentence) => self.sentence(row, sentence),
-            Line::Damaged => {
+impl NmeaLog {
+    fn add_line(&mut self, row: usize, text: &str) -> Result<(), String> {
+        match parse_line(text) {
+            NmeaLine::Sentence(sentence) => self.add_sentence(row, sentence),
+            NmeaLine::Damaged => {
                 self.damaged =
                     (self.damaged.0 + 1, if self.damaged.0 == 0 { row } else { self.damaged.1 });
             }
-            Line::Other => {}
+            NmeaLine::Other => {}
         }
         Ok(())
     }
 
-    fn sentence(&mut self, row: usize, sentence: Sentence) {
-        let own = stamp(sentence.before.trim().trim_end_matches([',', ';', ':']), Order::Open);
+    fn add_sentence(&mut self, row: usize, sentence: NmeaSentence) {
+        let own =
+            parse_stamp(sentence.before.trim().trim_end_matches([',', ';', ':']), DateOrder::Open);
         // The first sentence decides whether the log has times of its own; later ones must agree
         // with it.
         let own = own.filter(|_| self.own || self.last.is_none());
@@ -144,36 +149,36 @@ impl Log {
         let of_day = match own {
             Some(stamp) => Some(stamp.of_day),
             None if self.own => None,
-            None => sentence.of_day(),
+            None => sentence.time_of_day(),
         };
         if let Some(of_day) = of_day {
             let midnight = own.and_then(|stamp| match stamp.date {
-                Date::Known(day) => Some(day * DAY),
+                StampDate::Known(day) => Some(day * DAY),
                 _ => None,
             });
-            self.mark(row, of_day, midnight);
+            self.add_mark(row, of_day, midnight);
         }
-        if let (None, false, Some(midnight)) = (self.midnight, self.own, sentence.midnight()) {
+        if let (None, false, Some(midnight)) = (self.midnight, self.own, sentence.date_midnight()) {
             self.midnight = Some(midnight - self.days * DAY);
         }
         let mut talker = [0; 5];
         talker[..2].copy_from_slice(sentence.talker.as_bytes());
         talker[2..].copy_from_slice(sentence.kind.as_bytes());
-        let readings = sentence.readings().into_iter();
-        let readings: Vec<(Origin, f64)> =
+        let readings = sentence.usable_readings().into_iter();
+        let readings: Vec<(SeriesOrigin, f64)> =
             readings.map(|(target, value)| ((target, talker), value)).collect();
         match self.last {
             _ if readings.is_empty() => {}
             // A line before the first mark has no time.
             None => self.timeless += 1,
-            Some((_, now)) if of_day.is_some() => self.keep(row, now, readings),
+            Some((_, now)) if of_day.is_some() => self.store_readings(row, now, readings),
             Some(_) if self.pending.len() == PENDING => self.timeless += 1,
-            Some(_) => self.pending.push(Pending { row, readings }),
+            Some(_) => self.pending.push(PendingLine { row, readings }),
         }
     }
 
     /// Adds a line with a known time; the lines since the previous mark obtain theirs.
-    fn mark(&mut self, row: usize, of_day: i64, midnight: Option<i64>) {
+    fn add_mark(&mut self, row: usize, of_day: i64, midnight: Option<i64>) {
         let mut now = of_day + self.days * DAY;
         if let Some((_, last)) = self.last {
             if last - now > MIDNIGHT && self.days < DAYS {
@@ -193,18 +198,18 @@ impl Log {
             if now - last > LONGEST {
                 self.timeless += pending.len();
             } else {
-                for Pending { row: at, readings } in pending {
+                for PendingLine { row: at, readings } in pending {
                     // Linear in line numbers: lines are assumed to arrive at a constant rate
                     // between two marks.
                     let share = (at - line) as f64 / (row - line) as f64;
-                    self.keep(at, last + (share * (now - last) as f64) as i64, readings);
+                    self.store_readings(at, last + (share * (now - last) as f64) as i64, readings);
                 }
             }
         }
         self.last = Some((row, now));
     }
 
-    fn keep(&mut self, row: usize, at: i64, readings: Vec<(Origin, f64)>) {
+    fn store_readings(&mut self, row: usize, at: i64, readings: Vec<(SeriesOrigin, f64)>) {
         let t = (at - self.first.unwrap_or(at)) as f64 / SECOND as f64;
         for (origin, value) in readings {
             let series = self.series.entry(origin).or_default();
@@ -218,8 +223,11 @@ impl Log {
     }
 
     /// Selects one series for each target: that of the origin with most readings.
-    fn chosen(&mut self, findings: &mut Findings) -> BTreeMap<Target, (String, Readings)> {
-        let mut chosen: BTreeMap<Target, (String, Readings)> = BTreeMap::new();
+    fn select_series(
+        &mut self,
+        findings: &mut Findings,
+    ) -> BTreeMap<ColumnTarget, (String, SeriesReadings)> {
+        let mut chosen: BTreeMap<ColumnTarget, (String, SeriesReadings)> = BTreeMap::new();
         for ((target, origin), readings) in std::mem::take(&mut self.series) {
             let origin = String::from_utf8_lossy(&origin).into_owned();
             let most = chosen.get(&target).map_or(0, |(_, other)| other.t.len());
@@ -233,46 +241,46 @@ impl Log {
         chosen
     }
 
-    fn table(mut self, findings: &mut Findings) -> Option<Table> {
+    fn into_table(mut self, findings: &mut Findings) -> Option<Table> {
         self.timeless += self.pending.len();
-        self.tell(findings);
-        let mut chosen = self.chosen(findings);
+        self.report_losses(findings);
+        let mut chosen = self.select_series(findings);
         // A single rudder is reported as the starboard one, and the yaw rate is that of the ship,
         // whichever talker reports it.
-        let base = base(&chosen)?;
+        let base = base_target(&chosen)?;
         let times = chosen.get(&base)?;
         let mut table = Table { rows: times.1.rows.clone(), ..Table::default() };
-        table.columns.push(column(Target::Time, "UTC"));
+        table.columns.push(si_column(ColumnTarget::Time, "UTC"));
         table.values.push(times.1.t.clone());
-        table.start = self.start();
+        table.start = self.start_time();
         if let Some(start) = &table.start {
             let message = format!("time is counted from {}", start.text);
             findings.warning(None, Some("UTC"), message);
         }
         let (name, readings) = chosen.remove(&base)?;
-        table.columns.push(column(base, &name));
+        table.columns.push(si_column(base, &name));
         table.values.push(readings.values);
-        let others = chosen.into_iter().map(|(target, (name, readings))| Series {
-            column: column(target, &name),
+        let others = chosen.into_iter().map(|(target, (name, readings))| SensorSeries {
+            column: si_column(target, &name),
             t: readings.t,
             values: readings.values,
         });
-        join(&mut table, others.collect(), findings);
+        join_series(&mut table, others.collect(), findings);
         Some(table)
     }
 
-    fn start(&self) -> Option<Start> {
+    fn start_time(&self) -> Option<TimeOrigin> {
         let first = self.first?;
         let at = self.midnight.unwrap_or(0) + first;
         let text = match self.midnight {
-            Some(_) if self.own => iso(at),
-            Some(_) => format!("{}Z", iso(at)),
-            None => iso(at).split_off("1970-01-01T".len()),
+            Some(_) if self.own => format_iso(at),
+            Some(_) => format!("{}Z", format_iso(at)),
+            None => format_iso(at).split_off("1970-01-01T".len()),
         };
-        Some(Start { text, at_s: at as f64 / SECOND as f64, dated: self.midnight.is_some() })
+        Some(TimeOrigin { text, at_s: at as f64 / SECOND as f64, dated: self.midnight.is_some() })
     }
 
-    fn tell(&self, findings: &mut Findings) {
+    fn report_losses(&self, findings: &mut Findings) {
         if self.series.is_empty() {
             let what = match self.last {
                 None => {
@@ -305,8 +313,8 @@ impl Log {
 }
 
 /// Returns the series whose times the table has: positions, or the series with most readings.
-fn base(chosen: &BTreeMap<Target, (String, Readings)>) -> Option<Target> {
-    let latitude = Target::Raw(Raw::Latitude);
+fn base_target(chosen: &BTreeMap<ColumnTarget, (String, SeriesReadings)>) -> Option<ColumnTarget> {
+    let latitude = ColumnTarget::Raw(RawQuantity::Latitude);
     if chosen.contains_key(&latitude) {
         return Some(latitude);
     }
@@ -314,12 +322,12 @@ fn base(chosen: &BTreeMap<Target, (String, Readings)>) -> Option<Target> {
     most.map(|(&target, _)| target)
 }
 
-fn column(target: Target, name: &str) -> Column {
-    Column {
+fn si_column(target: ColumnTarget, name: &str) -> TableColumn {
+    TableColumn {
         index: 0,
         header: name.to_owned(),
         target,
-        unit: Kind::of(target).canonical().into(),
+        unit: UnitKind::from_target(target).canonical_unit().into(),
         to_si: 1.0,
     }
 }

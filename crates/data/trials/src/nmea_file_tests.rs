@@ -2,7 +2,7 @@
 use sistership_model::trial::Channel;
 
 use super::*;
-use crate::testing::messages;
+use crate::testing::finding_messages;
 
 fn summed(body: &str) -> String {
     format!("${body}*{:02X}\r\n", body.bytes().fold(0, |sum, byte| sum ^ byte))
@@ -31,8 +31,8 @@ fn log() -> String {
 
 fn run(text: &str) -> (Option<Table>, String) {
     let mut findings = Findings::default();
-    let table = read(text.as_bytes(), &Mapping::canonical(), &mut findings);
-    (table, messages(findings))
+    let table = read_nmea(text.as_bytes(), &Mapping::with_canonical_names(), &mut findings);
+    (table, finding_messages(findings))
 }
 
 #[test]
@@ -44,11 +44,11 @@ fn sensors_meet_on_the_times_of_the_fixes_and_pauses_stay_gaps() {
         &table.values[at]
     };
     assert_eq!(table.start.as_ref().unwrap().text, "2024-05-01T23:59:50Z");
-    let t = of(Target::Time);
+    let t = of(ColumnTarget::Time);
     assert!(t.windows(2).all(|pair| pair[0] < pair[1]) && t.contains(&18.0), "{t:?}");
     assert!(!t.contains(&10.0) && t.contains(&15.0), "{t:?} {text}");
     assert!(text.contains("AGRSA") && text.contains("which are left out"), "{text}");
-    let psi = of(Target::Channel(Channel::Psi));
+    let psi = of(ColumnTarget::Channel(Channel::Psi));
     assert!(psi.iter().all(|psi| psi.is_finite()));
     // Before the first heading, and before the rudder is back.
     assert_eq!(table.resumed.len(), 2);
@@ -70,9 +70,9 @@ fn damaged_and_timeless_sentences_are_counted() {
     assert!(run(&damaged).1.contains("1 sentences left out: their checksum"));
     let (table, text) = run(&summed("HEHDT,90.0,T"));
     assert!(table.is_none() && text.contains("no sentence tells the time"), "{text}");
-    let mut mapping = Mapping::canonical();
+    let mut mapping = Mapping::with_canonical_names();
     mapping.limits.rows = 10;
     let mut findings = Findings::default();
-    assert!(read(log().as_bytes(), &mapping, &mut findings).is_none());
-    assert!(messages(findings).contains("more than 10 lines"));
+    assert!(read_nmea(log().as_bytes(), &mapping, &mut findings).is_none());
+    assert!(finding_messages(findings).contains("more than 10 lines"));
 }

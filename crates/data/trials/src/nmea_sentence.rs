@@ -4,15 +4,15 @@ use std::f64::consts::PI;
 
 use sistership_model::trial::Channel;
 
-use crate::calendar::{DAY, SECOND, day};
-use crate::table::{Raw, Target};
+use crate::calendar::{DAY, SECOND, day_of_date};
+use crate::table::{ColumnTarget, RawQuantity};
 
 const KNOT: f64 = 1852.0 / 3600.0;
 const DEG: f64 = PI / 180.0;
 
 /// Sentence with a valid checksum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Sentence<'a> {
+pub(crate) struct NmeaSentence<'a> {
     pub talker: &'a str,
     pub kind: &'a str,
     fields: &'a str,
@@ -22,8 +22,8 @@ pub(crate) struct Sentence<'a> {
 
 /// Content of a line of a log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Line<'a> {
-    Sentence(Sentence<'a>),
+pub(crate) enum NmeaLine<'a> {
+    Sentence(NmeaSentence<'a>),
     /// A sentence whose checksum is wrong or missing.
     Damaged,
     /// Any other line.
@@ -31,40 +31,40 @@ pub(crate) enum Line<'a> {
 }
 
 /// Parses a line of a log.
-pub(crate) fn line(text: &str) -> Line<'_> {
-    let Some((before, sentence)) = text.split_once('$') else { return Line::Other };
-    let Some((body, sum)) = sentence.rsplit_once('*') else { return Line::Damaged };
+pub(crate) fn parse_line(text: &str) -> NmeaLine<'_> {
+    let Some((before, sentence)) = text.split_once('$') else { return NmeaLine::Other };
+    let Some((body, sum)) = sentence.rsplit_once('*') else { return NmeaLine::Damaged };
     let wanted = sum.trim().get(..2).and_then(|sum| u8::from_str_radix(sum, 16).ok());
     // The checksum is the exclusive or of all bytes between `$` and `*`.
     if wanted != Some(body.bytes().fold(0, |sum, byte| sum ^ byte)) {
-        return Line::Damaged;
+        return NmeaLine::Damaged;
     }
     // Addresses that begin with P are proprietary sentences without a talker.
     let (address, fields) = body.split_once(',').unwrap_or((body, ""));
     match (address.get(..2), address.get(2..)) {
         (Some(talker), Some(kind)) if kind.len() == 3 && !talker.starts_with('P') => {
-            Line::Sentence(Sentence { talker, kind, fields, before })
+            NmeaLine::Sentence(NmeaSentence { talker, kind, fields, before })
         }
-        _ => Line::Other,
+        _ => NmeaLine::Other,
     }
 }
 
-impl Sentence<'_> {
+impl NmeaSentence<'_> {
     /// Returns a field by its number, from 1; empty if it is missing.
     fn field(&self, number: usize) -> &str {
         self.fields.split(',').nth(number - 1).unwrap_or_default().trim()
     }
 
-    fn number(&self, number: usize) -> Option<f64> {
+    fn parse_field(&self, number: usize) -> Option<f64> {
         self.field(number).parse().ok().filter(|value: &f64| value.is_finite())
     }
 
-    fn is(&self, number: usize, wanted: &str) -> bool {
+    fn field_is(&self, number: usize, wanted: &str) -> bool {
         self.field(number) == wanted
     }
 
     /// Returns the nanoseconds since midnight UTC, if the sentence contains the time.
-    pub(crate) fn of_day(&self) -> Option<i64> {
+    pub(crate) fn time_of_day(&self) -> Option<i64> {
         let text = match self.kind {
             "GGA" | "RMC" | "ZDA" => self.field(1),
             _ => return None,
@@ -80,57 +80,72 @@ impl Sentence<'_> {
     }
 
     /// Returns midnight of the day in nanoseconds since 1970, if the sentence contains the date.
-    pub(crate) fn midnight(&self) -> Option<i64> {
+    pub(crate) fn date_midnight(&self) -> Option<i64> {
         let whole = |text: &str| text.parse::<i64>().ok();
         let day = match self.kind {
             "RMC" => {
                 let date = self.field(9);
                 let part = |from: usize| date.get(from..from + 2).and_then(whole);
-                day(2000 + part(4)?, part(2)?, part(0)?)
+                day_of_date(2000 + part(4)?, part(2)?, part(0)?)
             }
-            "ZDA" => day(whole(self.field(4))?, whole(self.field(3))?, whole(self.field(2))?),
+            "ZDA" => {
+                day_of_date(whole(self.field(4))?, whole(self.field(3))?, whole(self.field(2))?)
+            }
             _ => None,
         };
         day.map(|day| day * DAY)
     }
 
     /// Returns an angle written as degrees and minutes with its hemisphere, rad.
-    fn angle(&self, number: usize, negative: &str) -> Option<f64> {
-        let value = self.number(number).filter(|value| *value >= 0.0)?;
+    fn parse_angle(&self, number: usize, negative: &str) -> Option<f64> {
+        let value = self.parse_field(number).filter(|value| *value >= 0.0)?;
         // `4807.038` is 48 degrees and 7.038 minutes.
         let degrees = (value / 100.0).floor();
         let angle = (degrees + (value - 100.0 * degrees) / 60.0) * DEG;
-        Some(if self.is(number + 1, negative) { -angle } else { angle })
+        Some(if self.field_is(number + 1, negative) { -angle } else { angle })
     }
 
     /// Returns the readings that are of use for a trial; none if the sentence is marked invalid.
-    pub(crate) fn readings(&self) -> Vec<(Target, f64)> {
-        let channel = |channel, value: Option<f64>| value.map(|v| (Target::Channel(channel), v));
-        let raw = |raw, value: Option<f64>| value.map(|v| (Target::Raw(raw), v));
-        let number = |number, scale: f64| self.number(number).map(|value| value * scale);
+    pub(crate) fn usable_readings(&self) -> Vec<(ColumnTarget, f64)> {
+        let channel =
+            |channel, value: Option<f64>| value.map(|v| (ColumnTarget::Channel(channel), v));
+        let raw = |raw, value: Option<f64>| value.map(|v| (ColumnTarget::Raw(raw), v));
+        let number = |number, scale: f64| self.parse_field(number).map(|value| value * scale);
         let position = |at: usize, holds: bool| {
-            let place = (self.angle(at, "S"), self.angle(at + 2, "W"));
+            let place = (self.parse_angle(at, "S"), self.parse_angle(at + 2, "W"));
             let (Some(latitude), Some(longitude), true) = (place.0, place.1, holds) else {
                 return [None, None];
             };
-            [raw(Raw::Latitude, Some(latitude)), raw(Raw::Longitude, Some(longitude))]
+            [
+                raw(RawQuantity::Latitude, Some(latitude)),
+                raw(RawQuantity::Longitude, Some(longitude)),
+            ]
         };
         // Field numbers of each kind of sentence; status fields must be `A` (valid).
-        let found: Vec<Option<(Target, f64)>> = match self.kind {
+        let found: Vec<Option<(ColumnTarget, f64)>> = match self.kind {
             "GGA" => position(2, !matches!(self.field(6), "" | "0")).into(),
-            "RMC" if self.is(2, "A") => {
-                let ground = [raw(Raw::Speed, number(7, KNOT)), raw(Raw::Course, number(8, DEG))];
+            "RMC" if self.field_is(2, "A") => {
+                let ground = [
+                    raw(RawQuantity::Speed, number(7, KNOT)),
+                    raw(RawQuantity::Course, number(8, DEG)),
+                ];
                 position(3, true).into_iter().chain(ground).collect()
             }
-            "VTG" => vec![raw(Raw::Course, number(1, DEG)), raw(Raw::Speed, number(5, KNOT))],
+            "VTG" => vec![
+                raw(RawQuantity::Course, number(1, DEG)),
+                raw(RawQuantity::Speed, number(5, KNOT)),
+            ],
             "HDT" => vec![channel(Channel::Psi, number(1, DEG))],
-            "ROT" if self.is(2, "A") => vec![channel(Channel::R, number(1, DEG / 60.0))],
+            "ROT" if self.field_is(2, "A") => vec![channel(Channel::R, number(1, DEG / 60.0))],
             "RSA" => {
-                let side = |at, side| raw(side, number(at, DEG).filter(|_| self.is(at + 1, "A")));
-                vec![side(1, Raw::DeltaS), side(3, Raw::DeltaP)]
+                let side =
+                    |at, side| raw(side, number(at, DEG).filter(|_| self.field_is(at + 1, "A")));
+                vec![side(1, RawQuantity::DeltaS), side(3, RawQuantity::DeltaP)]
             }
-            "RPM" if self.is(1, "S") && self.is(5, "A") => vec![self.shaft()],
-            "MWV" if self.is(2, "R") && self.is(5, "A") => {
+            "RPM" if self.field_is(1, "S") && self.field_is(5, "A") => {
+                vec![self.shaft_revolutions()]
+            }
+            "MWV" if self.field_is(2, "R") && self.field_is(5, "A") => {
                 let scale = match self.field(4) {
                     "N" => KNOT,
                     "K" => 1.0 / 3.6,
@@ -142,7 +157,7 @@ impl Sentence<'_> {
                 ]
             }
             "VBW" => {
-                let speed = |at, status| number(at, KNOT).filter(|_| self.is(status, "A"));
+                let speed = |at, status| number(at, KNOT).filter(|_| self.field_is(status, "A"));
                 vec![
                     channel(Channel::UWater, speed(1, 3)),
                     channel(Channel::VWater, speed(2, 3)),
@@ -161,12 +176,12 @@ impl Sentence<'_> {
 
     /// Returns the revolutions of a shaft. Shafts are numbered from 0, the only or the centre one;
     /// odd ones are to starboard.
-    fn shaft(&self) -> Option<(Target, f64)> {
-        let revolutions = self.number(3)? / 60.0;
-        match self.number(2)? as i64 {
-            0 => Some((Target::Channel(Channel::N), revolutions)),
-            1 => Some((Target::Raw(Raw::NS), revolutions)),
-            2 => Some((Target::Raw(Raw::NP), revolutions)),
+    fn shaft_revolutions(&self) -> Option<(ColumnTarget, f64)> {
+        let revolutions = self.parse_field(3)? / 60.0;
+        match self.parse_field(2)? as i64 {
+            0 => Some((ColumnTarget::Channel(Channel::N), revolutions)),
+            1 => Some((ColumnTarget::Raw(RawQuantity::NS), revolutions)),
+            2 => Some((ColumnTarget::Raw(RawQuantity::NP), revolutions)),
             _ => None,
         }
     }
@@ -181,9 +196,9 @@ mod tests {
     }
 
     fn readings(body: &str) -> Vec<(&'static str, f64)> {
-        match line(&summed(body)) {
-            Line::Sentence(sentence) => sentence
-                .readings()
+        match parse_line(&summed(body)) {
+            NmeaLine::Sentence(sentence) => sentence
+                .usable_readings()
                 .into_iter()
                 .map(|(target, value)| (target.name(), (value * 1e6).round() / 1e6))
                 .collect(),
@@ -221,13 +236,13 @@ mod tests {
 
     #[test]
     fn checksums_decide() {
-        assert_eq!(line("$HEHDT,90.0,T*00"), Line::Damaged);
-        assert_eq!(line("$HEHDT,90.0,T"), Line::Damaged);
-        assert_eq!(line("# a remark"), Line::Other);
-        assert_eq!(line(&summed("PSIMSNS,1")), Line::Other);
+        assert_eq!(parse_line("$HEHDT,90.0,T*00"), NmeaLine::Damaged);
+        assert_eq!(parse_line("$HEHDT,90.0,T"), NmeaLine::Damaged);
+        assert_eq!(parse_line("# a remark"), NmeaLine::Other);
+        assert_eq!(parse_line(&summed("PSIMSNS,1")), NmeaLine::Other);
         for text in ["$*", "$,*2C", "$\u{e9}\u{e9}\u{e9},*00", "$GPGGA*56", "$*00"] {
-            if let Line::Sentence(sentence) = line(text) {
-                let _ = (sentence.readings(), sentence.of_day());
+            if let NmeaLine::Sentence(sentence) = parse_line(text) {
+                let _ = (sentence.usable_readings(), sentence.time_of_day());
             }
         }
     }
@@ -235,9 +250,9 @@ mod tests {
     #[test]
     fn time_and_date_are_read() {
         let rmc = summed("GPRMC,120003.250,A,5130.00,N,00930.00,W,10.0,90.0,010524,,,A");
-        let Line::Sentence(sentence) = line(&rmc) else { unreachable!("it is summed") };
-        assert_eq!(sentence.of_day(), Some(12 * 3600 * SECOND + 3_250_000_000));
-        assert_eq!(sentence.midnight(), Some(19_844 * DAY));
-        assert_eq!(sentence.readings().len(), 4);
+        let NmeaLine::Sentence(sentence) = parse_line(&rmc) else { unreachable!("it is summed") };
+        assert_eq!(sentence.time_of_day(), Some(12 * 3600 * SECOND + 3_250_000_000));
+        assert_eq!(sentence.date_midnight(), Some(19_844 * DAY));
+        assert_eq!(sentence.usable_readings().len(), 4);
     }
 }

@@ -7,7 +7,7 @@ const SHOWN: usize = 40;
 
 /// Reason why a cell contains no number.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Fault {
+pub(crate) enum CellFault {
     Absent,
     Short,
     Empty,
@@ -18,7 +18,7 @@ pub(crate) enum Fault {
     OtherTime(String),
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for CellFault {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Absent => out.write_str("the row ends before this column"),
@@ -27,27 +27,27 @@ impl fmt::Display for Fault {
             Self::NotANumber => out.write_str("the cell is not a finite number"),
             Self::NoTime(text) => write!(out, "`{text}` is no date or time that can be read"),
             Self::OtherTime(text) => write!(out, "`{text}` is not written as the times before it"),
-            Self::Text(text) => write!(out, "`{text}` is not a number{}", remedy(text)),
+            Self::Text(text) => write!(out, "`{text}` is not a number{}", number_remedy(text)),
         }
     }
 }
 
 /// Parses the number in a cell: decimals with a point, optionally an exponent, such as `-1.5` or
 /// `1e-3`.
-pub(crate) fn number(cell: &[u8]) -> Result<f64, Fault> {
+pub(crate) fn parse_number(cell: &[u8]) -> Result<f64, CellFault> {
     let text = cell.trim_ascii();
     if text.is_empty() {
-        return Err(Fault::Empty);
+        return Err(CellFault::Empty);
     }
     // Fast path; the general parser accepts the same numbers.
-    if let Some(value) = plain(text) {
+    if let Some(value) = parse_plain(text) {
         return Ok(value);
     }
     let parsed = std::str::from_utf8(text).ok().and_then(|text| text.parse::<f64>().ok());
     match parsed {
         Some(value) if value.is_finite() => Ok(value),
-        Some(_) => Err(Fault::NotANumber),
-        None => Err(Fault::Text(shown(text))),
+        Some(_) => Err(CellFault::NotANumber),
+        None => Err(CellFault::Text(shown_text(text))),
     }
 }
 
@@ -60,7 +60,7 @@ const TENS: [f64; EXACT + 1] =
 /// quotient is rounded once and equals the result of the standard library (Clinger 1990, doi
 /// 10.1145/93542.93557). Most cells of a log are such numbers.
 #[inline]
-fn plain(text: &[u8]) -> Option<f64> {
+fn parse_plain(text: &[u8]) -> Option<f64> {
     let digits = text.strip_prefix(b"-").unwrap_or(text);
     // A decimal point takes one byte more.
     if digits.len() > EXACT + 1 {
@@ -85,13 +85,13 @@ fn plain(text: &[u8]) -> Option<f64> {
 }
 
 /// Returns the text of a cell for a message, shortened if it is long.
-pub(crate) fn shown(cell: &[u8]) -> String {
+pub(crate) fn shown_text(cell: &[u8]) -> String {
     let text = cell.trim_ascii();
     String::from_utf8_lossy(&text[..text.len().min(SHOWN)]).into_owned()
 }
 
 /// Returns advice if the text shows what was meant.
-fn remedy(text: &str) -> &'static str {
+fn number_remedy(text: &str) -> &'static str {
     let thousands =
         |c: char| matches!(c, ' ' | '\u{a0}' | '\u{2009}' | '\u{202f}' | '\'' | '\u{2019}' | '_');
     let digits = text.chars().any(|c| c.is_ascii_digit());
@@ -131,10 +131,10 @@ mod tests {
             ("5.", 5.0),
             ("1E5", 1e5),
         ] {
-            assert_eq!(number(text.as_bytes()).unwrap(), value);
+            assert_eq!(parse_number(text.as_bytes()).unwrap(), value);
         }
         for text in ["nan", "NaN", "inf", "-Infinity", "1e400"] {
-            assert_eq!(number(text.as_bytes()), Err(Fault::NotANumber), "{text}");
+            assert_eq!(parse_number(text.as_bytes()), Err(CellFault::NotANumber), "{text}");
         }
     }
 
@@ -149,14 +149,14 @@ mod tests {
             let text = format!("{}{}.{}", ["", "-"][at % 2], &text[..at], &text[at..]);
             let wanted: Option<f64> = text.parse().ok();
             assert_eq!(
-                plain(text.as_bytes()).map(f64::to_bits),
+                parse_plain(text.as_bytes()).map(f64::to_bits),
                 wanted.map(f64::to_bits),
                 "{text}"
             );
         }
-        assert_eq!(plain(b"-0.0").map(f64::to_bits), Some((-0.0_f64).to_bits()));
+        assert_eq!(parse_plain(b"-0.0").map(f64::to_bits), Some((-0.0_f64).to_bits()));
         for text in [&b"."[..], b"-", b"", b"1.2.3", b"1e3", b"+1", b"1234567890123456", b"1_0"] {
-            assert_eq!(plain(text), None);
+            assert_eq!(parse_plain(text), None);
         }
     }
 
@@ -176,14 +176,14 @@ mod tests {
             ("1\0", "NUL"),
         ];
         for (text, wanted) in told {
-            let fault = number(text.as_bytes()).unwrap_err().to_string();
+            let fault = parse_number(text.as_bytes()).unwrap_err().to_string();
             assert!(
                 fault.contains("is not a number") && fault.contains(wanted),
                 "{text:?}: {fault}"
             );
         }
         for text in ["1d", "1.0f", "#N/A", "NULL", "--1", "1e", "1/2", "%"] {
-            assert!(number(text.as_bytes()).is_err(), "{text}");
+            assert!(parse_number(text.as_bytes()).is_err(), "{text}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Dates such as 05/01/2024, whose order of day and month is only known from the whole column.
 
-use crate::calendar::day;
+use crate::calendar::day_of_date;
 
 /// Date of two numbers, one of which is the month, and the year.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub(crate) struct OpenDates {
 
 impl OpenDates {
     /// Returns a code for the date, in days, from which the date can be recovered.
-    pub(crate) fn slot(&mut self, row: usize, date: OpenDate) -> i64 {
+    pub(crate) fn date_code(&mut self, row: usize, date: OpenDate) -> i64 {
         if date.first > 12 {
             self.first_is_day.get_or_insert(row);
         }
@@ -36,15 +36,15 @@ impl OpenDates {
     }
 
     /// Converts seconds that count codes to seconds that count days; returns the day of the first.
-    pub(crate) fn days(&self, first_slot: i64, values: &mut [f64]) -> Result<i64, String> {
+    pub(crate) fn convert_days(&self, first_slot: i64, values: &mut [f64]) -> Result<i64, String> {
         let day_first = self.day_first()?;
-        let first = known(first_slot / APART, day_first)?;
+        let first = day_of_code(first_slot / APART, day_first)?;
         let width = APART as f64 * DAY_S;
         for value in values {
             // The offset by one day keeps times that a zone has moved to the day before in their
             // own code.
             let slot = ((*value + DAY_S) / width).floor();
-            let day = known(first_slot / APART + slot as i64, day_first)?;
+            let day = day_of_code(first_slot / APART + slot as i64, day_first)?;
             *value += (day - first) as f64 * DAY_S - slot * width;
         }
         Ok(first)
@@ -67,9 +67,9 @@ impl OpenDates {
     }
 }
 
-fn known(slot: i64, day_first: bool) -> Result<i64, String> {
+fn day_of_code(slot: i64, day_first: bool) -> Result<i64, String> {
     let (year, first, second) = (slot / 10_000, slot / 100 % 100, slot % 100);
     let (month, of_month) = if day_first { (second, first) } else { (first, second) };
-    day(year, month, of_month)
+    day_of_date(year, month, of_month)
         .ok_or_else(|| format!("there is no {year:04}-{month:02}-{of_month:02}; correct the date"))
 }

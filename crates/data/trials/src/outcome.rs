@@ -63,7 +63,7 @@ pub struct CheckOutcome {
 
 impl CheckOutcome {
     /// Returns true if the trial is accepted.
-    pub fn accepted(&self) -> bool {
+    pub fn is_accepted(&self) -> bool {
         self.errors.is_empty()
     }
 }
@@ -71,18 +71,18 @@ impl CheckOutcome {
 /// Serialises findings with the keys `row` and `column` even if they are empty, as scripts expect
 /// them.
 fn with_every_key<S: Serializer>(findings: &[Finding], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(findings.iter().map(Entry::of))
+    serializer.collect_seq(findings.iter().map(FindingEntry::from_finding))
 }
 
 #[derive(Serialize)]
-struct Entry<'a> {
+struct FindingEntry<'a> {
     row: Option<usize>,
     column: Option<&'a str>,
     message: &'a str,
 }
 
-impl<'a> Entry<'a> {
-    fn of(finding: &'a Finding) -> Self {
+impl<'a> FindingEntry<'a> {
+    fn from_finding(finding: &'a Finding) -> Self {
         Self { row: finding.row, column: finding.column.as_deref(), message: &finding.message }
     }
 }
@@ -115,6 +115,6 @@ mod tests {
             text,
             r#"{"file":"a.csv","rows":2,"duration_s":0.5,"errors":[{"row":null,"column":null,"message":"empty"}],"warnings":[{"row":3,"column":"u","message":"too fast"}]}"#
         );
-        assert!(!outcome.accepted());
+        assert!(!outcome.is_accepted());
     }
 }

@@ -10,7 +10,7 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::parser::parse_message_type;
 
 use super::*;
-use crate::{Limits, Mapping, Source, check};
+use crate::{FileLimits, Mapping, TrialFile, check_source};
 
 /// Time and a constant speed.
 fn file(rows: usize, properties: WriterProperties) -> Bytes {
@@ -39,9 +39,9 @@ fn one_page(compression: Compression, version: WriterVersion) -> WriterPropertie
     plain.set_data_page_size_limit(1 << 30).set_data_page_row_count_limit(1 << 30).build()
 }
 
-fn second(bytes: &Bytes, most: usize) -> Result<Held, String> {
+fn second(bytes: &Bytes, most: usize) -> Result<PageMemory, String> {
     let reader = SerializedFileReader::new(bytes.clone()).unwrap();
-    held(bytes, reader.metadata().row_group(0).column(1), most)
+    measure_pages(bytes, reader.metadata().row_group(0).column(1), most)
 }
 
 #[test]
@@ -54,12 +54,12 @@ fn pages_are_measured_without_being_read() {
         ] {
             let bytes = file(10_000, one_page(compression, version));
             let found = second(&bytes, 1 << 20).unwrap();
-            assert!((80_000..170_000).contains(&found.bytes()), "{found:?}");
+            assert!((80_000..170_000).contains(&found.total_bytes()), "{found:?}");
             assert!(second(&bytes, 79_999).unwrap_err().contains("write smaller pages"));
         }
     }
     let small = file(100_000, WriterProperties::builder().set_dictionary_enabled(false).build());
-    assert!(second(&small, 1 << 20).unwrap().bytes() < 400_000);
+    assert!(second(&small, 1 << 20).unwrap().total_bytes() < 400_000);
 }
 
 #[test]
@@ -84,8 +84,11 @@ fn a_header_that_lies_is_found_out_before_its_page_is_unpacked() {
 #[test]
 fn files_of_large_pages_are_refused_by_column() {
     let bytes = file(300_000, one_page(Compression::SNAPPY, WriterVersion::PARQUET_1_0));
-    let limits = Limits { page_bytes: 1 << 20, ..Limits::default() };
-    let outcome = check(Source::parquet("a", bytes), &Mapping { limits, ..Mapping::canonical() });
+    let limits = FileLimits { page_bytes: 1 << 20, ..FileLimits::default() };
+    let outcome = check_source(
+        TrialFile::from_parquet("a", bytes),
+        &Mapping { limits, ..Mapping::with_canonical_names() },
+    );
     assert_eq!(outcome.errors.len(), 2, "{outcome:?}");
     assert!(
         outcome.errors[1].column.as_deref() == Some("u_m_s")
@@ -103,8 +106,10 @@ fn lists_that_are_not_there_take_no_time() {
     ];
     for bytes in lists {
         let begun = std::time::Instant::now();
-        let outcome =
-            check(Source::parquet("a.parquet", Bytes::from_static(bytes)), &Mapping::canonical());
+        let outcome = check_source(
+            TrialFile::from_parquet("a.parquet", Bytes::from_static(bytes)),
+            &Mapping::with_canonical_names(),
+        );
         assert!(
             !outcome.errors.is_empty() && begun.elapsed() < std::time::Duration::from_millis(200),
             "{:?}",

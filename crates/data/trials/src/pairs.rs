@@ -4,29 +4,31 @@ use sistership_model::trial::Channel;
 
 use crate::findings::Findings;
 use crate::recording::Recording;
-use crate::table::Raw;
+use crate::table::RawQuantity;
 
-const PAIRS: [(Channel, Raw, Raw); 2] =
-    [(Channel::Delta, Raw::DeltaS, Raw::DeltaP), (Channel::N, Raw::NS, Raw::NP)];
+const PAIRS: [(Channel, RawQuantity, RawQuantity); 2] = [
+    (Channel::Delta, RawQuantity::DeltaS, RawQuantity::DeltaP),
+    (Channel::N, RawQuantity::NS, RawQuantity::NP),
+];
 
 /// Returns the mean of each pair, in the signs of the file; reports the largest difference of the
 /// sides.
-pub(crate) fn means(
+pub(crate) fn pair_means(
     recording: &mut Recording,
     findings: &mut Findings,
 ) -> Vec<(Channel, Vec<f64>)> {
-    PAIRS.iter().filter_map(|&pair| mean(pair, recording, findings)).collect()
+    PAIRS.iter().filter_map(|&pair| pair_mean(pair, recording, findings)).collect()
 }
 
-fn mean(
-    (channel, starboard, port): (Channel, Raw, Raw),
+fn pair_mean(
+    (channel, starboard, port): (Channel, RawQuantity, RawQuantity),
     recording: &mut Recording,
     findings: &mut Findings,
 ) -> Option<(Channel, Vec<f64>)> {
     let sides = (recording.raw.remove(&starboard), recording.raw.remove(&port));
     let (message, values) = match sides {
         (Some(starboard), Some(port)) => {
-            let apart = largest(&starboard, &port);
+            let apart = largest_difference(&starboard, &port);
             let mean = starboard.iter().zip(&port).map(|(one, other)| 0.5 * (one + other));
             let unit = recording.canonical_unit(channel);
             let message = format!(
@@ -47,33 +49,33 @@ fn mean(
     Some((channel, values))
 }
 
-fn largest(one: &[f64], other: &[f64]) -> f64 {
+fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).fold(0.0, |most, (one, other)| (one - other).abs().max(most))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{messages, recording};
+    use crate::testing::{finding_messages, test_recording};
 
     #[test]
     fn a_pair_gives_its_mean_and_one_side_itself() {
-        let mut ship = recording(&[(Channel::U, vec![1.0; 3])]);
-        ship.raw.insert(Raw::DeltaS, vec![0.1, 0.2, 0.3]);
-        ship.raw.insert(Raw::DeltaP, vec![0.3, 0.2, 0.1]);
-        ship.raw.insert(Raw::NP, vec![2.0; 3]);
+        let mut ship = test_recording(&[(Channel::U, vec![1.0; 3])]);
+        ship.raw.insert(RawQuantity::DeltaS, vec![0.1, 0.2, 0.3]);
+        ship.raw.insert(RawQuantity::DeltaP, vec![0.3, 0.2, 0.1]);
+        ship.raw.insert(RawQuantity::NP, vec![2.0; 3]);
         let mut findings = Findings::default();
-        let means = means(&mut ship, &mut findings);
+        let means = pair_means(&mut ship, &mut findings);
         assert_eq!(means[1], (Channel::N, vec![2.0; 3]));
         assert!(means[0].1.iter().all(|value| (value - 0.2).abs() < 1e-12));
-        let text = messages(findings);
+        let text = finding_messages(findings);
         assert!(text.contains("up to 0.2000 rad apart") && text.contains("port side alone"));
     }
 
     #[test]
     fn a_channel_of_its_own_goes_before_the_pair() {
-        let mut ship = recording(&[(Channel::Delta, vec![0.1; 3])]);
-        ship.raw.insert(Raw::DeltaS, vec![0.2; 3]);
-        assert!(means(&mut ship, &mut Findings::default()).is_empty());
+        let mut ship = test_recording(&[(Channel::Delta, vec![0.1; 3])]);
+        ship.raw.insert(RawQuantity::DeltaS, vec![0.2; 3]);
+        assert!(pair_means(&mut ship, &mut Findings::default()).is_empty());
     }
 }

@@ -18,7 +18,7 @@ pub(crate) fn group_rows(group: &dyn RowGroupReader) -> ParquetResult<usize> {
 
 /// Column of a row group as f64, decoded in batches; a null becomes NaN, and so does an integer
 /// beyond 2^53, which an f64 does not hold exactly.
-pub(crate) struct Cells {
+pub(crate) struct ColumnCells {
     reader: ColumnReader,
     full: i16,
     unsigned: bool,
@@ -28,7 +28,7 @@ pub(crate) struct Cells {
     pub values: Vec<f64>,
 }
 
-impl Cells {
+impl ColumnCells {
     pub(crate) fn new(group: &dyn RowGroupReader, index: usize) -> ParquetResult<Self> {
         let descriptor = group.metadata().column(index).column_descr();
         // The definition level of a value; 0 for columns without nulls.
@@ -42,27 +42,31 @@ impl Cells {
     /// # Errors
     /// Returns an error if the column is damaged, of another type, or shorter than the group
     /// declares.
-    pub(crate) fn next(&mut self, count: usize) -> ParquetResult<()> {
+    pub(crate) fn read_next(&mut self, count: usize) -> ParquetResult<()> {
         let (full, values) = (self.full, &mut self.values);
         values.clear();
         let records = match &mut self.reader {
             ColumnReader::DoubleColumnReader(reader) => {
-                batch(reader, count, full, |value| value, values)
+                read_batch(reader, count, full, |value| value, values)
             }
             ColumnReader::FloatColumnReader(reader) => {
-                batch(reader, count, full, f64::from, values)
+                read_batch(reader, count, full, f64::from, values)
             }
             ColumnReader::Int32ColumnReader(reader) if self.unsigned => {
-                batch(reader, count, full, |value| f64::from(value.cast_unsigned()), values)
+                read_batch(reader, count, full, |value| f64::from(value.cast_unsigned()), values)
             }
             ColumnReader::Int32ColumnReader(reader) => {
-                batch(reader, count, full, f64::from, values)
+                read_batch(reader, count, full, f64::from, values)
             }
-            ColumnReader::Int64ColumnReader(reader) if self.unsigned => {
-                batch(reader, count, full, |value| exact(value.cast_unsigned().into()), values)
-            }
+            ColumnReader::Int64ColumnReader(reader) if self.unsigned => read_batch(
+                reader,
+                count,
+                full,
+                |value| exact_or_nan(value.cast_unsigned().into()),
+                values,
+            ),
             ColumnReader::Int64ColumnReader(reader) => {
-                batch(reader, count, full, |value| exact(value.into()), values)
+                read_batch(reader, count, full, |value| exact_or_nan(value.into()), values)
             }
             _ => Err(ParquetError::General("a column is of an unexpected type".into())),
         }?;
@@ -78,7 +82,7 @@ impl Cells {
     }
 }
 
-fn batch<T: DataType>(
+fn read_batch<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     count: usize,
     full: i16,
@@ -107,6 +111,6 @@ fn is_unsigned(column: &ColumnDescriptor) -> bool {
 }
 
 /// Returns the integer as f64, or NaN if an f64 cannot distinguish it from its neighbours.
-fn exact(value: i128) -> f64 {
+fn exact_or_nan(value: i128) -> f64 {
     if value.unsigned_abs() <= 1 << 53 { value as f64 } else { f64::NAN }
 }

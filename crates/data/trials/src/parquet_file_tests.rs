@@ -8,8 +8,8 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::parser::parse_message_type;
 
 use super::*;
-use crate::parquet_footer::open;
-use crate::testing::messages;
+use crate::parquet_footer::open_file;
+use crate::testing::finding_messages;
 
 /// Three rows as another program might write them: integers, floats with a null, and text.
 fn foreign() -> Bytes {
@@ -41,13 +41,13 @@ fn foreign() -> Bytes {
 #[test]
 fn integers_floats_and_nulls_are_read() {
     let mut findings = Findings::default();
-    let table = read(foreign(), &Mapping::canonical(), &mut findings).unwrap();
+    let table = read_parquet(foreign(), &Mapping::with_canonical_names(), &mut findings).unwrap();
     assert_eq!(
         (table.values[0].clone(), table.values[1].clone()),
         (vec![0.0, 0.2], vec![1.5, 2.5])
     );
     assert_eq!(table.rows, [2, 4]);
-    let text = messages(findings);
+    let text = finding_messages(findings);
     assert!(
         text.contains("error Some(3) Some(\"u_m_s\")") && text.contains("columns not read: note"),
         "{text}"
@@ -56,17 +56,17 @@ fn integers_floats_and_nulls_are_read() {
 
 #[test]
 fn text_is_no_channel_and_sizes_are_bounded() {
-    let mut mapping = Mapping::canonical();
+    let mut mapping = Mapping::with_canonical_names();
     let note = sistership_model::manifest::ColumnMapping::new("note", "m/s");
     mapping.columns.push(("v".into(), note));
     let mut findings = Findings::default();
-    assert!(read(foreign(), &mapping, &mut findings).is_none());
-    assert!(messages(findings).contains("write the column as DOUBLE"));
+    assert!(read_parquet(foreign(), &mapping, &mut findings).is_none());
+    assert!(finding_messages(findings).contains("write the column as DOUBLE"));
     for (limits, said) in [
-        (Limits { rows: 2, ..Limits::default() }, "3 rows are more than the 2"),
-        (Limits { columns: 2, ..Limits::default() }, "3 columns are more than the 2"),
+        (FileLimits { rows: 2, ..FileLimits::default() }, "3 rows are more than the 2"),
+        (FileLimits { columns: 2, ..FileLimits::default() }, "3 columns are more than the 2"),
     ] {
-        assert!(open(foreign(), limits).err().unwrap().to_string().contains(said));
+        assert!(open_file(foreign(), limits).err().unwrap().to_string().contains(said));
     }
 }
 
@@ -100,7 +100,7 @@ fn integers(kind: &str, small: &[i32], large: &[i64]) -> Bytes {
 fn unsigned_integers_are_not_taken_for_negative_ones() {
     let mut findings = Findings::default();
     let file = integers("int32 x_m (UINT_32)", &[1, -1, 3], &[]);
-    let table = read(file, &Mapping::canonical(), &mut findings).unwrap();
+    let table = read_parquet(file, &Mapping::with_canonical_names(), &mut findings).unwrap();
     assert_eq!(table.values[1], [1.0, 4_294_967_295.0, 3.0]);
 }
 
@@ -109,8 +109,8 @@ fn integers_that_no_f64_holds_are_told() {
     for kind in ["int64 x_m", "int64 x_m (UINT_64)"] {
         let mut findings = Findings::default();
         let file = integers(kind, &[], &[1, 1 << 53, (1 << 53) + 1]);
-        read(file, &Mapping::canonical(), &mut findings).unwrap();
-        assert!(messages(findings).contains("error Some(4) Some(\"x_m\")"));
+        read_parquet(file, &Mapping::with_canonical_names(), &mut findings).unwrap();
+        assert!(finding_messages(findings).contains("error Some(4) Some(\"x_m\")"));
     }
 }
 
@@ -129,9 +129,14 @@ fn times_and_decimals_are_no_plain_integers() {
         };
         let mut findings = Findings::default();
         assert!(
-            read(integers(kind, &small, &large), &Mapping::canonical(), &mut findings).is_none(),
+            read_parquet(
+                integers(kind, &small, &large),
+                &Mapping::with_canonical_names(),
+                &mut findings
+            )
+            .is_none(),
             "{kind}"
         );
-        assert!(messages(findings).contains("write the column as DOUBLE"), "{kind}");
+        assert!(finding_messages(findings).contains("write the column as DOUBLE"), "{kind}");
     }
 }

@@ -8,11 +8,11 @@ use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 use parquet::file::reader::{ChunkReader, FileReader, SerializedFileReader};
 use parquet::schema::types::SchemaDescriptor;
 
-use crate::limits::Limits;
+use crate::limits::FileLimits;
 
 /// Runs `work` and converts a panic to an error: the library asserts some properties of a file,
 /// which a forged file violates.
-pub(crate) fn guarded<T>(work: impl FnOnce() -> ParquetResult<T>) -> ParquetResult<T> {
+pub(crate) fn catch_panics<T>(work: impl FnOnce() -> ParquetResult<T>) -> ParquetResult<T> {
     let contradiction = |_| Err(ParquetError::General("it contradicts itself".into()));
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(contradiction)
 }
@@ -34,33 +34,33 @@ pub(crate) enum FileRefusal {
 }
 
 impl FileRefusal {
-    pub(crate) fn unreadable(error: impl ToString) -> Self {
+    pub(crate) fn from_error(error: impl ToString) -> Self {
         Self::Unreadable(error.to_string())
     }
 }
 
 /// Opens the file and checks it against the limits before any sample is decoded.
-pub(crate) fn open<R: ChunkReader + 'static>(
+pub(crate) fn open_file<R: ChunkReader + 'static>(
     input: R,
-    limits: Limits,
+    limits: FileLimits,
 ) -> Result<SerializedFileReader<R>, FileRefusal> {
-    metadata(&input, limits)?;
-    guarded(|| SerializedFileReader::new(input)).map_err(FileRefusal::unreadable)
+    checked_metadata(&input, limits)?;
+    catch_panics(|| SerializedFileReader::new(input)).map_err(FileRefusal::from_error)
 }
 
 /// Returns the metadata of the file, if it is within the limits, and the number of rows.
-pub(crate) fn metadata<R: ChunkReader + 'static>(
+pub(crate) fn checked_metadata<R: ChunkReader + 'static>(
     input: &R,
-    limits: Limits,
+    limits: FileLimits,
 ) -> Result<(ParquetMetaData, usize), FileRefusal> {
-    let footer = footer_bytes(input).map_err(FileRefusal::unreadable)?;
+    let footer = footer_bytes(input).map_err(FileRefusal::from_error)?;
     if footer > limits.footer_bytes as u64 {
         return Err(FileRefusal::Footer { found: footer, most: limits.footer_bytes });
     }
     // The footer is checked before the library parses it, which trusts its lengths.
-    pages::footer(input, footer).map_err(FileRefusal::unreadable)?;
-    let meta = guarded(|| ParquetMetaDataReader::new().parse_and_finish(input))
-        .map_err(FileRefusal::unreadable)?;
+    pages::check_footer(input, footer).map_err(FileRefusal::from_error)?;
+    let meta = catch_panics(|| ParquetMetaDataReader::new().parse_and_finish(input))
+        .map_err(FileRefusal::from_error)?;
     let columns = meta.file_metadata().schema_descr().num_columns();
     let mut chunks = meta.row_groups().iter().flat_map(|group| group.columns());
     if chunks.any(|chunk| {
@@ -68,7 +68,7 @@ pub(crate) fn metadata<R: ChunkReader + 'static>(
             || chunk.data_page_offset() < 0
             || chunk.dictionary_page_offset().is_some_and(|at| at < 0)
     }) {
-        return Err(FileRefusal::unreadable("a column lies outside the file"));
+        return Err(FileRefusal::from_error("a column lies outside the file"));
     }
     // The rows of the groups are counted, since these are read; the total of the file is not
     // trusted.
@@ -76,7 +76,7 @@ pub(crate) fn metadata<R: ChunkReader + 'static>(
     let counted: Option<Vec<usize>> =
         groups.clone().map(|rows| usize::try_from(rows).ok()).collect();
     let counted = counted
-        .ok_or_else(|| FileRefusal::unreadable("a row group has a negative number of rows"))?;
+        .ok_or_else(|| FileRefusal::from_error("a row group has a negative number of rows"))?;
     let rows = counted.into_iter().fold(0, usize::saturating_add);
     if rows > limits.rows {
         return Err(FileRefusal::Rows { found: rows, most: limits.rows });
@@ -98,11 +98,13 @@ fn footer_bytes<R: ChunkReader>(input: &R) -> ParquetResult<u64> {
 }
 
 /// Returns the dotted names of the columns of an opened file.
-pub(crate) fn headers<R: ChunkReader + 'static>(reader: &SerializedFileReader<R>) -> Vec<String> {
-    names(reader.metadata().file_metadata().schema_descr())
+pub(crate) fn header_names<R: ChunkReader + 'static>(
+    reader: &SerializedFileReader<R>,
+) -> Vec<String> {
+    schema_names(reader.metadata().file_metadata().schema_descr())
 }
 
 /// Returns the dotted names of the columns of a schema.
-pub(crate) fn names(schema: &SchemaDescriptor) -> Vec<String> {
+pub(crate) fn schema_names(schema: &SchemaDescriptor) -> Vec<String> {
     schema.columns().iter().map(|column| column.path().string()).collect()
 }

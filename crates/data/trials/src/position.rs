@@ -9,11 +9,14 @@ use sistership_model::trial::Channel;
 use crate::declarations::Antenna;
 use crate::findings::{Findings, Severity};
 use crate::recording::Recording;
-use crate::table::Raw;
+use crate::table::RawQuantity;
 
 /// Computes `x` and `y` from fixes, if there are any and positions are not given in m.
-pub(crate) fn local(recording: &mut Recording, findings: &mut Findings) {
-    let fixes = (recording.raw.remove(&Raw::Latitude), recording.raw.remove(&Raw::Longitude));
+pub(crate) fn fixes_to_metres(recording: &mut Recording, findings: &mut Findings) {
+    let fixes = (
+        recording.raw.remove(&RawQuantity::Latitude),
+        recording.raw.remove(&RawQuantity::Longitude),
+    );
     let (latitude, longitude) = match fixes {
         (Some(latitude), Some(longitude)) => (latitude, longitude),
         (None, None) => return,
@@ -24,21 +27,22 @@ pub(crate) fn local(recording: &mut Recording, findings: &mut Findings) {
         return findings.warning(None, None, message);
     }
     // Longitudes may count from 0 to 360 degrees.
-    let off = recording
-        .hits(0..latitude.len(), |k| latitude[k].abs() > FRAC_PI_2 || longitude[k].abs() > TAU);
+    let off = recording.find_samples(0..latitude.len(), |k| {
+        latitude[k].abs() > FRAC_PI_2 || longitude[k].abs() > TAU
+    });
     if !off.is_empty() {
-        findings.rows(Severity::Error, Raw::Latitude.name(), &off, |k| {
+        findings.report_rows(Severity::Error, RawQuantity::Latitude.name(), &off, |k| {
             let (north, east) = (latitude[k].to_degrees(), longitude[k].to_degrees());
             format!("{north:.4} deg north, {east:.4} deg east is no place; declare `deg` or `rad`")
         });
         return;
     }
-    project(recording, &latitude, &longitude, findings);
+    project_fixes(recording, &latitude, &longitude, findings);
 }
 
 /// Projects fixes by distance and azimuth on the ellipsoid WGS 84 from the first fix, so that
 /// distances from there are true.
-fn project(
+fn project_fixes(
     recording: &mut Recording,
     latitude: &[f64],
     longitude: &[f64],
@@ -64,7 +68,11 @@ fn project(
 }
 
 /// Moves positions from the antenna to midship.
-pub(crate) fn to_midship(recording: &mut Recording, antenna: Antenna, findings: &mut Findings) {
+pub(crate) fn move_to_midship(
+    recording: &mut Recording,
+    antenna: Antenna,
+    findings: &mut Findings,
+) {
     let channels = &mut recording.trial.channels;
     let (Some(mut x), Some(mut y)) = (channels.remove(&Channel::X), channels.remove(&Channel::Y))
     else {
@@ -92,16 +100,16 @@ pub(crate) fn to_midship(recording: &mut Recording, antenna: Antenna, findings: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{messages, recording};
+    use crate::testing::{finding_messages, test_recording};
 
     fn ship(latitude: &[f64], longitude: &[f64]) -> (Recording, String) {
-        let mut ship = recording(&[(Channel::Psi, vec![FRAC_PI_2; latitude.len()])]);
+        let mut ship = test_recording(&[(Channel::Psi, vec![FRAC_PI_2; latitude.len()])]);
         let radians = |degrees: &[f64]| degrees.iter().map(|value| value.to_radians()).collect();
-        ship.raw.insert(Raw::Latitude, radians(latitude));
-        ship.raw.insert(Raw::Longitude, radians(longitude));
+        ship.raw.insert(RawQuantity::Latitude, radians(latitude));
+        ship.raw.insert(RawQuantity::Longitude, radians(longitude));
         let mut findings = Findings::default();
-        local(&mut ship, &mut findings);
-        (ship, messages(findings))
+        fixes_to_metres(&mut ship, &mut findings);
+        (ship, finding_messages(findings))
     }
 
     #[test]
@@ -126,11 +134,11 @@ mod tests {
         let (mut ship, _) = ship(&[45.0; 3], &[7.0; 3]);
         let antenna = Antenna { x_m: 10.0, y_m: 2.0 };
         let mut findings = Findings::default();
-        to_midship(&mut ship, antenna, &mut findings);
+        move_to_midship(&mut ship, antenna, &mut findings);
         let at = |channel| ship.trial.channels[&channel][0];
         assert!((at(Channel::X) - 2.0).abs() < 1e-9 && (at(Channel::Y) + 10.0).abs() < 1e-9);
         ship.trial.channels.remove(&Channel::Psi);
-        to_midship(&mut ship, antenna, &mut findings);
-        assert!(messages(findings).contains("map `psi`"));
+        move_to_midship(&mut ship, antenna, &mut findings);
+        assert!(finding_messages(findings).contains("map `psi`"));
     }
 }

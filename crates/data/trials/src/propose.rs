@@ -5,24 +5,24 @@ use std::path::{Component, Path, PathBuf};
 use sistership_columns::GivenColumn;
 use sistership_model::FileError;
 use sistership_model::manifest::{
-    Manifest, ManifestTrial, Missing, RudderSign, TrialConventions, TrialsKind,
+    Manifest, ManifestTrial, MissingValues, RudderSign, TrialConventions, TrialsKind,
 };
 
 use crate::declarations::{Declarations, Derivable, SensorFile};
-use crate::file_set::{Part, SetFile, Span, parts};
-use crate::guess::Guess;
+use crate::file_set::{ClockSpan, FileRole, SetFile, classify_files};
+use crate::guess::ColumnGuess;
 use crate::manifest_file::ManifestFile;
-use crate::preview::preview;
-use crate::sampling::{FileSample, sample};
-use crate::shape::Shape;
+use crate::preview::preview_file;
+use crate::sampling::{FileSample, sample_file};
+use crate::shape::ColumnSet;
 
 /// Proposed manifest and its evidence.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Proposal {
+pub struct ManifestProposal {
     /// Manifest, to be reviewed, completed and stored with the files.
     pub manifest: ManifestFile,
     /// One entry for each column of each file.
-    pub guesses: Vec<Guess>,
+    pub guesses: Vec<ColumnGuess>,
     /// Notes on combinations of columns.
     pub notes: Vec<String>,
 }
@@ -44,7 +44,7 @@ pub struct ProposalRequest<'a> {
 ///
 /// # Errors
 /// Returns the errors of [`propose_files`].
-pub fn propose(ship: &str, files: &[&Path]) -> Result<Proposal, Vec<FileError>> {
+pub fn propose_manifest(ship: &str, files: &[&Path]) -> Result<ManifestProposal, Vec<FileError>> {
     propose_files(&ProposalRequest { ship, files, folder: None, given: &[] })
 }
 
@@ -54,29 +54,29 @@ pub fn propose(ship: &str, files: &[&Path]) -> Result<Proposal, Vec<FileError>> 
 ///
 /// # Errors
 /// Returns an error for every file that cannot be read.
-pub fn propose_files(request: &ProposalRequest) -> Result<Proposal, Vec<FileError>> {
+pub fn propose_files(request: &ProposalRequest) -> Result<ManifestProposal, Vec<FileError>> {
     let folder = request.folder.map_or_else(|| common_folder(request.files), Path::to_path_buf);
     let mut set = FileSet::default();
     let mut errors = Vec::new();
     for path in request.files {
-        let name = relative(path, &folder);
-        if let Err(error) = set.add(name, path) {
-            errors.push(refused(path, &error.to_string()));
+        let name = relative_path(path, &folder);
+        if let Err(error) = set.add_file(name, path) {
+            errors.push(refuse_file(path, &error.to_string()));
         }
     }
     if set.files.is_empty() && errors.is_empty() {
-        errors.push(refused(Path::new(""), "no file is named"));
+        errors.push(refuse_file(Path::new(""), "no file is named"));
     }
     if !errors.is_empty() {
         return Err(errors);
     }
     // Columns are identified once all files with the same columns have contributed their samples.
-    set.shapes.iter_mut().for_each(|shape| shape.identify(request.given));
+    set.shapes.iter_mut().for_each(|shape| shape.identify_all(request.given));
     set.settle_spans();
-    Ok(set.proposal(request.ship))
+    Ok(set.into_proposal(request.ship))
 }
 
-fn refused(path: &Path, message: &str) -> FileError {
+fn refuse_file(path: &Path, message: &str) -> FileError {
     FileError {
         file: path.display().to_string(),
         line: None,
@@ -98,7 +98,7 @@ fn common_folder(files: &[&Path]) -> PathBuf {
 }
 
 /// Returns a path relative to a folder, with `/` between its parts.
-fn relative(path: &Path, folder: &Path) -> String {
+fn relative_path(path: &Path, folder: &Path) -> String {
     let here = |path: &Path| if path.as_os_str().is_empty() { ".".into() } else { path.to_owned() };
     // Absolute paths, so that both have a common root.
     let plain = |path: &Path| std::path::absolute(here(path)).unwrap_or_else(|_| path.to_owned());
@@ -116,26 +116,26 @@ fn relative(path: &Path, folder: &Path) -> String {
 #[derive(Default)]
 struct FileSet {
     files: Vec<SetFile>,
-    shapes: Vec<Shape>,
+    shapes: Vec<ColumnSet>,
     /// Sample of each file, until the unit of its time is known.
     samples: Vec<FileSample>,
     sheet: Option<String>,
 }
 
 impl FileSet {
-    fn add(&mut self, name: String, path: &Path) -> std::io::Result<()> {
-        let preview = preview(&name, path)?;
+    fn add_file(&mut self, name: String, path: &Path) -> std::io::Result<()> {
+        let preview = preview_file(&name, path)?;
         // NMEA sentences are identified by their names, without a sample.
         let sample = match preview.sentences.is_empty() {
-            true => sample(&name, path, &preview)?,
+            true => sample_file(&name, path, &preview)?,
             false => FileSample::default(),
         };
-        let known = self.shapes.iter().position(|shape| shape.fits(&preview));
+        let known = self.shapes.iter().position(|shape| shape.matches_preview(&preview));
         let shape = known.unwrap_or_else(|| {
-            self.shapes.push(Shape::new(&preview));
+            self.shapes.push(ColumnSet::new(&preview));
             self.shapes.len() - 1
         });
-        self.shapes[shape].add(&sample.recording);
+        self.shapes[shape].add_sample(&sample.recording);
         let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
         self.files.push(SetFile { name, folder, shape, span: None });
         self.samples.push(sample);
@@ -154,24 +154,26 @@ impl FileSet {
             let ends = (values.clone().next(), values.last());
             if let (Some(first), Some(last)) = ends {
                 let (from_s, to_s) = (from + first * factor, from + last * factor);
-                file.span = Some(Span { from_s, to_s, is_dated: start.is_some() });
+                file.span = Some(ClockSpan { from_s, to_s, is_dated: start.is_some() });
             }
         }
     }
 
-    fn proposal(mut self, ship: &str) -> Proposal {
-        let parts = parts(&self.files, &self.shapes);
+    fn into_proposal(mut self, ship: &str) -> ManifestProposal {
+        let parts = classify_files(&self.files, &self.shapes);
         // Before columns are cloned: a common sign replaces the reversal of single columns.
-        let rudder = self.rudder();
-        let places: Vec<usize> = (0..parts.len()).filter(|&k| parts[k] == Part::Trial).collect();
+        let rudder = self.common_rudder_sign();
+        let places: Vec<usize> =
+            (0..parts.len()).filter(|&k| parts[k] == FileRole::Trial).collect();
         // The columns of the first trial become those of the manifest; others are listed at their
         // trial.
         let first = places.first().map_or(0, |&at| self.files[at].shape);
         let columns = self.shapes[first].columns.clone();
-        let trials: Vec<ManifestTrial> = places.iter().map(|&at| self.trial(at, first)).collect();
-        let sensors = places.iter().map(|&at| self.sensors(at, &parts)).collect();
+        let trials: Vec<ManifestTrial> =
+            places.iter().map(|&at| self.manifest_trial(at, first)).collect();
+        let sensors = places.iter().map(|&at| self.sensor_files(at, &parts)).collect();
         let conventions = TrialConventions {
-            missing: Missing::Bridge,
+            missing: MissingValues::Bridge,
             rudder_positive: rudder,
             ..TrialConventions::default()
         };
@@ -182,15 +184,19 @@ impl FileSet {
             columns,
             trials,
         };
-        let declarations = self.declarations();
+        let declarations = self.proposed_declarations();
         let notes = self.shapes.iter().flat_map(|shape| shape.notes.clone()).collect();
-        let guesses = self.guesses();
-        Proposal { manifest: ManifestFile { manifest, declarations, sensors }, guesses, notes }
+        let guesses = self.column_guesses();
+        ManifestProposal {
+            manifest: ManifestFile { manifest, declarations, sensors },
+            guesses,
+            notes,
+        }
     }
 
     /// Returns the sign of the rudder if all files agree; single columns then need no reversal.
-    fn rudder(&mut self) -> RudderSign {
-        let mut signs = self.shapes.iter().filter_map(Shape::rudder_reversed).peekable();
+    fn common_rudder_sign(&mut self) -> RudderSign {
+        let mut signs = self.shapes.iter().filter_map(ColumnSet::is_rudder_reversed).peekable();
         let all = signs.peek().is_some() && signs.all(|reversed| reversed);
         if !all {
             return RudderSign::StarboardTurn;
@@ -203,21 +209,22 @@ impl FileSet {
         RudderSign::PortTurn
     }
 
-    fn trial(&self, at: usize, first: usize) -> ManifestTrial {
+    fn manifest_trial(&self, at: usize, first: usize) -> ManifestTrial {
         let file = &self.files[at];
         let own = file.shape != first;
         let columns = own.then(|| self.shapes[file.shape].columns.clone()).unwrap_or_default();
-        ManifestTrial { columns, ..ManifestTrial::of(&file.name) }
+        ManifestTrial { columns, ..ManifestTrial::from_file_name(&file.name) }
     }
 
-    fn sensors(&self, trial: usize, parts: &[Part]) -> Vec<SensorFile> {
+    fn sensor_files(&self, trial: usize, parts: &[FileRole]) -> Vec<SensorFile> {
         let of_trial =
-            self.files.iter().zip(parts).filter(|(_, part)| **part == Part::SensorOf(trial));
+            self.files.iter().zip(parts).filter(|(_, part)| **part == FileRole::SensorOf(trial));
         let sensor = |file: &SetFile| {
             let shape = &self.shapes[file.shape];
             let trial = &self.shapes[self.files[trial].shape];
             // Channels that the trial has itself are not read from the sensor.
-            let own = shape.columns.iter().filter(|(name, _)| *name == "t" || !trial.has(name));
+            let own =
+                shape.columns.iter().filter(|(name, _)| *name == "t" || !trial.has_channel(name));
             SensorFile {
                 file: file.name.clone(),
                 columns: own.map(|(name, column)| (name.clone(), column.clone())).collect(),
@@ -228,18 +235,19 @@ impl FileSet {
     }
 
     /// Returns the identified content of each column of each file.
-    fn guesses(&self) -> Vec<Guess> {
+    fn column_guesses(&self) -> Vec<ColumnGuess> {
         let of_file = |file: &SetFile| {
             let each = self.shapes[file.shape].guesses.iter();
-            each.map(|guess| Guess { file: file.name.clone(), ..guess.clone() }).collect::<Vec<_>>()
+            each.map(|guess| ColumnGuess { file: file.name.clone(), ..guess.clone() })
+                .collect::<Vec<_>>()
         };
         self.files.iter().flat_map(of_file).collect()
     }
 
     /// Returns the columns to ignore, and the velocities to derive where positions and heading
     /// exist and velocities do not.
-    fn declarations(&self) -> Declarations {
-        let one = |name: &str| self.shapes.iter().any(|shape| shape.has(name));
+    fn proposed_declarations(&self) -> Declarations {
+        let one = |name: &str| self.shapes.iter().any(|shape| shape.has_channel(name));
         let has = |names: &[&str]| names.iter().all(|name| one(name));
         let track = has(&["psi"]) && (has(&["x", "y"]) || has(&["latitude", "longitude"]));
         // Course and speed, or velocities north and east, give `u` and `v` without derivation.

@@ -22,7 +22,7 @@ fn a_proposed_manifest_reads_the_file_it_was_made_for() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run3.csv");
     std::fs::write(&file, log()).unwrap();
-    let proposal = propose("a", &[&file]).unwrap();
+    let proposal = propose_manifest("a", &[&file]).unwrap();
     let text = proposal.manifest.to_yaml().unwrap();
     assert_eq!(read_manifest_file("m", &text).unwrap(), proposal.manifest, "{text}");
     let guess = |column: &str| proposal.guesses.iter().find(|one| one.column == column).unwrap();
@@ -53,18 +53,18 @@ fn further_files_are_trials_or_sensors() {
     let one = write("one.csv", "time [s],heading [deg]\n0,10\n1,11\n");
     let two = write("two.csv", "time [s],heading [deg]\n0,20\n1,21\n");
     let rudder = write("rudder.csv", "t_s,rudder port %\n0,50\n1,60\n");
-    let proposal = propose("a", &[&one, &two, &rudder]).unwrap();
+    let proposal = propose_manifest("a", &[&one, &two, &rudder]).unwrap();
     let ManifestFile { manifest, sensors, .. } = &proposal.manifest;
     assert_eq!(manifest.trials.len(), 2);
     assert_eq!((sensors[0][0].file.as_str(), sensors[1].len()), ("rudder.csv", 0));
     let second = write("two_rudder.csv", "t_s,rudder port %\n0,50\n1,60\n");
-    let proposal = propose("a", &[&one, &two, &second]).unwrap();
+    let proposal = propose_manifest("a", &[&one, &two, &second]).unwrap();
     assert_eq!(proposal.manifest.sensors[1][0].file, "two_rudder.csv");
     assert!(proposal.guesses[5].why.contains("`maximum` of delta_p"), "{:?}", proposal.guesses);
     let picture = write("scan.png", "");
     std::fs::write(&picture, b"\x89PNG\r\n\x1a\n").unwrap();
     let missing = folder.path().join("lost.csv");
-    let errors = propose("a", &[&one, &picture, &missing]).unwrap_err();
+    let errors = propose_manifest("a", &[&one, &picture, &missing]).unwrap_err();
     assert_eq!(errors.len(), 2);
     assert!(errors[0].to_string().contains("a picture"), "{}", errors[0]);
 }
@@ -77,7 +77,7 @@ fn a_log_tells_itself_what_it_holds() {
         |body: &str| format!("${body}*{:02X}\n", body.bytes().fold(0, |sum, byte| sum ^ byte));
     let place = summed("GPGGA,120003,5130.000,N,00930.000,E,1,8,1,1,M,1,M,,");
     std::fs::write(&path, place + &summed("HEHDT,10.0,T")).unwrap();
-    let proposal = propose("a", &[&path]).unwrap();
+    let proposal = propose_manifest("a", &[&path]).unwrap();
     let channels = proposal.guesses.iter().filter_map(|guess| guess.channel.as_deref());
     assert_eq!(channels.collect::<Vec<_>>(), ["psi", "latitude", "longitude"]);
     assert_eq!(proposal.manifest.declarations.derive.len(), 3);

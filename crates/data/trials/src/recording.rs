@@ -7,9 +7,9 @@ use sistership_model::trial::{Channel, Trial};
 
 use crate::derived_channel::DerivedChannel;
 use crate::exclusion::Exclusion;
-use crate::findings::Hits;
-use crate::table::{Column, Raw, Start, Target};
-use crate::units::Kind;
+use crate::findings::FaultySamples;
+use crate::table::{ColumnTarget, RawQuantity, TableColumn, TimeOrigin};
+use crate::units::UnitKind;
 
 /// Canonical samples and their places in the file.
 #[derive(Debug, Default)]
@@ -22,13 +22,13 @@ pub(crate) struct Recording {
     pub resumed: Vec<u32>,
     /// Header of the time column.
     pub time: String,
-    pub columns: BTreeMap<Channel, Column>,
+    pub columns: BTreeMap<Channel, TableColumn>,
     /// Quantities from which channels are still to be computed.
-    pub raw: BTreeMap<Raw, Vec<f64>>,
+    pub raw: BTreeMap<RawQuantity, Vec<f64>>,
     /// Channels that were derived.
     pub derived: Vec<DerivedChannel>,
     /// Calendar time of time zero, if the file contains it.
-    pub start: Option<Start>,
+    pub start: Option<TimeOrigin>,
     /// Faults of the values of the file, if they were searched.
     pub faults: Vec<Exclusion>,
     /// Median time between samples, s; zero until time is known to increase.
@@ -39,23 +39,23 @@ pub(crate) struct Recording {
 
 impl Recording {
     /// Returns the row of a sample in the file.
-    pub(crate) fn row(&self, sample: usize) -> usize {
+    pub(crate) fn row_number(&self, sample: usize) -> usize {
         self.rows.get(sample).map_or(0, |&row| row as usize)
     }
 
     /// Returns the name of the column in the file, or of the channel.
-    pub(crate) fn header(&self, channel: Channel) -> &str {
+    pub(crate) fn column_header(&self, channel: Channel) -> &str {
         self.columns.get(&channel).map_or(channel.name(), |column| &column.header)
     }
 
     /// Returns the declared unit of a channel.
-    pub(crate) fn unit(&self, channel: Channel) -> &str {
+    pub(crate) fn declared_unit(&self, channel: Channel) -> &str {
         self.columns.get(&channel).map_or("", |column| &column.unit)
     }
 
     /// Returns the unit of the samples.
     pub(crate) fn canonical_unit(&self, channel: Channel) -> &'static str {
-        Kind::of(Target::Channel(channel)).canonical()
+        UnitKind::from_target(ColumnTarget::Channel(channel)).canonical_unit()
     }
 
     pub(crate) fn channel(&self, channel: Channel) -> Option<&[f64]> {
@@ -67,9 +67,13 @@ impl Recording {
     }
 
     /// Returns the samples that satisfy a condition, each with its row.
-    pub(crate) fn hits(&self, samples: Range<usize>, holds: impl Fn(usize) -> bool) -> Hits {
-        let mut hits = Hits::default();
-        samples.filter(|&k| holds(k)).for_each(|k| hits.add((k, self.row(k))));
+    pub(crate) fn find_samples(
+        &self,
+        samples: Range<usize>,
+        holds: impl Fn(usize) -> bool,
+    ) -> FaultySamples {
+        let mut hits = FaultySamples::default();
+        samples.filter(|&k| holds(k)).for_each(|k| hits.record_sample((k, self.row_number(k))));
         hits
     }
 
@@ -84,9 +88,9 @@ impl Recording {
         let variances = self.derived.iter_mut().map(|derived| &mut derived.variance);
         let raw = self.raw.values_mut();
         for values in channels.chain(variances).chain(raw).chain([&mut self.trial.t_s]) {
-            without(values, ranges);
+            remove_ranges(values, ranges);
         }
-        without(&mut self.rows, ranges);
+        remove_ranges(&mut self.rows, ranges);
         let rows = &self.rows;
         // A row that was marked earlier may be removed now.
         self.resumed.retain(|row| rows.binary_search(row).is_ok());
@@ -99,7 +103,7 @@ impl Recording {
     }
 }
 
-fn without<T>(values: &mut Vec<T>, ranges: &[Range<usize>]) {
+fn remove_ranges<T>(values: &mut Vec<T>, ranges: &[Range<usize>]) {
     let (mut at, mut next) = (0, ranges.iter().peekable());
     values.retain(|_| {
         while next.next_if(|range| range.end <= at).is_some() {}

@@ -7,8 +7,8 @@ use crate::declarations::Declarations;
 use crate::findings::Findings;
 use crate::mapping::{Mapping, WrittenTime};
 use crate::names;
-use crate::table::{Column, Raw, Target};
-use crate::units::{Kind, plain_unit};
+use crate::table::{ColumnTarget, RawQuantity, TableColumn};
+use crate::units::{UnitKind, plain_unit};
 
 /// Similarity of two names (Jaro-Winkler, 0 to 1) from which one is suggested for the other.
 const ALIKE: f64 = 0.8;
@@ -16,17 +16,17 @@ const ALIKE: f64 = 0.8;
 const LISTED: usize = 40;
 
 /// Returns the columns to read of a file whose first row is its header, or `None` after errors.
-pub(crate) fn resolve(
+pub(crate) fn resolve_headers(
     headers: &[String],
     mapping: &Mapping,
     findings: &mut Findings,
-) -> Option<Vec<Column>> {
-    resolve_heading(Heading { names: headers, units: &[], row: 1 }, mapping, findings)
+) -> Option<Vec<TableColumn>> {
+    resolve_heading(HeaderRows { names: headers, units: &[], row: 1 }, mapping, findings)
 }
 
 /// Header of a table.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Heading<'a> {
+pub(crate) struct HeaderRows<'a> {
     pub names: &'a [String],
     /// Units in a row of their own, or empty.
     pub units: &'a [String],
@@ -36,67 +36,68 @@ pub(crate) struct Heading<'a> {
 
 /// Returns the columns to read, or `None` after errors.
 pub(crate) fn resolve_heading(
-    heading: Heading,
+    heading: HeaderRows,
     mapping: &Mapping,
     findings: &mut Findings,
-) -> Option<Vec<Column>> {
+) -> Option<Vec<TableColumn>> {
     if let Some(time) = &mapping.unidentified {
-        return Some(unidentified(heading, time));
+        return Some(unidentified_columns(heading, time));
     }
-    let Heading { names: headers, units, row } = heading;
-    let mut resolver = Resolver { headers, units, row, mapping, columns: Vec::new(), findings };
+    let HeaderRows { names: headers, units, row } = heading;
+    let mut resolver =
+        ColumnResolver { headers, units, row, mapping, columns: Vec::new(), findings };
     // In order of precedence: a column or a channel that one step takes is closed to the next.
-    resolver.mapped();
-    resolver.canonical();
-    resolver.raw();
-    resolver.timed();
-    resolver.doubled();
-    resolver.needed();
-    resolver.ignored();
-    let Resolver { columns, findings, .. } = resolver;
+    resolver.add_mapped();
+    resolver.add_canonical();
+    resolver.add_raw();
+    resolver.add_time();
+    resolver.report_duplicates();
+    resolver.require_columns();
+    resolver.report_ignored();
+    let ColumnResolver { columns, findings, .. } = resolver;
     (!findings.has_errors()).then_some(columns)
 }
 
 /// Returns every column unconverted.
-fn unidentified(heading: Heading, time: &WrittenTime) -> Vec<Column> {
+fn unidentified_columns(heading: HeaderRows, time: &WrittenTime) -> Vec<TableColumn> {
     let of_column = |(index, header): (usize, &String)| {
         let unit = time.0.filter(|(at, _)| *at == index).map(|(_, unit)| unit);
         let target = match unit {
-            Some(_) => Target::Time,
-            None => Target::Unidentified(u16::try_from(index).unwrap_or(u16::MAX)),
+            Some(_) => ColumnTarget::Time,
+            None => ColumnTarget::Unidentified(u16::try_from(index).unwrap_or(u16::MAX)),
         };
         let unit = unit.unwrap_or("1").to_owned();
         // Days of a sheet become seconds here; other written times are seconds once the clock has
         // read them.
         let to_si = if unit == "excel" { 86_400.0 } else { 1.0 };
-        Column { index, header: header.clone(), target, unit, to_si }
+        TableColumn { index, header: header.clone(), target, unit, to_si }
     };
     heading.names.iter().enumerate().map(of_column).collect()
 }
 
-struct Resolver<'a> {
+struct ColumnResolver<'a> {
     headers: &'a [String],
     units: &'a [String],
     row: usize,
     mapping: &'a Mapping,
-    columns: Vec<Column>,
+    columns: Vec<TableColumn>,
     findings: &'a mut Findings,
 }
 
-impl Resolver<'_> {
+impl ColumnResolver<'_> {
     /// Adds the columns that the manifest names.
-    fn mapped(&mut self) {
+    fn add_mapped(&mut self) {
         for (name, mapped) in &self.mapping.columns {
-            let Some(target) = Target::by_name(name) else {
+            let Some(target) = ColumnTarget::from_name(name) else {
                 let message =
                     format!("`{name}` is not a channel; channels are {}", channel_names());
                 self.findings.error(None, Some(&mapped.column), message);
                 continue;
             };
-            match self.find(&mapped.column) {
+            match self.find_header(&mapped.column) {
                 Ok(index) => {
-                    self.contradicted(index, target, &mapped.unit);
-                    self.add(index, target, &mapped.unit);
+                    self.report_contradiction(index, target, &mapped.unit);
+                    self.add_column(index, target, &mapped.unit);
                     // `add_column` adds nothing if the unit is wrong: the last column may then be
                     // another.
                     let added = self.columns.last_mut().filter(|column| column.index == index);
@@ -110,12 +111,12 @@ impl Resolver<'_> {
     }
 
     /// Reports a header with one unit where the manifest states another: one of the two is wrong.
-    fn contradicted(&mut self, index: usize, target: Target, unit: &str) {
+    fn report_contradiction(&mut self, index: usize, target: ColumnTarget, unit: &str) {
         // Units are compared by their factors, so that spellings of the same unit agree.
-        let (kind, header) = (Kind::of(target), &self.headers[index]);
-        let below = self.units.get(index).filter(|unit| kind.factor(unit).is_ok());
-        if let Some(named) = kind.named_in(header).or(below.map(String::as_str))
-            && let (Ok(one), Ok(other)) = (kind.factor(named), kind.factor(unit))
+        let (kind, header) = (UnitKind::from_target(target), &self.headers[index]);
+        let below = self.units.get(index).filter(|unit| kind.unit_to_si(unit).is_ok());
+        if let Some(named) = kind.unit_in_header(header).or(below.map(String::as_str))
+            && let (Ok(one), Ok(other)) = (kind.unit_to_si(named), kind.unit_to_si(unit))
             && one != other
         {
             let says = if self.is_mapped(target) { "the manifest says" } else { "its name says" };
@@ -128,7 +129,7 @@ impl Resolver<'_> {
         }
     }
 
-    fn find(&self, wanted: &str) -> Result<usize, String> {
+    fn find_header(&self, wanted: &str) -> Result<usize, String> {
         let mut found =
             self.headers.iter().enumerate().filter(|(_, header)| header.as_str() == wanted.trim());
         // Two columns with the same header cannot be distinguished by name.
@@ -137,13 +138,13 @@ impl Resolver<'_> {
             (Some(_), Some(_)) => Err("this name heads two columns; rename one of them".into()),
             (None, _) => Err(format!(
                 "no such column{}; the file has {}",
-                self.suggestion(wanted),
-                self.listed()
+                self.suggest_name(wanted),
+                self.list_headers()
             )),
         }
     }
 
-    fn suggestion(&self, wanted: &str) -> String {
+    fn suggest_name(&self, wanted: &str) -> String {
         let close =
             self.headers.iter().map(|header| (strsim::jaro_winkler(header, wanted), header));
         match close.max_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -152,20 +153,20 @@ impl Resolver<'_> {
         }
     }
 
-    fn listed(&self) -> String {
+    fn list_headers(&self) -> String {
         let names: Vec<String> =
             self.headers.iter().take(LISTED).map(|header| format!("`{header}`")).collect();
         let more = self.headers.len().saturating_sub(LISTED);
         if more > 0 { format!("{} and {more} more", names.join(", ")) } else { names.join(", ") }
     }
 
-    fn add(&mut self, index: usize, target: Target, unit: &str) {
+    fn add_column(&mut self, index: usize, target: ColumnTarget, unit: &str) {
         let header = self.headers[index].clone();
-        match factor(target, unit, &self.mapping.declared) {
-            Ok(to_si) => self.columns.push(Column {
+        match unit_factor(target, unit, &self.mapping.declared) {
+            Ok(to_si) => self.columns.push(TableColumn {
                 index,
                 header,
-                target: self.redirect(target),
+                target: self.redirect_target(target),
                 unit: plain_unit(unit).into(),
                 to_si,
             }),
@@ -177,12 +178,12 @@ impl Resolver<'_> {
 
     /// Assigns apparent wind and speeds through the water to channels of their own, so that later
     /// steps cannot mistake them for the true wind and for speeds over the ground.
-    fn redirect(&self, target: Target) -> Target {
-        let Target::Channel(channel) = target else { return target };
+    fn redirect_target(&self, target: ColumnTarget) -> ColumnTarget {
+        let ColumnTarget::Channel(channel) = target else { return target };
         let conventions = &self.mapping.conventions;
         let is_apparent = conventions.wind.kind == WindKind::Apparent;
         let is_through_water = conventions.velocity == VelocityFrame::Water;
-        Target::Channel(match channel {
+        ColumnTarget::Channel(match channel {
             Channel::WindSpeed if is_apparent => Channel::ApparentWindSpeed,
             Channel::WindFrom if is_apparent => Channel::ApparentWindFrom,
             Channel::U if is_through_water => Channel::UWater,
@@ -192,41 +193,43 @@ impl Resolver<'_> {
     }
 
     /// Adds columns with a canonical name, for channels that the manifest leaves open.
-    fn canonical(&mut self) {
+    fn add_canonical(&mut self) {
         for index in 0..self.headers.len() {
-            if let Some((target, unit)) = self.named(index)
-                && !matches!(target, Target::Raw(_))
+            if let Some((target, unit)) = self.target_of_header(index)
+                && !matches!(target, ColumnTarget::Raw(_))
             {
-                self.contradicted(index, target, &unit);
-                self.add(index, target, &unit);
+                self.report_contradiction(index, target, &unit);
+                self.add_column(index, target, &unit);
             }
         }
     }
 
     /// Adds canonical columns from which channels are computed, if the channels themselves are
     /// absent.
-    fn raw(&mut self) {
+    fn add_raw(&mut self) {
         // A channel with a column of its own is not computed from others.
-        let given: Vec<Target> = self.columns.iter().map(|column| column.target).collect();
+        let given: Vec<ColumnTarget> = self.columns.iter().map(|column| column.target).collect();
         for index in 0..self.headers.len() {
-            if let Some((Target::Raw(raw), unit)) = self.named(index)
-                && !raw.gives().iter().any(|&channel| given.contains(&Target::Channel(channel)))
+            if let Some((ColumnTarget::Raw(raw), unit)) = self.target_of_header(index)
+                && !raw
+                    .computed_channels()
+                    .iter()
+                    .any(|&channel| given.contains(&ColumnTarget::Channel(channel)))
             {
-                self.contradicted(index, Target::Raw(raw), &unit);
-                self.add(index, Target::Raw(raw), &unit);
+                self.report_contradiction(index, ColumnTarget::Raw(raw), &unit);
+                self.add_column(index, ColumnTarget::Raw(raw), &unit);
             }
         }
     }
 
     /// Returns the target and unit named by a header, for a free column and a target that the
     /// manifest leaves open.
-    fn named(&self, index: usize) -> Option<(Target, String)> {
+    fn target_of_header(&self, index: usize) -> Option<(ColumnTarget, String)> {
         let header = &self.headers[index];
-        let below = self
-            .units
-            .get(index)
-            .and_then(|unit| names::with_unit(header, unit).map(|target| (target, unit.clone())));
-        let named = names::canonical(header).map(|(target, unit)| (target, unit.to_owned()));
+        let below = self.units.get(index).and_then(|unit| {
+            names::target_with_unit(header, unit).map(|target| (target, unit.clone()))
+        });
+        let named = names::canonical_target(header).map(|(target, unit)| (target, unit.to_owned()));
         // A unit in the name precedes one in the row below.
         let free = self.is_free(index) && !self.is_ignored(header);
         named.or(below).filter(|(target, _)| free && !self.is_mapped(*target))
@@ -236,8 +239,8 @@ impl Resolver<'_> {
         self.columns.iter().all(|column| column.index != index)
     }
 
-    fn is_mapped(&self, target: Target) -> bool {
-        self.mapping.columns.iter().any(|(name, _)| Target::by_name(name) == Some(target))
+    fn is_mapped(&self, target: ColumnTarget) -> bool {
+        self.mapping.columns.iter().any(|(name, _)| ColumnTarget::from_name(name) == Some(target))
     }
 
     fn is_ignored(&self, header: &str) -> bool {
@@ -245,20 +248,20 @@ impl Resolver<'_> {
     }
 
     /// Adds the first column with a common name of time, if no other column is time.
-    fn timed(&mut self) {
+    fn add_time(&mut self) {
         let free = |index: usize| self.is_free(index) && !self.is_ignored(&self.headers[index]);
-        if !self.is_mapped(Target::Time)
-            && self.columns.iter().all(|column| column.target != Target::Time)
+        if !self.is_mapped(ColumnTarget::Time)
+            && self.columns.iter().all(|column| column.target != ColumnTarget::Time)
         {
             let named =
                 (0..self.headers.len()).find(|&k| free(k) && names::is_time(&self.headers[k]));
             if let Some(index) = named {
-                self.add(index, Target::Time, "auto");
+                self.add_column(index, ColumnTarget::Time, "auto");
             }
         }
     }
 
-    fn doubled(&mut self) {
+    fn report_duplicates(&mut self) {
         for (position, column) in self.columns.iter().enumerate() {
             // Each column is compared with earlier ones only, so that a pair is reported once.
             let before = &self.columns[..position];
@@ -284,29 +287,29 @@ impl Resolver<'_> {
         }
     }
 
-    fn needed(&mut self) {
+    fn require_columns(&mut self) {
         // A missing column may be the consequence of an error that is reported already.
         if self.findings.has_errors() {
             return;
         }
-        if !self.columns.iter().any(|column| column.target == Target::Time) {
+        if !self.columns.iter().any(|column| column.target == ColumnTarget::Time) {
             let message = format!(
                 "no column for time{}; name it `t_s` or map `t`; the file has {}",
-                self.suggestion("t_s"),
-                self.listed()
+                self.suggest_name("t_s"),
+                self.list_headers()
             );
             self.findings.error(Some(self.row), None, message);
         } else if self.columns.len() == 1 {
             let message = format!(
                 "no column for any channel; name them as {} or map them; the file has {}",
                 canonical_names(),
-                self.listed()
+                self.list_headers()
             );
             self.findings.error(Some(self.row), None, message);
         }
     }
 
-    fn ignored(&mut self) {
+    fn report_ignored(&mut self) {
         let used = |index: usize| self.columns.iter().any(|column| column.index == index);
         let ignored: Vec<&str> = self
             .headers
@@ -326,31 +329,37 @@ impl Resolver<'_> {
 }
 
 /// Returns the factor to canonical units; a percentage refers to the declared maximum.
-pub(crate) fn factor(target: Target, unit: &str, declared: &Declarations) -> Result<f64, String> {
+pub(crate) fn unit_factor(
+    target: ColumnTarget,
+    unit: &str,
+    declared: &Declarations,
+) -> Result<f64, String> {
     if plain_unit(unit) != "%" {
-        return Kind::of(target).factor(unit);
+        return UnitKind::from_target(target).unit_to_si(unit);
     }
     // `delta_s` may use the maximum declared for `delta`.
     let of_pair = target.name().split('_').next().unwrap_or_default();
     let full = declared.maximum.get(target.name()).or_else(|| declared.maximum.get(of_pair));
     match full {
-        Some(full) => Ok(full.value / 100.0 * Kind::of(target).factor(&full.unit)?),
+        Some(full) => {
+            Ok(full.value / 100.0 * UnitKind::from_target(target).unit_to_si(&full.unit)?)
+        }
         None => Err(format!(
             "`%` needs what 100 % is; declare `maximum: {{ {of_pair}: {{ value: ..., unit: {} }} \
             }}`",
-            Kind::of(target).canonical()
+            UnitKind::from_target(target).canonical_unit()
         )),
     }
 }
 
 /// Returns every channel name of manifests.
 pub(crate) fn channel_names() -> String {
-    let names = std::iter::once("t").chain(Channel::all().map(Channel::name));
-    names.chain(Raw::all().map(Raw::name)).collect::<Vec<_>>().join(", ")
+    let names = std::iter::once("t").chain(Channel::all_channels().map(Channel::name));
+    names.chain(RawQuantity::all_quantities().map(RawQuantity::name)).collect::<Vec<_>>().join(", ")
 }
 
 fn canonical_names() -> String {
-    Channel::all().map(Channel::column).collect::<Vec<_>>().join(", ")
+    Channel::all_channels().map(Channel::column_name).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

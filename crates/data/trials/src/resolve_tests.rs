@@ -3,11 +3,11 @@ use sistership_model::manifest::ColumnMapping;
 
 use super::*;
 
-fn run(headers: &[&str], mapping: &Mapping) -> (Option<Vec<Column>>, String) {
+fn run(headers: &[&str], mapping: &Mapping) -> (Option<Vec<TableColumn>>, String) {
     let headers: Vec<String> = headers.iter().map(|&header| header.to_owned()).collect();
     let mut findings = Findings::default();
-    let columns = resolve(&headers, mapping, &mut findings);
-    let (errors, warnings) = findings.finish();
+    let columns = resolve_headers(&headers, mapping, &mut findings);
+    let (errors, warnings) = findings.into_lists();
     let text = errors
         .into_iter()
         .chain(warnings)
@@ -26,7 +26,8 @@ fn mapped(columns: &[(&str, &str, &str)]) -> Mapping {
 
 #[test]
 fn canonical_names_need_no_mapping_and_others_are_listed_once() {
-    let (columns, text) = run(&["t_s", "u_kn", "delta_ordered_rad", "note"], &Mapping::canonical());
+    let (columns, text) =
+        run(&["t_s", "u_kn", "delta_ordered_rad", "note"], &Mapping::with_canonical_names());
     let columns = columns.unwrap();
     assert_eq!(columns.len(), 2);
     assert!((columns[1].to_si - 0.514_444).abs() < 1e-5);
@@ -48,7 +49,7 @@ fn a_missing_column_is_answered_with_those_that_exist() {
 
 #[test]
 fn two_columns_for_one_channel_are_refused() {
-    let (columns, text) = run(&["t_s", "u_m_s", "u_kn"], &Mapping::canonical());
+    let (columns, text) = run(&["t_s", "u_m_s", "u_kn"], &Mapping::with_canonical_names());
     assert!(columns.is_none());
     assert!(text.contains("`u_m_s` and `u_kn` both give u"), "{text}");
     let (columns, _) = run(&["t_s", "u", "u"], &mapped(&[("u", "u", "m/s")]));
@@ -63,8 +64,14 @@ fn one_column_is_one_channel() {
 
 #[test]
 fn time_and_a_channel_are_needed() {
-    assert!(run(&["time_s", "u_m_s"], &Mapping::canonical()).1.contains("name it `t_s`"));
-    assert!(run(&["t_s", "speed"], &Mapping::canonical()).1.contains("no column for any channel"));
+    assert!(
+        run(&["time_s", "u_m_s"], &Mapping::with_canonical_names()).1.contains("name it `t_s`")
+    );
+    assert!(
+        run(&["t_s", "speed"], &Mapping::with_canonical_names())
+            .1
+            .contains("no column for any channel")
+    );
 }
 
 #[test]
@@ -78,7 +85,7 @@ fn apparent_wind_has_channels_of_its_own() {
     let mut mapping = mapped(&[("wind_speed", "w", "kn")]);
     mapping.conventions.wind.kind = WindKind::Apparent;
     let (columns, _) = run(&["t_s", "w"], &mapping);
-    assert_eq!(columns.unwrap()[0].target, Target::Channel(Channel::ApparentWindSpeed));
+    assert_eq!(columns.unwrap()[0].target, ColumnTarget::Channel(Channel::ApparentWindSpeed));
 }
 
 #[test]

@@ -24,8 +24,8 @@ use serde::{Deserialize, Serialize};
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::{Channel, Finding, Trial};
 
-use crate::limits::Limits;
-use crate::parquet_cells::{BATCH, Cells};
+use crate::limits::FileLimits;
+use crate::parquet_cells::{BATCH, ColumnCells};
 use crate::parquet_footer;
 
 /// Key of the metadata.
@@ -52,7 +52,7 @@ pub enum SamplesError {
 /// Data of a trial other than its samples.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct About {
+struct TrialMetadata {
     name: String,
     manoeuvre: Option<String>,
     depth_m: Option<f64>,
@@ -75,9 +75,9 @@ pub fn to_parquet(trial: &Trial) -> Result<Vec<u8>, SamplesError> {
 /// # Errors
 /// Returns the errors of [`to_parquet`], and those of the writer.
 pub fn write_parquet(out: impl Write + Send, trial: &Trial) -> Result<(), SamplesError> {
-    let columns = columns(trial)?;
-    let schema = schema(columns.iter().map(|(name, _)| *name))?;
-    let mut writer = SerializedFileWriter::new(out, schema, Arc::new(properties(trial)?))?;
+    let columns = trial_columns(trial)?;
+    let schema = parquet_schema(columns.iter().map(|(name, _)| *name))?;
+    let mut writer = SerializedFileWriter::new(out, schema, Arc::new(writer_properties(trial)?))?;
     for start in (0..trial.len()).step_by(GROUP_ROWS) {
         let rows = start..(start + GROUP_ROWS).min(trial.len());
         let mut group = writer.next_row_group()?;
@@ -95,11 +95,11 @@ pub fn write_parquet(out: impl Write + Send, trial: &Trial) -> Result<(), Sample
 /// # Errors
 /// Returns an error if the file is damaged, too large, or not written by [`to_parquet`].
 pub fn from_parquet(bytes: Bytes) -> Result<Trial, SamplesError> {
-    let reader = parquet_footer::open(bytes, Limits::default())
+    let reader = parquet_footer::open_file(bytes, FileLimits::default())
         .map_err(|refused| SamplesError::Content(refused.to_string()))?;
-    let About { name, manoeuvre, depth_m, velocity, warnings } = about(&reader)?;
+    let TrialMetadata { name, manoeuvre, depth_m, velocity, warnings } = read_metadata(&reader)?;
     let mut trial = Trial { name, manoeuvre, depth_m, velocity, warnings, ..Trial::default() };
-    let mut columns = parquet_footer::guarded(|| read_columns(&reader))?;
+    let mut columns = parquet_footer::catch_panics(|| read_columns(&reader))?;
     trial.t_s =
         columns.remove(TIME).ok_or_else(|| SamplesError::Content(format!("no column `{TIME}`")))?;
     for (name, values) in columns {
@@ -116,7 +116,7 @@ pub fn from_parquet(bytes: Bytes) -> Result<Trial, SamplesError> {
 /// # Errors
 /// Returns an error if a channel and time differ in length, or if the writer fails.
 pub fn to_csv(writer: impl Write, trial: &Trial) -> Result<(), SamplesError> {
-    let columns = columns(trial)?;
+    let columns = trial_columns(trial)?;
     let mut writer = csv::Writer::from_writer(writer);
     writer.write_record(columns.iter().map(|(name, _)| *name))?;
     let mut row = Vec::with_capacity(columns.len());
@@ -130,7 +130,7 @@ pub fn to_csv(writer: impl Write, trial: &Trial) -> Result<(), SamplesError> {
 }
 
 /// Returns name and samples of every column, in the order of the channels.
-fn columns(trial: &Trial) -> Result<Vec<(&'static str, &[f64])>, SamplesError> {
+fn trial_columns(trial: &Trial) -> Result<Vec<(&'static str, &[f64])>, SamplesError> {
     let mut columns = vec![(TIME, trial.t_s.as_slice())];
     for (channel, values) in &trial.channels {
         if values.len() != trial.len() {
@@ -138,12 +138,12 @@ fn columns(trial: &Trial) -> Result<Vec<(&'static str, &[f64])>, SamplesError> {
                 format!("{channel} has {} samples, time has {}", values.len(), trial.len());
             return Err(SamplesError::Content(message));
         }
-        columns.push((channel.column(), values.as_slice()));
+        columns.push((channel.column_name(), values.as_slice()));
     }
     Ok(columns)
 }
 
-fn schema(names: impl Iterator<Item = &'static str>) -> ParquetResult<Arc<Type>> {
+fn parquet_schema(names: impl Iterator<Item = &'static str>) -> ParquetResult<Arc<Type>> {
     let column = |name| {
         Type::primitive_type_builder(name, Physical::DOUBLE)
             .with_repetition(Repetition::REQUIRED)
@@ -154,8 +154,8 @@ fn schema(names: impl Iterator<Item = &'static str>) -> ParquetResult<Arc<Type>>
     Type::group_type_builder("trial").with_fields(fields).build().map(Arc::new)
 }
 
-fn properties(trial: &Trial) -> Result<WriterProperties, SamplesError> {
-    let about = About {
+fn writer_properties(trial: &Trial) -> Result<WriterProperties, SamplesError> {
+    let about = TrialMetadata {
         name: trial.name.clone(),
         manoeuvre: trial.manoeuvre.clone(),
         depth_m: trial.depth_m,
@@ -187,7 +187,7 @@ fn write_column<W: Write + Send>(
     column.close()
 }
 
-fn about(reader: &SerializedFileReader<Bytes>) -> Result<About, SamplesError> {
+fn read_metadata(reader: &SerializedFileReader<Bytes>) -> Result<TrialMetadata, SamplesError> {
     let metadata = reader.metadata().file_metadata().key_value_metadata();
     let text = metadata
         .into_iter()
@@ -202,7 +202,7 @@ fn about(reader: &SerializedFileReader<Bytes>) -> Result<About, SamplesError> {
 }
 
 fn read_columns(reader: &SerializedFileReader<Bytes>) -> ParquetResult<BTreeMap<String, Vec<f64>>> {
-    let (names, groups) = (parquet_footer::headers(reader), reader.metadata().row_groups());
+    let (names, groups) = (parquet_footer::header_names(reader), reader.metadata().row_groups());
     // The total was checked against the limits when the file was opened.
     let rows: i64 = groups.iter().map(|group| group.num_rows()).sum();
     let mut columns: Vec<Vec<f64>> =
@@ -211,9 +211,9 @@ fn read_columns(reader: &SerializedFileReader<Bytes>) -> ParquetResult<BTreeMap<
         let group = reader.get_row_group(index)?;
         let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
         for (position, column) in columns.iter_mut().enumerate() {
-            let mut cells = Cells::new(&*group, position)?;
+            let mut cells = ColumnCells::new(&*group, position)?;
             for start in (0..rows).step_by(BATCH) {
-                cells.next(BATCH.min(rows - start))?;
+                cells.read_next(BATCH.min(rows - start))?;
                 column.extend_from_slice(&cells.values);
             }
         }
@@ -228,7 +228,7 @@ pub struct CsvPieces {
     /// Index of the next row group.
     group: usize,
     /// Columns of the current row group.
-    cells: Vec<Cells>,
+    cells: Vec<ColumnCells>,
     left: usize,
     has_begun: bool,
 }
@@ -242,9 +242,9 @@ impl CsvPieces {
     /// # Errors
     /// Returns an error if the file is damaged or too large.
     pub fn open(file: File) -> Result<Self, SamplesError> {
-        let reader = parquet_footer::open(file, Limits::default())
+        let reader = parquet_footer::open_file(file, FileLimits::default())
             .map_err(|refused| SamplesError::Content(refused.to_string()))?;
-        let names = parquet_footer::headers(&reader);
+        let names = parquet_footer::header_names(&reader);
         Ok(Self { reader, names, group: 0, cells: Vec::new(), left: 0, has_begun: false })
     }
 
@@ -259,7 +259,7 @@ impl CsvPieces {
             self.has_begun = true;
             writer.write_record(&self.names)?;
         }
-        let rows = parquet_footer::guarded(|| self.decode())?;
+        let rows = parquet_footer::catch_panics(|| self.decode_rows())?;
         let mut row = Vec::with_capacity(self.cells.len());
         for k in 0..rows {
             row.clear();
@@ -271,7 +271,7 @@ impl CsvPieces {
     }
 
     /// Decodes the next rows, and returns their number.
-    fn decode(&mut self) -> ParquetResult<usize> {
+    fn decode_rows(&mut self) -> ParquetResult<usize> {
         // Empty row groups are skipped.
         while self.left == 0 {
             if self.group == self.reader.num_row_groups() {
@@ -279,13 +279,13 @@ impl CsvPieces {
             }
             let group = self.reader.get_row_group(self.group)?;
             self.cells = (0..self.names.len())
-                .map(|column| Cells::new(&*group, column))
+                .map(|column| ColumnCells::new(&*group, column))
                 .collect::<Result<_, _>>()?;
             self.left = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
             self.group += 1;
         }
         let rows = PIECE_ROWS.min(self.left);
-        self.cells.iter_mut().try_for_each(|cells| cells.next(rows))?;
+        self.cells.iter_mut().try_for_each(|cells| cells.read_next(rows))?;
         self.left -= rows;
         Ok(rows)
     }

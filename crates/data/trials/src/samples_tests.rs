@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::{Mapping, Source, read_trial};
+use crate::{Mapping, TrialFile, read_trial};
 
 fn trial() -> Trial {
     let values =
@@ -36,7 +36,8 @@ fn csv_and_parquet_read_back_to_the_same_samples() {
     to_csv(&mut text, &trial()).unwrap();
     assert!(text.starts_with(b"t_s,y_m,u_m_s,delta_rad\n0.0,"));
     for bytes in [text, to_parquet(&trial()).unwrap()] {
-        let back = read_trial(Source::bytes("a", bytes.into()), &Mapping::canonical());
+        let back =
+            read_trial(TrialFile::from_bytes("a", bytes.into()), &Mapping::with_canonical_names());
         // The samples are noise, so the checks may refuse them; what was read is what was written.
         let back = back.unwrap();
         assert_eq!((back.t_s, back.channels), (trial().t_s, trial().channels));

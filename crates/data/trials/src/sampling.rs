@@ -5,17 +5,17 @@ use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use sistership_columns::{ColumnData, RecordingSample};
-use sistership_model::manifest::Missing;
+use sistership_model::manifest::MissingValues;
 
 use crate::findings::Findings;
-use crate::limits::Limits;
+use crate::limits::FileLimits;
 use crate::mapping::{Mapping, WrittenTime};
-use crate::preview::Preview;
-use crate::read::{Visit, each_row};
-use crate::source::{Content, Source};
+use crate::preview::FilePreview;
+use crate::read::{RowsVisitor, each_row};
+use crate::source::{InputContent, TrialFile};
 use crate::stream;
-use crate::table::{Start, Table, Target};
-use crate::taker::RowsFile;
+use crate::table::{ColumnTarget, Table, TimeOrigin};
+use crate::taker::RowSource;
 use crate::written_time::written_time;
 
 /// Size of text, bytes, beyond which only pieces are read, and the size and number of these.
@@ -29,46 +29,50 @@ const ROWS: usize = 100_000;
 #[derive(Debug, Default)]
 pub(crate) struct FileSample {
     pub recording: RecordingSample,
-    pub start: Option<Start>,
+    pub start: Option<TimeOrigin>,
 }
 
 /// Reads the columns of a file unconverted.
-pub(crate) fn sample(name: &str, path: &Path, preview: &Preview) -> io::Result<FileSample> {
-    let mut content = Source::open(name, path)?.content;
-    if let Content::Csv(_) = content
+pub(crate) fn sample_file(
+    name: &str,
+    path: &Path,
+    preview: &FilePreview,
+) -> io::Result<FileSample> {
+    let mut content = TrialFile::open(name, path)?.content;
+    if let InputContent::Csv(_) = content
         && std::fs::metadata(path)?.len() > WHOLE
     {
         // Pieces from the whole file: its start alone may show no manoeuvre.
-        content = Content::Csv(Box::new(Cursor::new(pieces(path)?)));
+        content = InputContent::Csv(Box::new(Cursor::new(read_pieces(path)?)));
     }
-    let time = written(preview);
+    let time = find_written_time(preview);
     let mut mapping = Mapping {
         unidentified: Some(WrittenTime(time)),
-        limits: Limits { rows: ROWS, ..Limits::default() },
-        ..Mapping::canonical()
+        limits: FileLimits { rows: ROWS, ..FileLimits::default() },
+        ..Mapping::with_canonical_names()
     };
     mapping.declared.sheet.clone_from(&preview.sheet);
-    mapping.conventions.missing = Missing::Bridge;
+    mapping.conventions.missing = MissingValues::Bridge;
     // Findings are ignored here: they are reported when the trial is read with its manifest.
     let mut findings = Findings::default();
-    let table = each_row(content, &mapping, &mut findings, WholeVisit(&mapping));
+    let table = each_row(content, &mapping, &mut findings, WholeVisitor(&mapping));
     let mut table = table.flatten().unwrap_or_default();
     let start = table.start.take();
-    Ok(FileSample { recording: recording(table, preview, time), start })
+    Ok(FileSample { recording: recording_sample(table, preview, time), start })
 }
 
-struct WholeVisit<'a>(&'a Mapping);
+struct WholeVisitor<'a>(&'a Mapping);
 
-impl Visit for WholeVisit<'_> {
+impl RowsVisitor for WholeVisitor<'_> {
     type Output = Option<Table>;
 
-    fn visit(self, file: impl RowsFile, _: &Findings) -> Self::Output {
-        stream::whole(file, self.0, &mut Findings::default())
+    fn visit_rows(self, file: impl RowSource, _: &Findings) -> Self::Output {
+        stream::read_whole(file, self.0, &mut Findings::default())
     }
 }
 
 /// Reads the start of a long file and pieces of the rest, cut at line ends.
-fn pieces(path: &Path) -> io::Result<Vec<u8>> {
+fn read_pieces(path: &Path) -> io::Result<Vec<u8>> {
     let mut file = File::open(path)?;
     let length = file.metadata()?.len();
     let mut text = Vec::new();
@@ -90,7 +94,7 @@ fn end_of_line<'a>(mut bytes: impl Iterator<Item = &'a u8>) -> usize {
 
 /// Returns the index and unit of the first column whose cells are dates, times of day or days of a
 /// sheet.
-fn written(preview: &Preview) -> Option<(usize, &'static str)> {
+fn find_written_time(preview: &FilePreview) -> Option<(usize, &'static str)> {
     (0..preview.names.len()).find_map(|at| {
         let cells: Vec<&str> =
             preview.rows.iter().filter_map(|row| row.get(at)).map(String::as_str).collect();
@@ -98,17 +102,17 @@ fn written(preview: &Preview) -> Option<(usize, &'static str)> {
     })
 }
 
-fn recording(
+fn recording_sample(
     table: Table,
-    preview: &Preview,
+    preview: &FilePreview,
     time: Option<(usize, &'static str)>,
 ) -> RecordingSample {
     let rows = table.rows.len();
     let of_place = |at: usize| {
         let place = u16::try_from(at).unwrap_or(u16::MAX);
-        let is_it = |target: Target| match target {
-            Target::Time => time.is_some_and(|(written, _)| written == at),
-            target => target == Target::Unidentified(place),
+        let is_it = |target: ColumnTarget| match target {
+            ColumnTarget::Time => time.is_some_and(|(written, _)| written == at),
+            target => target == ColumnTarget::Unidentified(place),
         };
         table.columns.iter().position(|column| is_it(column.target))
     };

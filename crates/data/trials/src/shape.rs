@@ -2,37 +2,38 @@
 
 use indexmap::IndexMap;
 use sistership_columns::{
-    Alternative, GivenColumn, Identification, IdentifiedColumn, RecordingSample, Role, identify,
+    AlternativeReading, GivenColumn, Identification, IdentifiedColumn, RecordingSample, Role,
+    identify_columns,
 };
 use sistership_model::manifest::ColumnMapping;
 
-use crate::guess::Guess;
-use crate::preview::Preview;
-use crate::table::Target;
-use crate::units::Kind;
+use crate::guess::ColumnGuess;
+use crate::preview::FilePreview;
+use crate::table::ColumnTarget;
+use crate::units::UnitKind;
 
 /// Largest number of rows of all files that are compared.
 const ROWS: usize = 60_000;
 
 /// Columns that several files share, and their identification.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Shape {
+pub(crate) struct ColumnSet {
     names: Vec<String>,
     units: Vec<String>,
     /// Channels of NMEA sentences, which need no mapping.
-    sentences: Vec<(String, Target)>,
+    sentences: Vec<(String, ColumnTarget)>,
     sample: RecordingSample,
     pub columns: IndexMap<String, ColumnMapping>,
     /// Identified content of each column, without the name of the file.
-    pub guesses: Vec<Guess>,
+    pub guesses: Vec<ColumnGuess>,
     /// Index of the time column, and its factor to seconds.
     pub time: Option<(usize, f64)>,
     /// Notes on combinations of columns.
     pub notes: Vec<String>,
 }
 
-impl Shape {
-    pub(crate) fn new(preview: &Preview) -> Self {
+impl ColumnSet {
+    pub(crate) fn new(preview: &FilePreview) -> Self {
         Self {
             names: preview.names.clone(),
             units: preview.units.clone(),
@@ -42,14 +43,14 @@ impl Shape {
     }
 
     /// Returns true if a file has these columns.
-    pub(crate) fn fits(&self, preview: &Preview) -> bool {
+    pub(crate) fn matches_preview(&self, preview: &FilePreview) -> bool {
         // Logs of NMEA sentences need no identification, and keep a set of their own.
         let sentences = self.sentences.is_empty() && preview.sentences.is_empty();
         sentences && self.names == preview.names && self.units == preview.units
     }
 
     /// Adds the rows of a file.
-    pub(crate) fn add(&mut self, sample: &RecordingSample) {
+    pub(crate) fn add_sample(&mut self, sample: &RecordingSample) {
         if self.sample.columns.is_empty() {
             self.sample = sample.clone();
             return;
@@ -66,15 +67,15 @@ impl Shape {
     }
 
     /// Identifies the columns, and releases the sample.
-    pub(crate) fn identify(&mut self, given: &[GivenColumn]) {
+    pub(crate) fn identify_all(&mut self, given: &[GivenColumn]) {
         for (name, target) in &self.sentences {
-            self.guesses.push(of_sentence(name, *target));
+            self.guesses.push(guess_sentence(name, *target));
         }
-        let found = identify(&self.sample, given);
+        let found = identify_columns(&self.sample, given);
         for (at, column) in found.columns.iter().enumerate() {
-            let guess = guess(column, &found);
+            let guess = guess_column(column, &found);
             if column.role == Some(Role::Time) {
-                self.time = Some((at, seconds(&column.unit)));
+                self.time = Some((at, unit_seconds(&column.unit)));
             }
             if let (Some(channel), Some(unit)) = (&guess.channel, &guess.unit) {
                 let mapping = ColumnMapping {
@@ -85,57 +86,57 @@ impl Shape {
             }
             self.guesses.push(guess);
         }
-        self.notes.extend(thrusters(&found));
+        self.notes.extend(thruster_note(&found));
         // The samples may be large, and are not needed any more.
         self.sample = RecordingSample::default();
     }
 
     /// Returns true if it has a channel of that name.
-    pub(crate) fn has(&self, name: &str) -> bool {
+    pub(crate) fn has_channel(&self, name: &str) -> bool {
         let told = || self.sentences.iter().any(|(_, held)| held.name() == name);
         self.columns.contains_key(name) || told()
     }
 
-    fn any(&self, names: &[&str]) -> bool {
-        names.iter().any(|name| self.has(name))
+    fn has_any(&self, names: &[&str]) -> bool {
+        names.iter().any(|name| self.has_channel(name))
     }
 
     /// Returns true if it is a complete trial: time, steering or propulsion, turning and speed.
     pub(crate) fn is_complete(&self) -> bool {
         // Commands of thrusters have no channel, but count as steering here.
-        let commands = self.any(&["delta", "delta_s", "delta_p", "n", "n_s", "n_p"])
+        let commands = self.has_any(&["delta", "delta_s", "delta_p", "n", "n_s", "n_p"])
             || self.notes.iter().any(|note| note.contains("thruster"));
-        let speed = self.any(&["u", "speed", "x", "latitude", "v_north"]);
-        commands && speed && self.any(&["r", "psi"])
+        let speed = self.has_any(&["u", "speed", "x", "latitude", "v_north"]);
+        commands && speed && self.has_any(&["r", "psi"])
     }
 
     /// Returns the number of channels besides time.
-    pub(crate) fn channels(&self) -> usize {
+    pub(crate) fn channel_count(&self) -> usize {
         self.columns.len() + self.sentences.len()
     }
 
     /// Returns true if the sign of the rudder is reversed; `None` if there is no rudder.
-    pub(crate) fn rudder_reversed(&self) -> Option<bool> {
+    pub(crate) fn is_rudder_reversed(&self) -> Option<bool> {
         let rudder =
             ["delta", "delta_s", "delta_p"].into_iter().find_map(|one| self.columns.get(one));
         rudder.map(|column| column.reversed)
     }
 }
 
-fn seconds(unit: &str) -> f64 {
+fn unit_seconds(unit: &str) -> f64 {
     match unit {
         // Days of a sheet were converted to seconds when the sample was read.
         "excel" => 1.0,
-        unit => Kind::Time.factor(unit).unwrap_or(1.0),
+        unit => UnitKind::Time.unit_to_si(unit).unwrap_or(1.0),
     }
 }
 
-fn of_sentence(name: &str, target: Target) -> Guess {
-    Guess {
+fn guess_sentence(name: &str, target: ColumnTarget) -> ColumnGuess {
+    ColumnGuess {
         file: String::new(),
         column: name.to_owned(),
         channel: Some(target.name().to_owned()),
-        unit: Some(Kind::of(target).canonical().to_owned()),
+        unit: Some(UnitKind::from_target(target).canonical_unit().to_owned()),
         reversed: false,
         why: "NMEA 0183 says what the sentence holds; it needs no mapping".into(),
         certain: true,
@@ -143,8 +144,8 @@ fn of_sentence(name: &str, target: Target) -> Guess {
     }
 }
 
-fn guess(column: &IdentifiedColumn, all: &Identification) -> Guess {
-    let nothing = |why: String, certain: bool| Guess {
+fn guess_column(column: &IdentifiedColumn, all: &Identification) -> ColumnGuess {
+    let nothing = |why: String, certain: bool| ColumnGuess {
         file: String::new(),
         column: column.header.clone(),
         channel: None,
@@ -152,33 +153,33 @@ fn guess(column: &IdentifiedColumn, all: &Identification) -> Guess {
         reversed: false,
         why,
         certain,
-        question: question(column),
+        question: alternative_question(column),
     };
     let Some(role) = column.role else {
         return nothing(format!("left out: {}", column.reason), column.is_certain);
     };
     // Certain, since the column is left out by rule and not by evidence.
-    if let Some(why) = redundant(role, all) {
+    if let Some(why) = redundancy_reason(role, all) {
         return nothing(why, true);
     }
-    let role = read_as(role, all);
-    if Target::by_name(role.name()).is_none() {
+    let role = effective_role(role, all);
+    if ColumnTarget::from_name(role.name()).is_none() {
         return nothing(format!("left out: {}: no channel holds it", role.name()), true);
     }
-    Guess {
+    ColumnGuess {
         file: String::new(),
         column: column.header.clone(),
         channel: Some(role.name().to_owned()),
         unit: Some(column.unit.clone()),
         reversed: column.is_reversed,
-        why: why(column, role),
+        why: guess_reason(column, role),
         // A percentage needs a declared maximum, and a changed role a confirmation by the user.
         certain: column.is_certain && column.unit != "%" && Some(role) == column.role,
-        question: question(column),
+        question: alternative_question(column),
     }
 }
 
-fn why(column: &IdentifiedColumn, role: Role) -> String {
+fn guess_reason(column: &IdentifiedColumn, role: Role) -> String {
     if column.unit == "%" {
         let maximum = format!("declare what 100 % is as `maximum` of {}", role.name());
         return format!("{}; a percentage: {maximum}", column.reason);
@@ -190,7 +191,7 @@ fn why(column: &IdentifiedColumn, role: Role) -> String {
 }
 
 /// Returns the reason for which a column is not read if another gives the same.
-fn redundant(role: Role, all: &Identification) -> Option<String> {
+fn redundancy_reason(role: Role, all: &Identification) -> Option<String> {
     let has = |role: Role| all.find(role).is_some();
     let metres = has(Role::X) && has(Role::Y);
     let body = has(Role::U) && has(Role::V);
@@ -209,28 +210,28 @@ fn redundant(role: Role, all: &Identification) -> Option<String> {
 }
 
 /// Returns the role of a column; a speed over ground without other motion data is the speed ahead.
-fn read_as(role: Role, all: &Identification) -> Role {
+fn effective_role(role: Role, all: &Identification) -> Role {
     let has = |role: Role| all.find(role).is_some();
     let alone = ![Role::U, Role::Course, Role::X, Role::Latitude].into_iter().any(has);
     if role == Role::Speed && alone { Role::U } else { role }
 }
 
 /// Returns the question to the user if an alternative is nearly as likely, and how to answer it.
-fn question(column: &IdentifiedColumn) -> Option<String> {
+fn alternative_question(column: &IdentifiedColumn) -> Option<String> {
     let other = column.alternative.as_ref()?;
-    let first = Alternative {
+    let first = AlternativeReading {
         role: column.role,
         unit: column.unit.clone(),
         is_reversed: column.is_reversed,
         probability: column.probability,
     };
-    let text = |one: &Alternative| match one.role {
+    let text = |one: &AlternativeReading| match one.role {
         Some(role) if one.is_reversed => format!("{} in {}, reversed", role.name(), one.unit),
         Some(role) => format!("{} in {}", role.name(), one.unit),
         None => "left out".to_owned(),
     };
     // Argument of the command line that settles the column in this way.
-    let flag = |one: &Alternative| match one.role {
+    let flag = |one: &AlternativeReading| match one.role {
         Some(role) => {
             let reversed = if one.is_reversed { ":reversed" } else { "" };
             format!("--column '{}={}:{}{reversed}'", column.header, role.name(), one.unit)
@@ -250,7 +251,7 @@ fn question(column: &IdentifiedColumn) -> Option<String> {
 }
 
 /// Returns the note on commands of two thrusters, for which a trial has no channel.
-fn thrusters(found: &Identification) -> Option<String> {
+fn thruster_note(found: &Identification) -> Option<String> {
     let pair = found.thrusters.as_ref()?;
     let (port, starboard) = pair.columns;
     let header = |at: usize| found.columns.get(at).map_or("", |column| column.header.as_str());

@@ -71,26 +71,26 @@ pub fn savitzky_golay(
     window: usize,
     degree: usize,
 ) -> Result<Vec<f64>, SmoothingError> {
-    check(window, degree)?;
+    check_settings(window, degree)?;
     if values.len() < window {
         return Err(SmoothingError::Short { window, samples: values.len() });
     }
-    let basis = basis(window, degree);
+    let basis = polynomial_basis(window, degree);
     let (half, last) = (window / 2, values.len() - window);
     // The fitted value at a place of a window is the projection onto the polynomials, evaluated
     // there.
     let fitted = |start: usize, weights: &[f64]| -> f64 {
         values[start..start + window].iter().zip(weights).map(|(a, b)| a * b).sum()
     };
-    let middle = weights(&basis, half);
-    let head = (0..half).map(|place| fitted(0, &weights(&basis, place)));
+    let middle = sample_weights(&basis, half);
+    let head = (0..half).map(|place| fitted(0, &sample_weights(&basis, place)));
     let body = (0..=last).map(|start| fitted(start, &middle));
-    let tail = (half + 1..window).map(|place| fitted(last, &weights(&basis, place)));
+    let tail = (half + 1..window).map(|place| fitted(last, &sample_weights(&basis, place)));
     Ok(head.chain(body).chain(tail).collect())
 }
 
 /// Checks that window and degree are valid for [`savitzky_golay`].
-pub(crate) fn check(window: usize, degree: usize) -> Result<(), SmoothingError> {
+pub(crate) fn check_settings(window: usize, degree: usize) -> Result<(), SmoothingError> {
     match () {
         () if window.is_multiple_of(2) || window > MAX_WINDOW => {
             Err(SmoothingError::Window(window))
@@ -103,29 +103,33 @@ pub(crate) fn check(window: usize, degree: usize) -> Result<(), SmoothingError> 
 
 /// Returns orthonormal polynomials on the window, one per column; on [-1, 1], where powers are well
 /// conditioned.
-fn basis(window: usize, degree: usize) -> DMatrix<f64> {
+fn polynomial_basis(window: usize, degree: usize) -> DMatrix<f64> {
     let half = (window / 2).max(1) as f64;
     let at = |row: usize| (row as f64 - (window / 2) as f64) / half;
     DMatrix::from_fn(window, degree + 1, |row, power| at(row).powi(power as i32)).qr().q()
 }
 
 /// Returns the weights of the window's samples in the fitted value at one place.
-fn weights(basis: &DMatrix<f64>, place: usize) -> Vec<f64> {
+fn sample_weights(basis: &DMatrix<f64>, place: usize) -> Vec<f64> {
     (basis * basis.row(place).transpose()).iter().copied().collect()
 }
 
 /// Smooths the measured motions, each segment without gaps separately.
-pub(crate) fn smooth(recording: &mut Recording, smoothing: Smoothing, findings: &mut Findings) {
-    if let Err(refused) = check(smoothing.window, smoothing.degree) {
+pub(crate) fn smooth_recording(
+    recording: &mut Recording,
+    smoothing: Smoothing,
+    findings: &mut Findings,
+) {
+    if let Err(refused) = check_settings(smoothing.window, smoothing.degree) {
         return findings.error(None, None, refused.to_string());
     }
-    if let Some(k) = uneven(recording) {
+    if let Some(k) = find_uneven_step(recording) {
         let message = format!(
             "the step here differs from the median of {:.4} s by more than a tenth, and smoothing \
              needs even steps; resample the file or leave `smoothing` out",
             recording.interval_s
         );
-        return findings.error(Some(recording.row(k)), Some(&recording.time), message);
+        return findings.error(Some(recording.row_number(k)), Some(&recording.time), message);
     }
     // Cloned, since smoothing borrows the recording mutably.
     for segment in recording.segments.clone() {
@@ -133,7 +137,7 @@ pub(crate) fn smooth(recording: &mut Recording, smoothing: Smoothing, findings: 
     }
 }
 
-fn uneven(recording: &Recording) -> Option<usize> {
+fn find_uneven_step(recording: &Recording) -> Option<usize> {
     let (t, interval) = (recording.time(), recording.interval_s);
     let inside = recording.segments.iter().flat_map(|segment| segment.start + 1..segment.end);
     inside.into_iter().find(|&k| ((t[k] - t[k - 1]) / interval - 1.0).abs() > UNEVEN)
@@ -150,7 +154,7 @@ fn smooth_segment(
             "{} samples between gaps are fewer than the smoothing window; left as recorded",
             segment.len()
         );
-        return findings.warning(Some(recording.row(segment.start)), None, message);
+        return findings.warning(Some(recording.row_number(segment.start)), None, message);
     }
     for channel in SMOOTHED {
         if let Some(values) = recording.trial.channels.get_mut(&channel)
@@ -166,7 +170,7 @@ fn smooth_segment(
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::testing::{messages, recording};
+    use crate::testing::{finding_messages, test_recording};
 
     #[test]
     fn scipys_example_comes_out() {
@@ -195,18 +199,18 @@ mod tests {
     fn smoothing_stops_at_gaps_and_refuses_uneven_steps() {
         let smoothing = Smoothing { window: 5, degree: 1 };
         let step: Vec<f64> = (0..40).map(|k| if k < 20 { 0.0 } else { 1.0 }).collect();
-        let mut gap = recording(&[(Channel::U, step.clone()), (Channel::Delta, step.clone())]);
+        let mut gap = test_recording(&[(Channel::U, step.clone()), (Channel::Delta, step.clone())]);
         gap.trial.t_s.iter_mut().skip(20).for_each(|t| *t += 10.0);
         gap.settle_time();
-        smooth(&mut gap, smoothing, &mut Findings::default());
+        smooth_recording(&mut gap, smoothing, &mut Findings::default());
         assert!(
             gap.channel(Channel::U).unwrap().iter().zip(&step).all(|(a, b)| (a - b).abs() < 1e-12)
         );
-        let mut uneven = recording(&[(Channel::U, step)]);
+        let mut uneven = test_recording(&[(Channel::U, step)]);
         uneven.trial.t_s[7] += 0.2;
         uneven.settle_time();
         let mut findings = Findings::default();
-        smooth(&mut uneven, smoothing, &mut findings);
-        assert!(messages(findings).starts_with("error Some(9)"));
+        smooth_recording(&mut uneven, smoothing, &mut findings);
+        assert!(finding_messages(findings).starts_with("error Some(9)"));
     }
 }

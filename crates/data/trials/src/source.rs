@@ -7,26 +7,26 @@ use std::path::{Path, PathBuf};
 use bytes::Bytes;
 
 use crate::declarations::SensorFile;
-use crate::magic::{self, Kind, LOOKED_AT};
+use crate::magic::{self, FormatKind, LOOKED_AT};
 use crate::mapping::Mapping;
 use crate::workbook::ReadSeek;
 
 /// Input file: its name, which every message mentions, and its bytes.
-pub struct Source<'a> {
+pub struct TrialFile<'a> {
     pub(crate) name: String,
-    pub(crate) content: Content<'a>,
-    pub(crate) sensors: Vec<Sensor<'a>>,
+    pub(crate) content: InputContent<'a>,
+    pub(crate) sensors: Vec<SensorInput<'a>>,
 }
 
 /// File with further channels of the same trial.
-pub(crate) struct Sensor<'a> {
+pub(crate) struct SensorInput<'a> {
     pub name: String,
-    pub content: Content<'a>,
+    pub content: InputContent<'a>,
     pub mapping: Mapping,
     pub clock_offset_s: Option<f64>,
 }
 
-pub(crate) enum Content<'a> {
+pub(crate) enum InputContent<'a> {
     Csv(Box<dyn Read + 'a>),
     ParquetBytes(Bytes),
     ParquetFile(File),
@@ -37,39 +37,39 @@ pub(crate) enum Content<'a> {
     Other(&'static str),
 }
 
-impl<'a> Source<'a> {
+impl<'a> TrialFile<'a> {
     /// Creates an input file of CSV from any reader, streamed row by row.
-    pub fn csv(name: impl Into<String>, reader: impl Read + 'a) -> Self {
-        Self::whole(name.into(), Content::Csv(Box::new(reader)))
+    pub fn from_csv(name: impl Into<String>, reader: impl Read + 'a) -> Self {
+        Self::without_sensors(name.into(), InputContent::Csv(Box::new(reader)))
     }
 
     /// Creates an input file of Parquet in memory.
-    pub fn parquet(name: impl Into<String>, bytes: Bytes) -> Self {
-        Self::whole(name.into(), Content::ParquetBytes(bytes))
+    pub fn from_parquet(name: impl Into<String>, bytes: Bytes) -> Self {
+        Self::without_sensors(name.into(), InputContent::ParquetBytes(bytes))
     }
 
     /// Creates an input file in memory, whose format is detected by its first bytes, independent of
     /// its name.
-    pub fn bytes(name: impl Into<String>, bytes: Bytes) -> Self {
-        match magic::kind(&bytes[..bytes.len().min(LOOKED_AT)]) {
-            Kind::Parquet => Self::parquet(name, bytes),
-            kind => Self::of(kind, name.into(), io::Cursor::new(bytes)),
+    pub fn from_bytes(name: impl Into<String>, bytes: Bytes) -> Self {
+        match magic::detect_format(&bytes[..bytes.len().min(LOOKED_AT)]) {
+            FormatKind::Parquet => Self::from_parquet(name, bytes),
+            kind => Self::from_format(kind, name.into(), io::Cursor::new(bytes)),
         }
     }
 
-    fn of(kind: Kind, name: String, input: impl Read + Seek + 'a) -> Self {
+    fn from_format(kind: FormatKind, name: String, input: impl Read + Seek + 'a) -> Self {
         let input = Box::new(input);
         let content = match kind {
-            Kind::Workbook => Content::Workbook(input),
-            Kind::Matlab => Content::Matlab(input),
-            Kind::Nmea => Content::Nmea(input),
-            Kind::Other(what) => Content::Other(what),
-            _ => Content::Csv(input),
+            FormatKind::Workbook => InputContent::Workbook(input),
+            FormatKind::Matlab => InputContent::Matlab(input),
+            FormatKind::Nmea => InputContent::Nmea(input),
+            FormatKind::Other(what) => InputContent::Other(what),
+            _ => InputContent::Csv(input),
         };
-        Self::whole(name, content)
+        Self::without_sensors(name, content)
     }
 
-    fn whole(name: String, content: Content<'a>) -> Self {
+    fn without_sensors(name: String, content: InputContent<'a>) -> Self {
         Self { name, content, sensors: Vec::new() }
     }
 
@@ -83,7 +83,7 @@ impl<'a> Source<'a> {
         clock_offset_s: Option<f64>,
     ) -> Self {
         let Self { name, content, .. } = other;
-        self.sensors.push(Sensor { name, content, mapping, clock_offset_s });
+        self.sensors.push(SensorInput { name, content, mapping, clock_offset_s });
         self
     }
 
@@ -101,7 +101,7 @@ impl<'a> Source<'a> {
         for (sensor, path) in sensors {
             let named = |error| io::Error::other(format!("{}: {error}", sensor.file));
             let other = Self::open(&sensor.file, path).map_err(named)?;
-            source = source.with_sensor(other, mapping.of_sensor(sensor), sensor.clock_offset_s);
+            source = source.with_sensor(other, mapping.for_sensor(sensor), sensor.clock_offset_s);
         }
         Ok(source)
     }
@@ -117,10 +117,10 @@ impl<'a> Source<'a> {
         // The start is read again with the rest of the file.
         file.seek(SeekFrom::Start(0))?;
         let name = name.into();
-        Ok(match magic::kind(&start) {
+        Ok(match magic::detect_format(&start) {
             // Parquet is read by offset, other formats through a buffer.
-            Kind::Parquet => Self::whole(name, Content::ParquetFile(file)),
-            kind => Self::of(kind, name, BufReader::new(file)),
+            FormatKind::Parquet => Self::without_sensors(name, InputContent::ParquetFile(file)),
+            kind => Self::from_format(kind, name, BufReader::new(file)),
         })
     }
 }

@@ -1,11 +1,11 @@
 //! Parsing of dates and times of day in common forms.
 
-use crate::calendar::{SECOND, day};
+use crate::calendar::{SECOND, day_of_date};
 use crate::open_dates::OpenDate;
 
 /// Order of day and month before the year.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Order {
+pub(crate) enum DateOrder {
     DayFirst,
     MonthFirst,
     /// Not known until the whole column is read.
@@ -14,7 +14,7 @@ pub(crate) enum Order {
 
 /// Date of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Date {
+pub(crate) enum StampDate {
     /// Days since 1970.
     Known(i64),
     /// Two numbers, one of which is the month, and the year.
@@ -25,8 +25,8 @@ pub(crate) enum Date {
 
 /// Content of a cell of a time column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Stamp {
-    pub date: Date,
+pub(crate) struct TimeStamp {
+    pub date: StampDate,
     /// Nanoseconds since midnight, as written.
     pub of_day: i64,
     /// Offset of the time zone from UTC, ns, positive to the east, if one is written.
@@ -37,22 +37,22 @@ const MONTHS: [&str; 12] =
     ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
 
 /// Parses a date with time of day, or a time of day.
-pub(crate) fn stamp(text: &str, order: Order) -> Option<Stamp> {
+pub(crate) fn parse_stamp(text: &str, order: DateOrder) -> Option<TimeStamp> {
     let text = text.trim();
     // No time is longer, and the slices below require ASCII.
     if text.len() > 48 || !text.is_ascii() {
         return None;
     }
-    let (date, time) = split(text);
-    let (time, zone) = zone(time)?;
-    let (time, half) = half(time.trim());
-    let of_day = of_day(time, half)?;
-    let date = if date.is_empty() { Date::Absent } else { self::date(date, order)? };
-    Some(Stamp { date, of_day, zone })
+    let (date, time) = split_date(text);
+    let (time, zone) = split_zone(time)?;
+    let (time, half) = split_half_day(time.trim());
+    let of_day = parse_day_time(time, half)?;
+    let date = if date.is_empty() { StampDate::Absent } else { self::parse_date(date, order)? };
+    Some(TimeStamp { date, of_day, zone })
 }
 
 /// Splits a text into date and time of day, separated by `T`, blanks or a comma.
-fn split(text: &str) -> (&str, &str) {
+fn split_date(text: &str) -> (&str, &str) {
     let colon = text.find(':').unwrap_or(text.len());
     match text[..colon].rfind([' ', 'T', 't', ',', '_']) {
         Some(at) => (text[..at].trim_matches([' ', ',']), &text[at + 1..]),
@@ -62,7 +62,7 @@ fn split(text: &str) -> (&str, &str) {
 
 /// Splits a time into the time without its zone, and the zone: `Z`, `UTC`, `GMT`, `+02:00`, `-0330`
 /// or `+02`.
-fn zone(time: &str) -> Option<(&str, Option<i64>)> {
+fn split_zone(time: &str) -> Option<(&str, Option<i64>)> {
     for name in ["Z", "z", "UTC", "GMT"] {
         if let Some(rest) = time.strip_suffix(name) {
             return Some((rest, Some(0)));
@@ -71,8 +71,8 @@ fn zone(time: &str) -> Option<(&str, Option<i64>)> {
     let Some(at) = time.find(['+', '-']) else { return Some((time, None)) };
     let digits: String = time[at + 1..].chars().filter(|&c| c != ':').collect();
     let (hours, minutes) = match digits.len() {
-        2 => (whole(&digits)?, 0),
-        4 => (whole(&digits[..2])?, whole(&digits[2..])?),
+        2 => (parse_digits(&digits)?, 0),
+        4 => (parse_digits(&digits[..2])?, parse_digits(&digits[2..])?),
         _ => return None,
     };
     let sign = if time.as_bytes()[at] == b'-' { -1 } else { 1 };
@@ -81,7 +81,7 @@ fn zone(time: &str) -> Option<(&str, Option<i64>)> {
 }
 
 /// Splits a time into the time without `AM` or `PM`, and the presence of either: true for `PM`.
-fn half(time: &str) -> (&str, Option<bool>) {
+fn split_half_day(time: &str) -> (&str, Option<bool>) {
     let cut = |name: &str| {
         let at = time.len().checked_sub(name.len())?;
         time[at..].eq_ignore_ascii_case(name).then(|| time[..at].trim_end())
@@ -94,10 +94,10 @@ fn half(time: &str) -> (&str, Option<bool>) {
 }
 
 /// Returns the nanoseconds since midnight of `hh:mm`, `hh:mm:ss`, `hh:mm:ss.sss` or `hh:mm:ss,sss`.
-fn of_day(time: &str, half: Option<bool>) -> Option<i64> {
+fn parse_day_time(time: &str, half: Option<bool>) -> Option<i64> {
     let mut parts = time.split(':');
-    let (hour, minute) = (whole(parts.next()?)?, whole(parts.next()?)?);
-    let seconds = parts.next().map_or(Some(0), nanoseconds)?;
+    let (hour, minute) = (parse_digits(parts.next()?)?, parse_digits(parts.next()?)?);
+    let seconds = parts.next().map_or(Some(0), parse_seconds)?;
     let hour = match half {
         None => hour,
         Some(_) if !(1..=12).contains(&hour) => return None,
@@ -108,66 +108,72 @@ fn of_day(time: &str, half: Option<bool>) -> Option<i64> {
     fits.then_some((hour * 60 + minute) * 60 * SECOND + seconds)
 }
 
-fn nanoseconds(text: &str) -> Option<i64> {
+fn parse_seconds(text: &str) -> Option<i64> {
     let (seconds, fraction) = text.split_once(['.', ',']).unwrap_or((text, ""));
     if !fraction.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
     }
     // Padded with zeros or cut to nine digits, hence nanoseconds.
     let digits = format!("{:0<9.9}", fraction);
-    Some(whole(seconds)? * SECOND + digits.parse::<i64>().ok()?)
+    Some(parse_digits(seconds)? * SECOND + digits.parse::<i64>().ok()?)
 }
 
 /// Parses one to four digits and nothing else.
-fn whole(text: &str) -> Option<i64> {
+fn parse_digits(text: &str) -> Option<i64> {
     let digits = (1..=4).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit());
     if digits { text.parse().ok() } else { None }
 }
 
-fn date(text: &str, order: Order) -> Option<Date> {
+fn parse_date(text: &str, order: DateOrder) -> Option<StampDate> {
     let mark = text.chars().find(|c| matches!(c, '-' | '/' | '.' | ' '))?;
     let parts: Vec<&str> = text.split(mark).collect();
     let &[one, two, three] = parts.as_slice() else { return None };
     if one.len() == 4 {
-        return Some(Date::Known(day(whole(one)?, month(two)?, whole(three)?)?));
+        return Some(StampDate::Known(day_of_date(
+            parse_digits(one)?,
+            parse_month(two)?,
+            parse_digits(three)?,
+        )?));
     }
     // Two digits after hyphens may be a day with the year in front: ambiguous, and refused.
-    if three.len() == 2 && mark == '-' && whole(two).is_some() {
+    if three.len() == 2 && mark == '-' && parse_digits(two).is_some() {
         return None;
     }
-    let (year, first) = (year(three)?, whole(one)?);
-    let (Some(second), true) = (whole(two), matches!(mark, '/' | '-')) else {
+    let (year, first) = (parse_year(three)?, parse_digits(one)?);
+    let (Some(second), true) = (parse_digits(two), matches!(mark, '/' | '-')) else {
         // With points or names of months the day comes first in all common forms.
-        return Some(Date::Known(day(year, month(two)?, first)?));
+        return Some(StampDate::Known(day_of_date(year, parse_month(two)?, first)?));
     };
     match order {
-        Order::DayFirst => Some(Date::Known(day(year, second, first)?)),
-        Order::MonthFirst => Some(Date::Known(day(year, first, second)?)),
-        Order::Open => {
-            let fits = day(year, second, first).or_else(|| day(year, first, second)).is_some();
-            fits.then_some(Date::Either(OpenDate { first, second, year }))
+        DateOrder::DayFirst => Some(StampDate::Known(day_of_date(year, second, first)?)),
+        DateOrder::MonthFirst => Some(StampDate::Known(day_of_date(year, first, second)?)),
+        DateOrder::Open => {
+            let fits = day_of_date(year, second, first)
+                .or_else(|| day_of_date(year, first, second))
+                .is_some();
+            fits.then_some(StampDate::Either(OpenDate { first, second, year }))
         }
     }
 }
 
 /// Parses a year of four digits, or of two: those from 69 on are 19xx, the others 20xx
 /// (POSIX.1-2017, `strptime`, `%y`).
-fn year(text: &str) -> Option<i64> {
-    match (text.len(), whole(text)?) {
+fn parse_year(text: &str) -> Option<i64> {
+    match (text.len(), parse_digits(text)?) {
         (4, year) => Some(year),
         (2, year) => Some(if year < 69 { 2000 + year } else { 1900 + year }),
         _ => None,
     }
 }
 
-fn month(text: &str) -> Option<i64> {
+fn parse_month(text: &str) -> Option<i64> {
     let named = MONTHS.iter().zip(1..).find(|(name, _)| text.eq_ignore_ascii_case(name));
-    named.map_or_else(|| whole(text), |(_, number)| Some(number))
+    named.map_or_else(|| parse_digits(text), |(_, number)| Some(number))
 }
 
-impl Stamp {
+impl TimeStamp {
     /// Returns seconds in UTC since midnight of a reference day that is `days` days earlier.
-    pub(crate) fn seconds(self, days: i64) -> f64 {
+    pub(crate) fn seconds_after(self, days: i64) -> f64 {
         let of_day = self.of_day - self.zone.unwrap_or(0);
         days as f64 * 86_400.0 + of_day as f64 / SECOND as f64
     }
@@ -177,16 +183,17 @@ impl Stamp {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::calendar::iso;
+    use crate::calendar::format_iso;
 
     fn read(text: &str) -> String {
-        let stamp = stamp(text, Order::Open).unwrap();
+        let stamp = parse_stamp(text, DateOrder::Open).unwrap();
         match stamp.date {
-            Date::Known(day) => iso((stamp.seconds(day) * 1e3).round() as i64 * 1_000_000),
-            Date::Absent => {
-                iso((stamp.seconds(0) * 1e3) as i64 * 1_000_000).replace("1970-01-01", "")
+            StampDate::Known(day) => {
+                format_iso((stamp.seconds_after(day) * 1e3).round() as i64 * 1_000_000)
             }
-            Date::Either(date) => format!("{}|{}|{}", date.first, date.second, date.year),
+            StampDate::Absent => format_iso((stamp.seconds_after(0) * 1e3) as i64 * 1_000_000)
+                .replace("1970-01-01", ""),
+            StampDate::Either(date) => format!("{}|{}|{}", date.first, date.second, date.year),
         }
     }
 
@@ -236,7 +243,7 @@ mod tests {
             "99999:00",
             "12:00:00.1.2",
         ] {
-            assert_eq!(stamp(text, Order::Open), None, "{text}");
+            assert_eq!(parse_stamp(text, DateOrder::Open), None, "{text}");
         }
     }
 }

@@ -1,67 +1,67 @@
 //! Reading of all rows of a file into one table, and of a table as rows.
 
-use crate::clock::Clock;
+use crate::clock::ColumnClock;
 use crate::findings::Findings;
 use crate::mapping::Mapping;
-use crate::number::Fault;
-use crate::rows::Builder;
-use crate::table::{Column, Table};
-use crate::taker::{RowsFile, Taker, time_at};
+use crate::number::CellFault;
+use crate::rows::TableBuilder;
+use crate::table::{Table, TableColumn};
+use crate::taker::{RowSink, RowSource, time_column};
 
 /// Reads all rows into one table.
-pub(crate) fn whole(
-    mut file: impl RowsFile,
+pub(crate) fn read_whole(
+    mut file: impl RowSource,
     mapping: &Mapping,
     findings: &mut Findings,
 ) -> Option<Table> {
     let columns = file.columns().to_vec();
-    let builder = Builder::new(columns, mapping.conventions.missing, findings);
-    let mut builder = builder.with_room(file.room());
-    file.each(&mut builder);
-    let drops = builder.drops();
-    let mut table = builder.finish();
-    file.finish(drops, &mut table, findings);
+    let builder = TableBuilder::new(columns, mapping.conventions.missing, findings);
+    let mut builder = builder.with_room(file.expected_rows());
+    file.feed_rows(&mut builder);
+    let drops = builder.drops_rows();
+    let mut table = builder.finish_table();
+    file.complete_table(drops, &mut table, findings);
     Some(table)
 }
 
 /// Rows of a table that is already in memory.
 pub(crate) struct TableRows {
     table: Table,
-    columns: Vec<Column>,
+    columns: Vec<TableColumn>,
 }
 
 impl TableRows {
     pub(crate) fn new(table: Table) -> Self {
         // The numbers are in SI units already.
-        let si = |column: &Column| Column { to_si: 1.0, ..column.clone() };
+        let si = |column: &TableColumn| TableColumn { to_si: 1.0, ..column.clone() };
         Self { columns: table.columns.iter().map(si).collect(), table }
     }
 }
 
-impl RowsFile for TableRows {
-    fn columns(&self) -> &[Column] {
+impl RowSource for TableRows {
+    fn columns(&self) -> &[TableColumn] {
         &self.columns
     }
 
-    fn room(&self) -> usize {
+    fn expected_rows(&self) -> usize {
         self.table.rows.len()
     }
 
-    fn each(&mut self, taker: &mut impl Taker) {
-        let Some(at) = time_at(&self.columns) else { return };
-        let clock = Clock::counted(self.table.start.clone());
+    fn feed_rows(&mut self, taker: &mut impl RowSink) {
+        let Some(at) = time_column(&self.columns) else { return };
+        let clock = ColumnClock::with_start(self.table.start.clone());
         for (k, &row) in self.table.rows.iter().enumerate() {
             let values = &self.table.values;
-            if taker.wants(row as usize, Some(values[at][k]), &clock) {
+            if taker.accepts_row(row as usize, Some(values[at][k]), &clock) {
                 let finite = |value: f64| Some(value).filter(|value| value.is_finite());
-                taker.row(row as usize, |position, _| {
-                    finite(values[position][k]).ok_or(Fault::NotANumber)
+                taker.take_row(row as usize, |position, _| {
+                    finite(values[position][k]).ok_or(CellFault::NotANumber)
                 });
             }
         }
     }
 
-    fn finish(&mut self, _: bool, table: &mut Table, _: &mut Findings) {
+    fn complete_table(&mut self, _: bool, table: &mut Table, _: &mut Findings) {
         table.start = self.table.start.clone();
         let resumed = self.table.resumed.iter();
         // Only the marks of rows that are in this table.

@@ -4,15 +4,15 @@ use std::path::{Component, Path};
 
 use sistership_model::manifest::{FileTime, ManifestTrial};
 
-use crate::stamp::{Date, Order, stamp};
-use crate::table::Start;
+use crate::stamp::{DateOrder, StampDate, parse_stamp};
+use crate::table::TimeOrigin;
 
 /// Seconds of a day.
 const DAY_S: f64 = 86_400.0;
 
 /// Segment of a file by its first and last time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stretch {
+pub struct FileSegment {
     /// First time; by default that of the first row of the file.
     pub from: Option<FileTime>,
     /// Last time; by default that of the last row.
@@ -21,14 +21,14 @@ pub struct Stretch {
 
 /// First and last time in seconds of the file.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Window {
+pub(crate) struct TimeWindow {
     pub from_s: f64,
     pub to_s: f64,
 }
 
 /// Fault of a segment.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub(crate) enum StretchFault {
+pub(crate) enum SegmentFault {
     #[error("`{field}` must be a number of seconds that is finite")]
     NotFinite { field: &'static str },
     #[error("`from` ({from}) must be before `to` ({to})")]
@@ -71,9 +71,9 @@ pub(crate) enum StretchFault {
     Open,
 }
 
-impl StretchFault {
+impl SegmentFault {
     /// Returns the field with the fault; the first if both have it.
-    fn field(&self) -> &'static str {
+    fn fault_field(&self) -> &'static str {
         match self {
             Self::NotFinite { field } | Self::NoTime { field, .. } => field,
             _ => "from",
@@ -81,17 +81,20 @@ impl StretchFault {
     }
 }
 
-impl Stretch {
+impl FileSegment {
     /// Returns the segment of an entry; `None` if the entry is a whole file.
-    pub(crate) fn of(trial: &ManifestTrial) -> Option<Self> {
+    pub(crate) fn from_trial(trial: &ManifestTrial) -> Option<Self> {
         let (from, to) = (trial.from.clone(), trial.to.clone());
-        trial.is_stretch().then_some(Self { from, to })
+        trial.is_segment().then_some(Self { from, to })
     }
 
     /// Returns the segment in seconds of a file with the given start.
-    pub(crate) fn window(&self, start: Option<&Start>) -> Result<Window, StretchFault> {
+    pub(crate) fn time_window(
+        &self,
+        start: Option<&TimeOrigin>,
+    ) -> Result<TimeWindow, SegmentFault> {
         let told = |time: &Option<FileTime>, field, after_s: f64| match time {
-            Some(time) => seconds(time, field, start, after_s).map(Some),
+            Some(time) => file_seconds(time, field, start, after_s).map(Some),
             None => Ok(None),
         };
         let from_s = told(&self.from, "from", 0.0)?;
@@ -100,54 +103,54 @@ impl Stretch {
         if let (Some(from), Some(to)) = (&self.from, &self.to)
             && from_s >= to_s
         {
-            return Err(StretchFault::Empty { from: from.clone(), to: to.clone() });
+            return Err(SegmentFault::Empty { from: from.clone(), to: to.clone() });
         }
         let (from_s, to_s) = (from_s.unwrap_or(f64::NEG_INFINITY), to_s.unwrap_or(f64::INFINITY));
-        Ok(Window { from_s, to_s })
+        Ok(TimeWindow { from_s, to_s })
     }
 }
 
 /// Returns a time in seconds of the file; a time of day is the first after `after_s`.
-fn seconds(
+fn file_seconds(
     time: &FileTime,
     field: &'static str,
-    start: Option<&Start>,
+    start: Option<&TimeOrigin>,
     after_s: f64,
-) -> Result<f64, StretchFault> {
+) -> Result<f64, SegmentFault> {
     let text = match time {
         FileTime::Seconds(seconds) if seconds.is_finite() => return Ok(*seconds),
-        FileTime::Seconds(_) => return Err(StretchFault::NotFinite { field }),
+        FileTime::Seconds(_) => return Err(SegmentFault::NotFinite { field }),
         FileTime::Clock(text) => text.clone(),
     };
-    let Some(stamp) = stamp(&text, Order::Open) else {
-        return Err(StretchFault::NoTime { field, text });
+    let Some(stamp) = parse_stamp(&text, DateOrder::Open) else {
+        return Err(SegmentFault::NoTime { field, text });
     };
-    let Some(start) = start else { return Err(StretchFault::NoClock { field, text }) };
+    let Some(start) = start else { return Err(SegmentFault::NoClock { field, text }) };
     match stamp.date {
-        Date::Known(_) if !start.dated => Err(StretchFault::NoDate { field, text }),
-        Date::Known(day) => Ok(stamp.seconds(day) - start.at_s),
+        StampDate::Known(_) if !start.dated => Err(SegmentFault::NoDate { field, text }),
+        StampDate::Known(day) => Ok(stamp.seconds_after(day) - start.at_s),
         // Day and month cannot be distinguished in a single date.
-        Date::Either(_) => Err(StretchFault::NoTime { field, text }),
-        Date::Absent => {
-            let since = stamp.seconds(0) - (start.at_s + after_s);
+        StampDate::Either(_) => Err(SegmentFault::NoTime { field, text }),
+        StampDate::Absent => {
+            let since = stamp.seconds_after(0) - (start.at_s + after_s);
             Ok(after_s + since.rem_euclid(DAY_S))
         }
     }
 }
 
-impl Window {
+impl TimeWindow {
     /// Compares the window with the first and the last time of the file; returns the fault, if
     /// there is one.
-    pub(crate) fn fault(&self, first_s: f64, last_s: f64) -> Option<StretchFault> {
+    pub(crate) fn window_fault(&self, first_s: f64, last_s: f64) -> Option<SegmentFault> {
         let Self { from_s, to_s } = *self;
         if from_s > last_s {
-            Some(StretchFault::After { from_s, last_s })
+            Some(SegmentFault::After { from_s, last_s })
         } else if to_s < first_s {
-            Some(StretchFault::Before { to_s, first_s })
+            Some(SegmentFault::Before { to_s, first_s })
         } else if from_s.is_finite() && from_s < first_s {
-            Some(StretchFault::Early { from_s, first_s })
+            Some(SegmentFault::Early { from_s, first_s })
         } else if to_s.is_finite() && to_s > last_s {
-            Some(StretchFault::Late { to_s, last_s })
+            Some(SegmentFault::Late { to_s, last_s })
         } else {
             None
         }
@@ -155,30 +158,30 @@ impl Window {
 }
 
 /// Returns the fault of an entry that can be found without its file: the field, and the message.
-pub(crate) fn problem(
+pub(crate) fn segment_problem(
     trial: &ManifestTrial,
     earlier: &[ManifestTrial],
 ) -> Option<(String, String)> {
-    let stretch = Stretch::of(trial)?;
+    let stretch = FileSegment::from_trial(trial)?;
     // Any start serves to compare two times with each other.
-    let clock = |dated| Start { text: String::new(), at_s: 0.0, dated };
-    let window = match stretch.window(Some(&clock(true))) {
+    let clock = |dated| TimeOrigin { text: String::new(), at_s: 0.0, dated };
+    let window = match stretch.time_window(Some(&clock(true))) {
         Ok(window) => window,
         // A clock time and seconds can only be compared with the start of the file.
-        Err(StretchFault::Empty { .. }) if !stretch.is_of_one_kind() => return None,
-        Err(fault) => return Some((fault.field().to_owned(), fault.to_string())),
+        Err(SegmentFault::Empty { .. }) if !stretch.is_of_one_kind() => return None,
+        Err(fault) => return Some((fault.fault_field().to_owned(), fault.to_string())),
     };
     let overlaps = |other: &&ManifestTrial| {
-        let others = Stretch::of(other).filter(|_| same_file(&other.file, &trial.file));
+        let others = FileSegment::from_trial(other).filter(|_| same_file(&other.file, &trial.file));
         let others = others.filter(|others| others.is_comparable(&stretch));
-        let others = others.and_then(|others| others.window(Some(&clock(true))).ok());
+        let others = others.and_then(|others| others.time_window(Some(&clock(true))).ok());
         others.is_some_and(|others| others.from_s < window.to_s && window.from_s < others.to_s)
     };
-    let other = earlier.iter().find(overlaps)?.label();
-    Some(("from".into(), StretchFault::Overlap { other }.to_string()))
+    let other = earlier.iter().find(overlaps)?.trial_label();
+    Some(("from".into(), SegmentFault::Overlap { other }.to_string()))
 }
 
-impl Stretch {
+impl FileSegment {
     fn is_of_one_kind(&self) -> bool {
         let is_clock = |time: &FileTime| matches!(time, FileTime::Clock(_));
         self.from.as_ref().map(is_clock) == self.to.as_ref().map(is_clock)

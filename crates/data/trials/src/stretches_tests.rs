@@ -139,13 +139,13 @@ fn rows_outside_of_stretches_may_be_faulty_and_are_not_held() {
     (0..1000).for_each(|k| writeln!(text, "{k},{k}e-3").unwrap());
     std::fs::write(&path, text).unwrap();
     let mapping = |to: f64| crate::Mapping {
-        limits: crate::Limits { rows: 100, ..crate::Limits::default() },
-        stretch: Some(Stretch { from: None, to: Some(FileTime::Seconds(to)) }),
-        ..crate::Mapping::canonical()
+        limits: crate::FileLimits { rows: 100, ..crate::FileLimits::default() },
+        stretch: Some(FileSegment { from: None, to: Some(FileTime::Seconds(to)) }),
+        ..crate::Mapping::with_canonical_names()
     };
-    let source = || crate::Source::open("log.csv", &path).unwrap();
-    assert!(crate::check(source(), &mapping(99.0)).accepted());
-    let outcome = crate::check(source(), &mapping(100.0));
+    let source = || crate::TrialFile::open("log.csv", &path).unwrap();
+    assert!(crate::check_source(source(), &mapping(99.0)).is_accepted());
+    let outcome = crate::check_source(source(), &mapping(100.0));
     assert!(outcome.errors[0].message.contains("more than the 100 rows"), "{outcome:?}");
     std::fs::write(
         folder.path().join("m.yaml"),
@@ -155,6 +155,6 @@ fn rows_outside_of_stretches_may_be_faulty_and_are_not_held() {
     )
     .unwrap();
     let outcomes = check_path(&folder.path().join("m.yaml")).unwrap();
-    let accepted: Vec<bool> = outcomes.iter().map(|outcome| outcome.accepted()).collect();
+    let accepted: Vec<bool> = outcomes.iter().map(|outcome| outcome.is_accepted()).collect();
     assert_eq!(accepted, [true, false, false]);
 }

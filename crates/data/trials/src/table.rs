@@ -5,18 +5,18 @@ use sistership_model::trial::Channel;
 
 /// Target of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Target {
+pub(crate) enum ColumnTarget {
     Time,
     Channel(Channel),
     /// A quantity from which channels are computed.
-    Raw(Raw),
+    Raw(RawQuantity),
     /// A column that is yet to be identified, by its index in the file.
     Unidentified(u16),
 }
 
 /// Recorded quantities from which channels are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Raw {
+pub(crate) enum RawQuantity {
     /// North of the equator, rad.
     Latitude,
     /// East of Greenwich, rad.
@@ -37,21 +37,21 @@ pub(crate) enum Raw {
 }
 
 // In the order of the variants of `RawQuantity`, which index this table.
-const RAW: [(Raw, &str, Dimension); 10] = [
-    (Raw::Latitude, "latitude", Dimension::NONE),
-    (Raw::Longitude, "longitude", Dimension::NONE),
-    (Raw::Course, "course", Dimension::NONE),
-    (Raw::Speed, "speed", Dimension::SPEED),
-    (Raw::DeltaS, "delta_s", Dimension::NONE),
-    (Raw::DeltaP, "delta_p", Dimension::NONE),
-    (Raw::NS, "n_s", Dimension::RATE),
-    (Raw::NP, "n_p", Dimension::RATE),
-    (Raw::VNorth, "v_north", Dimension::SPEED),
-    (Raw::VEast, "v_east", Dimension::SPEED),
+const RAW: [(RawQuantity, &str, Dimension); 10] = [
+    (RawQuantity::Latitude, "latitude", Dimension::NONE),
+    (RawQuantity::Longitude, "longitude", Dimension::NONE),
+    (RawQuantity::Course, "course", Dimension::NONE),
+    (RawQuantity::Speed, "speed", Dimension::SPEED),
+    (RawQuantity::DeltaS, "delta_s", Dimension::NONE),
+    (RawQuantity::DeltaP, "delta_p", Dimension::NONE),
+    (RawQuantity::NS, "n_s", Dimension::RATE),
+    (RawQuantity::NP, "n_p", Dimension::RATE),
+    (RawQuantity::VNorth, "v_north", Dimension::SPEED),
+    (RawQuantity::VEast, "v_east", Dimension::SPEED),
 ];
 
-impl Raw {
-    pub(crate) fn all() -> impl Iterator<Item = Self> {
+impl RawQuantity {
+    pub(crate) fn all_quantities() -> impl Iterator<Item = Self> {
         RAW.iter().map(|&(raw, ..)| raw)
     }
 
@@ -64,7 +64,7 @@ impl Raw {
     }
 
     /// Returns the channels that are computed from the quantity.
-    pub(crate) fn gives(self) -> &'static [Channel] {
+    pub(crate) fn computed_channels(self) -> &'static [Channel] {
         match self {
             Self::Latitude | Self::Longitude => &[Channel::X, Channel::Y],
             Self::Course | Self::Speed | Self::VNorth | Self::VEast => &[Channel::U, Channel::V],
@@ -74,9 +74,9 @@ impl Raw {
     }
 }
 
-impl Target {
-    pub(crate) fn by_name(name: &str) -> Option<Self> {
-        let raw = || Raw::all().find(|raw| raw.name() == name).map(Self::Raw);
+impl ColumnTarget {
+    pub(crate) fn from_name(name: &str) -> Option<Self> {
+        let raw = || RawQuantity::all_quantities().find(|raw| raw.name() == name).map(Self::Raw);
         if name == "t" {
             Some(Self::Time)
         } else {
@@ -96,11 +96,11 @@ impl Target {
 
 /// Column of the file that is read.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Column {
+pub(crate) struct TableColumn {
     /// Position in the file, from 0.
     pub index: usize,
     pub header: String,
-    pub target: Target,
+    pub target: ColumnTarget,
     /// Unit as declared, for messages.
     pub unit: String,
     pub to_si: f64,
@@ -108,14 +108,14 @@ pub(crate) struct Column {
 
 /// Returns the number of columns in memory at a time: those that are read, and those computed from
 /// them.
-pub(crate) fn width(columns: &[Column]) -> usize {
-    let raw = columns.iter().filter(|column| matches!(column.target, Target::Raw(_)));
+pub(crate) fn memory_columns(columns: &[TableColumn]) -> usize {
+    let raw = columns.iter().filter(|column| matches!(column.target, ColumnTarget::Raw(_)));
     columns.len() + raw.count()
 }
 
 /// Calendar time of time zero.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Start {
+pub(crate) struct TimeOrigin {
     pub text: String,
     /// Seconds since 1970, or since midnight where no date is known.
     pub at_s: f64,
@@ -125,11 +125,11 @@ pub(crate) struct Start {
 /// Numbers of the mapped columns, one vector per column, and their rows in the file.
 #[derive(Debug, Default)]
 pub(crate) struct Table {
-    pub columns: Vec<Column>,
+    pub columns: Vec<TableColumn>,
     pub values: Vec<Vec<f64>>,
     pub rows: Vec<u32>,
     /// Rows before which other rows have been excluded.
     pub resumed: Vec<u32>,
     /// Calendar time of time zero, if the file contains it.
-    pub start: Option<Start>,
+    pub start: Option<TimeOrigin>,
 }

@@ -1,47 +1,51 @@
 //! Traits of files that supply rows, and of sinks that take them.
 
-use crate::clock::Clock;
+use crate::clock::ColumnClock;
 use crate::findings::Findings;
-use crate::number::Fault;
-use crate::table::{Column, Table, Target};
+use crate::number::CellFault;
+use crate::table::{ColumnTarget, Table, TableColumn};
 
 /// File whose header has been read, as a source of rows.
-pub(crate) trait RowsFile {
+pub(crate) trait RowSource {
     /// Returns the columns that are read.
-    fn columns(&self) -> &[Column];
+    fn columns(&self) -> &[TableColumn];
 
     /// Returns the expected number of rows, where that is known.
-    fn room(&self) -> usize;
+    fn expected_rows(&self) -> usize;
 
     /// Passes every row to a sink.
-    fn each(&mut self, taker: &mut impl Taker);
+    fn feed_rows(&mut self, taker: &mut impl RowSink);
 
     /// Completes one table made of the rows with what is known once all rows are read, and reports
     /// its findings.
-    fn finish(&mut self, drops: bool, table: &mut Table, findings: &mut Findings);
+    fn complete_table(&mut self, drops: bool, table: &mut Table, findings: &mut Findings);
 }
 
 /// Sink of rows.
-pub(crate) trait Taker {
+pub(crate) trait RowSink {
     /// True if the sink needs the time of each row before the row.
     const TIMED: bool = false;
 
     /// Returns true if a row is accepted; `t_s` is `None` if its time is not known.
-    fn wants(&mut self, _row: usize, _t_s: Option<f64>, _clock: &Clock) -> bool {
+    fn accepts_row(&mut self, _row: usize, _t_s: Option<f64>, _clock: &ColumnClock) -> bool {
         true
     }
 
     /// Takes a row; `cell` returns the number of the n-th column.
-    fn row(&mut self, row: usize, cell: impl FnMut(usize, &Column) -> Result<f64, Fault>);
+    fn take_row(
+        &mut self,
+        row: usize,
+        cell: impl FnMut(usize, &TableColumn) -> Result<f64, CellFault>,
+    );
 
     /// Takes a row with fewer cells than the header.
-    fn short(&mut self, row: usize);
+    fn take_short_row(&mut self, row: usize);
 
     /// Returns the number of rows in the sink.
-    fn held(&self) -> usize;
+    fn stored_rows(&self) -> usize;
 }
 
 /// Returns the index of the time column.
-pub(crate) fn time_at(columns: &[Column]) -> Option<usize> {
-    columns.iter().position(|column| column.target == Target::Time)
+pub(crate) fn time_column(columns: &[TableColumn]) -> Option<usize> {
+    columns.iter().position(|column| column.target == ColumnTarget::Time)
 }

@@ -3,13 +3,13 @@
 use sistership_formula::units::{Dimension, Unit};
 use sistership_model::trial::Channel;
 
-use crate::table::{Raw, Target};
+use crate::table::{ColumnTarget, RawQuantity};
 
 /// Physical kind of a column. Dimensions alone cannot distinguish a yaw rate from propeller
 /// revolutions: both are 1/s, but one counts radians and the other turns, and 80 rpm read as a yaw
 /// rate would be wrong by a factor of two pi.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum UnitKind {
     Time,
     Length,
     Speed,
@@ -20,36 +20,36 @@ pub(crate) enum Kind {
 
 /// Header suffix, kind, unit. The suffix `ms` is a millisecond for time and a metre per second for
 /// a speed.
-const SUFFIXES: &[(&str, Kind, &str)] = &[
-    ("s", Kind::Time, "s"),
-    ("sec", Kind::Time, "s"),
-    ("ms", Kind::Time, "ms"),
-    ("us", Kind::Time, "us"),
-    ("ns", Kind::Time, "ns"),
-    ("min", Kind::Time, "min"),
-    ("h", Kind::Time, "h"),
-    ("m", Kind::Length, "m"),
-    ("km", Kind::Length, "km"),
-    ("nmi", Kind::Length, "nmi"),
-    ("m_s", Kind::Speed, "m/s"),
-    ("mps", Kind::Speed, "m/s"),
-    ("ms", Kind::Speed, "m/s"),
-    ("kn", Kind::Speed, "kn"),
-    ("kt", Kind::Speed, "kn"),
-    ("kts", Kind::Speed, "kn"),
-    ("km_h", Kind::Speed, "km/h"),
-    ("kmh", Kind::Speed, "km/h"),
-    ("kmph", Kind::Speed, "km/h"),
-    ("rad", Kind::Angle, "rad"),
-    ("deg", Kind::Angle, "deg"),
-    ("rad_s", Kind::Rate, "rad/s"),
-    ("radps", Kind::Rate, "rad/s"),
-    ("deg_s", Kind::Rate, "deg/s"),
-    ("degps", Kind::Rate, "deg/s"),
-    ("deg_min", Kind::Rate, "deg/min"),
-    ("degpmin", Kind::Rate, "deg/min"),
-    ("rps", Kind::Revolutions, "rps"),
-    ("rpm", Kind::Revolutions, "rpm"),
+const SUFFIXES: &[(&str, UnitKind, &str)] = &[
+    ("s", UnitKind::Time, "s"),
+    ("sec", UnitKind::Time, "s"),
+    ("ms", UnitKind::Time, "ms"),
+    ("us", UnitKind::Time, "us"),
+    ("ns", UnitKind::Time, "ns"),
+    ("min", UnitKind::Time, "min"),
+    ("h", UnitKind::Time, "h"),
+    ("m", UnitKind::Length, "m"),
+    ("km", UnitKind::Length, "km"),
+    ("nmi", UnitKind::Length, "nmi"),
+    ("m_s", UnitKind::Speed, "m/s"),
+    ("mps", UnitKind::Speed, "m/s"),
+    ("ms", UnitKind::Speed, "m/s"),
+    ("kn", UnitKind::Speed, "kn"),
+    ("kt", UnitKind::Speed, "kn"),
+    ("kts", UnitKind::Speed, "kn"),
+    ("km_h", UnitKind::Speed, "km/h"),
+    ("kmh", UnitKind::Speed, "km/h"),
+    ("kmph", UnitKind::Speed, "km/h"),
+    ("rad", UnitKind::Angle, "rad"),
+    ("deg", UnitKind::Angle, "deg"),
+    ("rad_s", UnitKind::Rate, "rad/s"),
+    ("radps", UnitKind::Rate, "rad/s"),
+    ("deg_s", UnitKind::Rate, "deg/s"),
+    ("degps", UnitKind::Rate, "deg/s"),
+    ("deg_min", UnitKind::Rate, "deg/min"),
+    ("degpmin", UnitKind::Rate, "deg/min"),
+    ("rps", UnitKind::Revolutions, "rps"),
+    ("rpm", UnitKind::Revolutions, "rpm"),
 ];
 
 /// Forms of time other than a duration, with the factor to seconds. `auto` is detected from the
@@ -120,19 +120,20 @@ pub(crate) fn is_unit(cell: &str) -> bool {
         || CALENDAR.iter().any(|(known, _)| *known == unit)
 }
 
-impl Kind {
+impl UnitKind {
     /// Returns the kind of the columns of a target.
-    pub(crate) fn of(target: Target) -> Self {
+    pub(crate) fn from_target(target: ColumnTarget) -> Self {
         match target {
-            Target::Time => Self::Time,
-            Target::Channel(Channel::N) | Target::Raw(Raw::NS | Raw::NP) => Self::Revolutions,
-            Target::Channel(channel) => Self::measuring(channel.dimension()),
-            Target::Raw(raw) => Self::measuring(raw.dimension()),
-            Target::Unidentified(_) => Self::Length,
+            ColumnTarget::Time => Self::Time,
+            ColumnTarget::Channel(Channel::N)
+            | ColumnTarget::Raw(RawQuantity::NS | RawQuantity::NP) => Self::Revolutions,
+            ColumnTarget::Channel(channel) => Self::from_dimension(channel.dimension()),
+            ColumnTarget::Raw(raw) => Self::from_dimension(raw.dimension()),
+            ColumnTarget::Unidentified(_) => Self::Length,
         }
     }
 
-    fn measuring(dimension: Dimension) -> Self {
+    fn from_dimension(dimension: Dimension) -> Self {
         match dimension {
             Dimension::LENGTH => Self::Length,
             Dimension::SPEED => Self::Speed,
@@ -142,7 +143,7 @@ impl Kind {
     }
 
     /// Returns the unit of a header's suffix.
-    pub(crate) fn suffix(self, suffix: &str) -> Option<&'static str> {
+    pub(crate) fn unit_of_suffix(self, suffix: &str) -> Option<&'static str> {
         SUFFIXES
             .iter()
             .find(|(known, kind, _)| *kind == self && *known == suffix)
@@ -150,20 +151,20 @@ impl Kind {
     }
 
     /// Returns the unit at the end of a header, such as `log_kn`, `log [kn]` or `log (kn)`.
-    pub(crate) fn named_in(self, header: &str) -> Option<&'static str> {
+    pub(crate) fn unit_in_header(self, header: &str) -> Option<&'static str> {
         let bracket = |open: char, close: char| {
             header.trim_end().strip_suffix(close)?.rsplit_once(open).map(|(_, unit)| unit.trim())
         };
         let written = bracket('[', ']').or_else(|| bracket('(', ')'));
         if let Some(written) = written {
-            return self.accepted().into_iter().find(|unit| *unit == plain_unit(written));
+            return self.accepted_units().into_iter().find(|unit| *unit == plain_unit(written));
         }
         // From the left, so that the longest suffix is found: `deg_s` before `s`.
-        header.match_indices('_').find_map(|(at, _)| self.suffix(&header[at + 1..]))
+        header.match_indices('_').find_map(|(at, _)| self.unit_of_suffix(&header[at + 1..]))
     }
 
     /// Returns the accepted units, the canonical one first.
-    pub(crate) fn accepted(self) -> Vec<&'static str> {
+    pub(crate) fn accepted_units(self) -> Vec<&'static str> {
         let mut units: Vec<&str> = SUFFIXES
             .iter()
             .filter(|(_, kind, _)| *kind == self)
@@ -175,16 +176,16 @@ impl Kind {
     }
 
     /// Returns the unit of the canonical column.
-    pub(crate) fn canonical(self) -> &'static str {
-        self.accepted().first().copied().unwrap_or("1")
+    pub(crate) fn canonical_unit(self) -> &'static str {
+        self.accepted_units().first().copied().unwrap_or("1")
     }
 
     /// Returns the factor to canonical units.
     ///
     /// # Errors
     /// Returns a message with the accepted units if the unit is not one of them.
-    pub(crate) fn factor(self, unit: &str) -> Result<f64, String> {
-        let mut accepted = self.accepted();
+    pub(crate) fn unit_to_si(self, unit: &str) -> Result<f64, String> {
+        let mut accepted = self.accepted_units();
         // Forms of time have a factor, but are no units.
         if self == Self::Time {
             if let Some(&(_, factor)) = CALENDAR.iter().find(|(known, _)| *known == unit.trim()) {
@@ -207,17 +208,28 @@ mod tests {
     #[test]
     fn every_suffix_names_a_known_unit() {
         for (_, kind, unit) in SUFFIXES {
-            kind.factor(unit).unwrap();
+            kind.unit_to_si(unit).unwrap();
         }
     }
 
     #[test]
     fn revolutions_are_not_a_yaw_rate() {
-        assert!(Kind::of(Target::Channel(Channel::R)).factor("rpm").unwrap_err().contains("rad/s"));
         assert!(
-            Kind::of(Target::Channel(Channel::N)).factor("rad/s").unwrap_err().contains("rps, rpm")
+            UnitKind::from_target(ColumnTarget::Channel(Channel::R))
+                .unit_to_si("rpm")
+                .unwrap_err()
+                .contains("rad/s")
         );
-        assert_eq!(Kind::of(Target::Channel(Channel::Depth)), Kind::Length);
-        assert_eq!(Kind::of(Target::Channel(Channel::WindFrom)), Kind::Angle);
+        assert!(
+            UnitKind::from_target(ColumnTarget::Channel(Channel::N))
+                .unit_to_si("rad/s")
+                .unwrap_err()
+                .contains("rps, rpm")
+        );
+        assert_eq!(UnitKind::from_target(ColumnTarget::Channel(Channel::Depth)), UnitKind::Length);
+        assert_eq!(
+            UnitKind::from_target(ColumnTarget::Channel(Channel::WindFrom)),
+            UnitKind::Angle
+        );
     }
 }

@@ -19,28 +19,28 @@ pub(crate) fn is_water_only(recording: &Recording, ground: Channel) -> bool {
 
 /// Determines `u` and `v` of the trial: over the ground if those are known, otherwise through the
 /// water.
-pub(crate) fn settle(recording: &mut Recording, findings: &mut Findings) {
+pub(crate) fn assign_velocities(recording: &mut Recording, findings: &mut Findings) {
     let has = |channel| recording.channel(channel).is_some();
     // Findings refer to the first speed through the water that was recorded.
     let Some(&(log, _)) = AXES.iter().find(|(water, _)| has(*water)) else { return };
     if has(Channel::U) {
         let message = "speed through the water beside velocities over the ground: what it differs \
                        by is a current, or the error of a log";
-        return findings.warning(None, Some(recording.header(log)), message);
+        return findings.warning(None, Some(recording.column_header(log)), message);
     }
     if has(Channel::V) {
         let message = "is taken to be through the water, as the only speed ahead is; where it is \
                        over the ground, map position and heading and declare `derive: [u]`";
-        findings.warning(None, Some(recording.header(Channel::V)), message);
+        findings.warning(None, Some(recording.column_header(Channel::V)), message);
     }
     let message = "u and v are speeds through the water, and nothing gives those over the ground: \
                    a current shows in the positions only";
-    findings.warning(None, Some(recording.header(log)), message);
-    AXES.iter().for_each(|&axis| rename(recording, axis));
+    findings.warning(None, Some(recording.column_header(log)), message);
+    AXES.iter().for_each(|&axis| move_channel(recording, axis));
     recording.trial.velocity = VelocityFrame::Water;
 }
 
-fn rename(recording: &mut Recording, (water, own): (Channel, Channel)) {
+fn move_channel(recording: &mut Recording, (water, own): (Channel, Channel)) {
     if let Some(values) = recording.trial.channels.remove(&water) {
         recording.trial.channels.insert(own, values);
     }
@@ -52,14 +52,14 @@ fn rename(recording: &mut Recording, (water, own): (Channel, Channel)) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{messages, recording};
+    use crate::testing::{finding_messages, test_recording};
 
     fn settled(channels: &[(Channel, f64)]) -> (Recording, String) {
         let channels: Vec<_> =
             channels.iter().map(|&(channel, value)| (channel, vec![value; 3])).collect();
-        let (mut ship, mut findings) = (recording(&channels), Findings::default());
-        settle(&mut ship, &mut findings);
-        (ship, messages(findings))
+        let (mut ship, mut findings) = (test_recording(&channels), Findings::default());
+        assign_velocities(&mut ship, &mut findings);
+        (ship, finding_messages(findings))
     }
 
     #[test]

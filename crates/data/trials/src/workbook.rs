@@ -9,7 +9,7 @@ use crate::containers::archive;
 use crate::csv_file;
 use crate::findings::Findings;
 use crate::layout;
-use crate::limits::Limits;
+use crate::limits::FileLimits;
 use crate::mapping::Mapping;
 use crate::table::Table;
 
@@ -26,21 +26,22 @@ const SHEETS: usize = 20;
 const SEARCHED: u64 = 32 << 20;
 
 /// Reads the declared sheet, or the one with most known names in its first lines.
-pub(crate) fn read(
+pub(crate) fn read_workbook(
     mut input: Box<dyn ReadSeek + '_>,
     mapping: &Mapping,
     findings: &mut Findings,
 ) -> Option<Table> {
-    let unpacked = checked(&mut input, mapping.limits)
+    let unpacked = check_size(&mut input, mapping.limits)
         .map_err(|message| findings.error(None, None, message))
         .ok()?;
     // The library asserts some properties of the file and panics if they do not hold.
     let read = catch_unwind(AssertUnwindSafe(|| {
         let mut book = Xlsx::new(input).map_err(|error| error.to_string())?;
-        let sheet = sheet(&mut book, looked_at(unpacked), mapping)?;
+        let sheet = find_sheet(&mut book, searched_sheets(unpacked), mapping)?;
         let others = book.sheet_names().len() - 1;
-        let mut lines = Lines::of(&mut book, &sheet, mapping).map_err(|error| error.to_string())?;
-        Ok::<_, String>((csv_file::read(&mut lines, mapping, findings), sheet, others))
+        let mut lines = SheetLines::from_sheet(&mut book, &sheet, mapping)
+            .map_err(|error| error.to_string())?;
+        Ok::<_, String>((csv_file::read_csv(&mut lines, mapping, findings), sheet, others))
     }));
     match read.unwrap_or_else(|_| Err("it contradicts itself".into())) {
         Ok((table, sheet, others)) => {
@@ -58,46 +59,46 @@ pub(crate) fn read(
     }
 }
 
-fn checked(input: &mut Box<dyn ReadSeek + '_>, limits: Limits) -> Result<u64, String> {
-    let claimed = archive::claimed(input)?;
+fn check_size(input: &mut Box<dyn ReadSeek + '_>, limits: FileLimits) -> Result<u64, String> {
+    let claimed = archive::claimed_bytes(input)?;
     // More than the declared size is damage; the limit of the reader applies in any case.
-    archive::check(input, claimed.min(limits.unpacked_bytes as u64))?;
+    archive::check_archive(input, claimed.min(limits.unpacked_bytes as u64))?;
     input.rewind().map_err(|error| error.to_string())?;
     Ok(claimed)
 }
 
-fn looked_at(unpacked: u64) -> usize {
+fn searched_sheets(unpacked: u64) -> usize {
     if unpacked > SEARCHED { 1 } else { SHEETS }
 }
 
 /// Returns the first lines of each sheet.
-pub(crate) fn starts(
+pub(crate) fn sheet_starts(
     mut input: Box<dyn ReadSeek + '_>,
-    limits: Limits,
+    limits: FileLimits,
 ) -> Result<Vec<(String, Vec<u8>)>, String> {
-    let unpacked = checked(&mut input, limits)?;
-    let mapping = Mapping { limits, ..Mapping::canonical() };
+    let unpacked = check_size(&mut input, limits)?;
+    let mapping = Mapping { limits, ..Mapping::with_canonical_names() };
     let read = catch_unwind(AssertUnwindSafe(|| {
         let mut book = Xlsx::new(input).map_err(|error| error.to_string())?;
-        let names = book.sheet_names().into_iter().take(looked_at(unpacked));
-        Ok(names.map(|name| (name.clone(), start(&mut book, &name, &mapping))).collect())
+        let names = book.sheet_names().into_iter().take(searched_sheets(unpacked));
+        Ok(names.map(|name| (name.clone(), sheet_start(&mut book, &name, &mapping))).collect())
     }));
     read.unwrap_or_else(|_| Err("the workbook contradicts itself".into()))
 }
 
 /// Returns the first lines of a sheet; empty for a chart, which is a sheet, too.
-fn start(book: &mut Book, sheet: &str, mapping: &Mapping) -> Vec<u8> {
+fn sheet_start(book: &mut XlsxBook, sheet: &str, mapping: &Mapping) -> Vec<u8> {
     let mut start = Vec::new();
-    if let Ok(lines) = Lines::of(book, sheet, mapping) {
+    if let Ok(lines) = SheetLines::from_sheet(book, sheet, mapping) {
         // The error is ignored here: it is reported when the sheet is read.
         let _ = lines.take(START).read_to_end(&mut start);
     }
     start
 }
 
-type Book<'a> = Xlsx<Box<dyn ReadSeek + 'a>>;
+type XlsxBook<'a> = Xlsx<Box<dyn ReadSeek + 'a>>;
 
-fn sheet(book: &mut Book, looked_at: usize, mapping: &Mapping) -> Result<String, String> {
+fn find_sheet(book: &mut XlsxBook, looked_at: usize, mapping: &Mapping) -> Result<String, String> {
     let names = book.sheet_names();
     if let Some(wanted) = &mapping.declared.sheet {
         let listed = || names.iter().take(SHEETS).cloned().collect::<Vec<_>>().join(", ");
@@ -106,8 +107,8 @@ fn sheet(book: &mut Book, looked_at: usize, mapping: &Mapping) -> Result<String,
     }
     let mut best = (0, names.first().cloned().ok_or("it has no sheet")?);
     for name in names.into_iter().take(looked_at) {
-        let start = start(book, &name, mapping);
-        let known = layout::known_names(&start, mapping);
+        let start = sheet_start(book, &name, mapping);
+        let known = layout::count_known_names(&start, mapping);
         // Among equals the first sheet is kept.
         if known > best.0 {
             best = (known, name);
@@ -118,7 +119,7 @@ fn sheet(book: &mut Book, looked_at: usize, mapping: &Mapping) -> Result<String,
 
 /// Sheet as text: cells separated by tabs, one line for each row, empty rows included, so that line
 /// numbers are Excel's row numbers.
-struct Lines<'a, 'b> {
+struct SheetLines<'a, 'b> {
     cells: XlsxCellReader<'a, Box<dyn ReadSeek + 'b>>,
     /// Cell that was read but belongs to a later row.
     next: Option<(usize, usize, String)>,
@@ -130,25 +131,29 @@ struct Lines<'a, 'b> {
     columns: usize,
 }
 
-impl<'a, 'b> Lines<'a, 'b> {
-    fn of(book: &'a mut Book<'b>, sheet: &str, mapping: &Mapping) -> Result<Self, XlsxError> {
+impl<'a, 'b> SheetLines<'a, 'b> {
+    fn from_sheet(
+        book: &'a mut XlsxBook<'b>,
+        sheet: &str,
+        mapping: &Mapping,
+    ) -> Result<Self, XlsxError> {
         // Rows above the table are allowed in addition to the limit.
         let (rows, columns) = (mapping.limits.rows.saturating_add(1000), mapping.limits.columns);
         let cells = book.worksheet_cells_reader(sheet)?;
         let text = io::Cursor::new(Vec::new());
         let mut lines = Self { cells, next: None, row: 0, width: 0, text, rows, columns };
-        lines.next = lines.cell().map_err(XlsxError::Io)?;
+        lines.next = lines.read_cell().map_err(XlsxError::Io)?;
         Ok(lines)
     }
 
     /// Reads the next cell that is not empty.
-    fn cell(&mut self) -> io::Result<Option<(usize, usize, String)>> {
+    fn read_cell(&mut self) -> io::Result<Option<(usize, usize, String)>> {
         let invalid = |message: String| io::Error::new(io::ErrorKind::InvalidData, message);
         loop {
             let cell = self.cells.next_cell().map_err(|error| invalid(error.to_string()))?;
             let Some(cell) = cell else { return Ok(None) };
             let (row, column) = cell.get_position();
-            let text = text(cell.get_value());
+            let text = cell_text(cell.get_value());
             if text.is_empty() {
                 continue;
             }
@@ -166,7 +171,7 @@ impl<'a, 'b> Lines<'a, 'b> {
     }
 
     /// Returns the text of the next row; `None` after the last.
-    fn line(&mut self) -> io::Result<Option<String>> {
+    fn read_line(&mut self) -> io::Result<Option<String>> {
         let Some((row, ..)) = self.next else { return Ok(None) };
         let (mut line, mut column) = (String::new(), 0);
         while let Some((_, at, text)) = self.next.take_if(|(of, ..)| *of == self.row) {
@@ -176,7 +181,7 @@ impl<'a, 'b> Lines<'a, 'b> {
             line.extend(std::iter::repeat_n('\t', at - column));
             line += &text;
             column = at;
-            self.next = self.cell()?;
+            self.next = self.read_cell()?;
         }
         // Rows come in ascending order: an earlier one would be lost.
         if row < self.row {
@@ -198,14 +203,14 @@ fn out_of_order(row: usize) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, message)
 }
 
-impl Read for Lines<'_, '_> {
+impl Read for SheetLines<'_, '_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         loop {
             let read = self.text.read(buffer)?;
             if read > 0 || buffer.is_empty() {
                 return Ok(read);
             }
-            match self.line()? {
+            match self.read_line()? {
                 Some(line) => self.text = io::Cursor::new(line.into_bytes()),
                 None => return Ok(0),
             }
@@ -213,20 +218,20 @@ impl Read for Lines<'_, '_> {
     }
 }
 
-fn text(value: &DataRef) -> String {
+fn cell_text(value: &DataRef) -> String {
     match Data::from(value.clone()) {
         Data::Int(value) => value.to_string(),
         Data::Float(value) => value.to_string(),
-        Data::String(text) | Data::DateTimeIso(text) | Data::DurationIso(text) => in_line(&text),
+        Data::String(text) | Data::DateTimeIso(text) | Data::DurationIso(text) => plain_text(&text),
         Data::Bool(value) => value.to_string(),
-        Data::DateTime(instant) => date(&instant),
+        Data::DateTime(instant) => format_date(&instant),
         Data::Error(error) => error.to_string(),
         Data::Empty => String::new(),
     }
 }
 
 /// Replaces the characters of a text that have a meaning between cells.
-fn in_line(text: &str) -> String {
+fn plain_text(text: &str) -> String {
     let plain = |c: char| match c {
         '\t' | '\n' | '\r' => ' ',
         '"' => '\'',
@@ -236,7 +241,7 @@ fn in_line(text: &str) -> String {
 }
 
 /// Formats a date and time of day; without a day only the time of day; a duration in seconds.
-fn date(instant: &ExcelDateTime) -> String {
+fn format_date(instant: &ExcelDateTime) -> String {
     let days = instant.as_f64();
     if instant.is_duration() {
         return (days * 86_400.0).to_string();

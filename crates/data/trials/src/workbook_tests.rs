@@ -5,7 +5,7 @@ use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
 use super::*;
-use crate::testing::messages;
+use crate::testing::finding_messages;
 
 const RELS: &str = r#"<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="rId1" Type="http://schemas.openxmlformats.org/officeDocument/2006/relationships/officeDocument" Target="xl/workbook.xml"/></Relationships>"#;
 const SHEET_RELS: &str = r#"<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="rId1" Type="http://schemas.openxmlformats.org/officeDocument/2006/relationships/worksheet" Target="worksheets/sheet1.xml"/><Relationship Id="rId2" Type="http://schemas.openxmlformats.org/officeDocument/2006/relationships/worksheet" Target="worksheets/sheet2.xml"/></Relationships>"#;
@@ -43,13 +43,13 @@ fn book(strings: &str, rows: &str) -> Vec<u8> {
 
 fn run(bytes: Vec<u8>, mapping: &Mapping) -> (Option<Table>, String) {
     let mut findings = Findings::default();
-    let table = read(Box::new(Cursor::new(bytes)), mapping, &mut findings);
-    (table, messages(findings))
+    let table = read_workbook(Box::new(Cursor::new(bytes)), mapping, &mut findings);
+    (table, finding_messages(findings))
 }
 
 #[test]
 fn the_sheet_with_the_table_is_read_with_excels_rows() {
-    let (table, text) = run(book(STRINGS, ROWS), &Mapping::canonical());
+    let (table, text) = run(book(STRINGS, ROWS), &Mapping::with_canonical_names());
     let table = table.unwrap();
     assert_eq!(table.values[0].len(), 2, "{text}");
     assert_eq!(table.rows, [4, 5]);
@@ -61,7 +61,7 @@ fn the_sheet_with_the_table_is_read_with_excels_rows() {
 
 #[test]
 fn a_declared_sheet_is_read_and_a_missing_one_told() {
-    let mut mapping = Mapping::canonical();
+    let mut mapping = Mapping::with_canonical_names();
     mapping.declared.sheet = Some("About".into());
     assert!(run(book(STRINGS, ROWS), &mapping).1.contains("no column for time"));
     mapping.declared.sheet = Some("Dat".into());
@@ -70,10 +70,10 @@ fn a_declared_sheet_is_read_and_a_missing_one_told() {
 
 #[test]
 fn what_would_fill_the_memory_is_refused_before_it_is_opened() {
-    let canonical = Mapping::canonical();
+    let canonical = Mapping::with_canonical_names();
     let huge = STRINGS.replace("\"2\"", "\"99999999999\"");
     assert!(run(book(&huge, ROWS), &canonical).1.contains("announces 99999999999 strings"));
-    let mut mapping = Mapping::canonical();
+    let mut mapping = Mapping::with_canonical_names();
     mapping.limits.unpacked_bytes = 100_000;
     let bomb = " ".repeat(200_000);
     assert!(run(book(STRINGS, &bomb), &mapping).1.contains("unpacked bytes"));
@@ -89,8 +89,8 @@ fn damaged_workbooks_are_errors() {
     for at in (0..bytes.len()).step_by(7) {
         let mut damaged = bytes.clone();
         damaged[at] ^= 0x55;
-        let (table, text) = run(damaged, &Mapping::canonical());
+        let (table, text) = run(damaged, &Mapping::with_canonical_names());
         assert!(table.is_some() || text.contains("error"), "{at}");
-        let _ = run(bytes[..at].to_vec(), &Mapping::canonical());
+        let _ = run(bytes[..at].to_vec(), &Mapping::with_canonical_names());
     }
 }

@@ -1,28 +1,32 @@
 //! Detection of times written as text, or as days of a sheet.
 
 use crate::clock::looks_serial;
-use crate::decimals::Decimals;
-use crate::number::number;
-use crate::stamp::{Date, Order, stamp};
+use crate::decimals::DecimalMarks;
+use crate::number::parse_number;
+use crate::stamp::{DateOrder, StampDate, parse_stamp};
 
 /// Returns the unit of a column of such times; `None` if it contains anything else.
 pub(crate) fn written_time(header: &str, cells: &[&str]) -> Option<&'static str> {
     let first = cells.iter().find(|cell| !cell.is_empty())?;
-    let Some(stamp) = stamp(first, Order::Open) else { return serial(header, cells) };
+    let Some(stamp) = parse_stamp(first, DateOrder::Open) else {
+        return serial_unit(header, cells);
+    };
     // A column of dates alone repeats the same date: most cells must differ from the first.
     let moves = cells.iter().filter(|cell| cell != &first).count() > cells.len() / 2;
     let unit = match stamp.date {
-        Date::Known(_) => "timestamp",
-        Date::Absent => "hh:mm:ss",
-        Date::Either(_) => "auto",
+        StampDate::Known(_) => "timestamp",
+        StampDate::Absent => "hh:mm:ss",
+        StampDate::Either(_) => "auto",
     };
     (moves || cells.len() < 3).then_some(unit)
 }
 
-fn serial(header: &str, cells: &[&str]) -> Option<&'static str> {
-    let mut decimals = Decimals::new(b';');
-    let values: Vec<f64> =
-        cells.iter().filter_map(|cell| number(&decimals.point(0, cell.as_bytes())).ok()).collect();
+fn serial_unit(header: &str, cells: &[&str]) -> Option<&'static str> {
+    let mut decimals = DecimalMarks::new(b';');
+    let values: Vec<f64> = cells
+        .iter()
+        .filter_map(|cell| parse_number(&decimals.with_point(0, cell.as_bytes())).ok())
+        .collect();
     (!values.is_empty() && looks_serial(header, &values)).then_some("excel")
 }
 

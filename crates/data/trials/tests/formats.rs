@@ -3,7 +3,9 @@
 
 use bytes::Bytes;
 use sistership_model::trial::{Channel, Trial};
-use sistership_trials::{Antenna, Derivable, Mapping, Source, check, read_in_full, read_trial};
+use sistership_trials::{
+    Antenna, Derivable, Mapping, TrialFile, check_source, read_in_full, read_trial,
+};
 
 fn summed(body: &str) -> String {
     format!("${body}*{:02X}\r\n", body.bytes().fold(0, |sum, byte| sum ^ byte))
@@ -33,7 +35,7 @@ fn nmea() -> String {
 }
 
 fn derived() -> Mapping {
-    let mut mapping = Mapping::canonical();
+    let mut mapping = Mapping::with_canonical_names();
     mapping.declared.antenna = Some(Antenna { x_m: 10.0, y_m: 0.0 });
     mapping.declared.derive = vec![Derivable::U, Derivable::V, Derivable::R];
     mapping
@@ -45,7 +47,7 @@ fn middle(trial: &Trial, channel: Channel) -> f64 {
 
 #[test]
 fn a_log_of_a_circle_gives_its_velocities() {
-    let source = Source::bytes("circle.nmea", Bytes::from(nmea()));
+    let source = TrialFile::from_bytes("circle.nmea", Bytes::from(nmea()));
     let reading = read_in_full(source, &derived()).unwrap();
     assert_eq!(reading.start.as_deref(), Some("2024-05-01T12:00:00Z"));
     let trial = &reading.trial;
@@ -70,8 +72,8 @@ fn a_binary_file_is_named_as_what_it_is() {
         (b"PK\x03\x04\x14\0\0\0", "damaged"),
         (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", ".xlsx"),
     ] {
-        let source = Source::bytes("a.csv", Bytes::copy_from_slice(bytes));
-        let text = read_trial(source, &Mapping::canonical()).unwrap_err().to_string();
+        let source = TrialFile::from_bytes("a.csv", Bytes::copy_from_slice(bytes));
+        let text = read_trial(source, &Mapping::with_canonical_names()).unwrap_err().to_string();
         assert!(text.contains(wanted), "{text}");
     }
 }
@@ -100,7 +102,7 @@ fn damaged_files_neither_panic_nor_give_what_is_no_trial() {
                     _ => bytes[at] ^= 1 << (next(&mut seed) % 8),
                 }
             }
-            let source = Source::bytes("a", Bytes::from(bytes));
+            let source = TrialFile::from_bytes("a", Bytes::from(bytes));
             if let Ok(trial) = read_trial(source, &derived()) {
                 assert!(trial.t_s.windows(2).all(|pair| pair[0] < pair[1]));
                 let all = trial.channels.values().flatten();
@@ -115,7 +117,7 @@ fn damaged_files_neither_panic_nor_give_what_is_no_trial() {
 fn a_clock_that_alternates_ends() {
     let rows = (0..200_000).map(|k| if k % 2 == 0 { "23:59:59,1,1\n" } else { "00:00:00,1,1\n" });
     let text: String = std::iter::once("time,u_m_s,v_m_s\n").chain(rows).collect();
-    let outcome = check(Source::csv("a", text.as_bytes()), &derived());
+    let outcome = check_source(TrialFile::from_csv("a", text.as_bytes()), &derived());
     assert_eq!(outcome.rows, 200_000);
 }
 
@@ -129,11 +131,11 @@ fn numbers_beyond_all_bounds_are_refused() {
         let rows: String =
             (0..count).map(|k| format!("{k}{rows},{k},1,0.1\n")).collect::<Vec<_>>().concat();
         let text = format!("day,x_m,y_m,psi_rad\n{rows}");
-        assert!(read_trial(Source::csv("a", text.as_bytes()), &mapping).is_err());
+        assert!(read_trial(TrialFile::from_csv("a", text.as_bytes()), &mapping).is_err());
     }
     let tiny: String = (0..20).map(|k| format!("{k}e-310,{k},1,0.1\n")).collect();
     let text = format!("t_s,x_m,y_m,psi_rad\n{tiny}");
-    if let Ok(trial) = read_trial(Source::csv("a", text.as_bytes()), &derived()) {
+    if let Ok(trial) = read_trial(TrialFile::from_csv("a", text.as_bytes()), &derived()) {
         assert!(trial.channels.values().flatten().all(|value| value.is_finite()));
     }
 }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use sistership_model::manifest::RudderSign;
 use sistership_model::trial::{Channel, Trial};
-use sistership_trials::{Proposal, ProposalRequest, find_faults, load_path, propose_files};
+use sistership_trials::{ManifestProposal, ProposalRequest, find_faults, load_path, propose_files};
 
 /// Files of a set by the ending of their names, in order.
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
@@ -22,28 +22,28 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
 }
 
 /// Imports files: the proposal with what is excluded, and the trials that it reads.
-fn import(files: &[PathBuf]) -> (Proposal, Vec<Result<Trial, String>>) {
+fn import(files: &[PathBuf]) -> (ManifestProposal, Vec<Result<Trial, String>>) {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("trials.yaml");
     let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
     let request =
         ProposalRequest { ship: "", files: &paths, folder: Some(folder.path()), given: &[] };
     let mut proposal = propose_files(&request).unwrap();
-    let write = |proposal: &Proposal| {
+    let write = |proposal: &ManifestProposal| {
         std::fs::write(&place, proposal.manifest.to_yaml().unwrap()).unwrap();
     };
     write(&proposal);
     proposal.manifest.declarations.exclude = find_faults(&place).unwrap();
     write(&proposal);
     for one in &proposal.manifest.declarations.exclude {
-        println!("{}: {} ({})", one.file, one.summary(), one.rows.clone().unwrap_or_default());
+        println!("{}: {} ({})", one.file, one.summary_text(), one.rows.clone().unwrap_or_default());
     }
     let read = load_path(&place).unwrap().trials;
     let trials = read.into_iter().map(|trial| trial.map_err(|refusal| refusal.to_string()));
     (proposal, trials.collect())
 }
 
-fn channel<'a>(proposal: &'a Proposal, column: &str) -> Option<&'a str> {
+fn channel<'a>(proposal: &'a ManifestProposal, column: &str) -> Option<&'a str> {
     let guess = proposal.guesses.iter().find(|guess| guess.column == column).unwrap();
     guess.channel.as_deref()
 }

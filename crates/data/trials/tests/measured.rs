@@ -10,7 +10,7 @@ use sistership_model::manifest::Manifest;
 use sistership_model::trial::{Channel, Trial};
 use sistership_trials::samples::{from_parquet, to_parquet};
 use sistership_trials::{
-    Mapping, Refusal, Source, check, load_path, read_manifest_file, read_trial,
+    Mapping, Refusal, TrialFile, check_source, load_path, read_manifest_file, read_trial,
 };
 
 const ESSO_OSAKA: &str = r#"
@@ -63,12 +63,12 @@ fn csv_files(folder: &Path) -> Vec<PathBuf> {
 
 fn esso_osaka() -> Mapping {
     let manifest: Manifest = read_manifest_file("esso-osaka.yaml", ESSO_OSAKA).unwrap().manifest;
-    Mapping::of(&manifest, &manifest.trials[0])
+    Mapping::from_manifest(&manifest, &manifest.trials[0])
 }
 
 fn read(path: &Path, mapping: &Mapping) -> Result<Trial, Refusal> {
     let name = path.file_name().unwrap().to_string_lossy().into_owned();
-    read_trial(Source::open(name, path).unwrap(), mapping)
+    read_trial(TrialFile::open(name, path).unwrap(), mapping)
 }
 
 fn show(trial: &Trial) {
@@ -105,7 +105,7 @@ fn missing_values_are_refused_unless_they_may_be_dropped() {
             .iter()
             .any(|warning| warning.message.starts_with("rows 1703 to 2029 left out"))
     );
-    mapping.conventions.missing = sistership_model::manifest::Missing::Refuse;
+    mapping.conventions.missing = sistership_model::manifest::MissingValues::Refuse;
     let refusal = read(&file, &mapping).unwrap_err();
     assert_eq!(
         (refusal.findings[0].row, refusal.findings[0].column.as_deref()),
@@ -142,10 +142,10 @@ fn broken_conventions_are_found_in_most_real_files() {
             continue;
         }
         let esso = file.to_string_lossy().contains("esso-osaka");
-        let mut mapping = if esso { esso_osaka() } else { Mapping::canonical() };
+        let mut mapping = if esso { esso_osaka() } else { Mapping::with_canonical_names() };
         mapping.conventions.rudder_positive = sistership_model::manifest::RudderSign::PortTurn;
         let says = |mapping: &Mapping, what: &str| {
-            let outcome = check(Source::open("a", &file).unwrap(), mapping);
+            let outcome = check_source(TrialFile::open("a", &file).unwrap(), mapping);
             let said = outcome.errors.iter().any(|error| error.message.contains(what));
             if !said {
                 println!("{what} is not found in {}", file.display());
@@ -156,7 +156,7 @@ fn broken_conventions_are_found_in_most_real_files() {
         rudder += says(&mapping, "rudder_positive");
         if esso {
             let told = |mapping: &Mapping, what: &str, text: &str| {
-                let outcome = check(Source::csv("a", text.as_bytes()), mapping);
+                let outcome = check_source(TrialFile::from_csv("a", text.as_bytes()), mapping);
                 usize::from(outcome.errors.iter().any(|error| error.message.contains(what)))
             };
             let text = std::fs::read_to_string(&file).unwrap();

@@ -7,7 +7,7 @@ use std::path::Path;
 use sistership_model::Trial;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
-use sistership_trials::{load_path, propose};
+use sistership_trials::{load_path, propose_manifest};
 
 /// Northwards at 5 m/s over the ground, 4 m/s through the water: a current of 1 m/s from astern.
 const GROUND_M_S: f64 = 5.0;
@@ -28,7 +28,7 @@ fn proposed(text: &str) -> Trial {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.csv");
     std::fs::write(&file, text).unwrap();
-    let manifest = propose("a", &[&file]).unwrap().manifest.to_yaml().unwrap();
+    let manifest = propose_manifest("a", &[&file]).unwrap().manifest.to_yaml().unwrap();
     read(folder.path(), &manifest).unwrap()
 }
 

@@ -4,53 +4,53 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use sistership_model::{Law, Vessel, Zoo};
-use sistership_store::{Objects, Store};
+use sistership_store::{ObjectStorage, Store};
 use tokio::sync::{Notify, RwLock, Semaphore};
 
 use crate::accounts::{Accounts, Credentials};
-use crate::config::{Config, Leases, Limits};
-use crate::metrics::Metrics;
+use crate::config::{Config, LeaseSettings, Limits};
+use crate::metrics::ServerMetrics;
 use crate::problem::{Problem, Result};
-use sistership_auth::openid::Provider;
+use sistership_auth::openid::OpenIdProvider;
 use sistership_jobs::archive::Archive;
-use sistership_jobs::budget::{self, Budget, Held};
-use sistership_jobs::catalogue::{Catalogue, KnownLaw, MOST};
-use sistership_jobs::predictions::session::Sessions;
-use sistership_listener::{Stopping, Throttle, TrustedProxies};
+use sistership_jobs::budget::{self, MemoryBudget, RequestMemory};
+use sistership_jobs::catalogue::{KnownLaw, MAX_COMPARED_SHIPS, ZooCache};
+use sistership_jobs::predictions::session::SessionTable;
+use sistership_listener::{KeyThrottle, StopSignal, TrustedProxies};
 use sistership_pages::ship::SIMILAR;
-use sistership_pages::version::KnownManoeuvres;
-use sistership_web_support::answers::Answers;
+use sistership_pages::version::ManoeuvreCache;
+use sistership_web_support::answers::AnswerCache;
 use sistership_web_support::api_key::FormToken;
-use sistership_web_support::drafts::Drafts;
+use sistership_web_support::drafts::DraftTable;
 use sistership_web_support::payload::DocumentLimits;
-use sistership_web_support::spool::Spool;
+use sistership_web_support::spool::SpoolFolder;
 use sistership_web_support::upload::UploadPlace;
 
 /// The shared state of a server. A clone is another handle on the same one.
 #[derive(Clone)]
-pub(crate) struct App(Arc<Inner>, Arc<Archive>);
+pub(crate) struct App(Arc<SharedState>, Arc<Archive>);
 
-struct Inner {
-    catalogue: Catalogue,
+struct SharedState {
+    catalogue: ZooCache,
     credentials: Credentials,
     form_token: FormToken,
-    drafts: Drafts,
-    sessions: Sessions,
-    throttle: Throttle,
+    drafts: DraftTable,
+    sessions: SessionTable,
+    throttle: KeyThrottle,
     proxies: TrustedProxies,
     limits: Limits,
-    leases: Leases,
-    spool: Arc<Spool>,
+    leases: LeaseSettings,
+    spool: Arc<SpoolFolder>,
     no_room: AtomicBool,
     seats: Arc<Semaphore>,
     wake: Notify,
     turns: Arc<RwLock<()>>,
-    metrics: Metrics,
-    answers: Answers,
-    manoeuvres: Arc<KnownManoeuvres>,
-    stopping: Stopping,
-    requests: Budget,
-    jobs: Budget,
+    metrics: ServerMetrics,
+    answers: AnswerCache,
+    manoeuvres: Arc<ManoeuvreCache>,
+    stopping: StopSignal,
+    requests: MemoryBudget,
+    jobs: MemoryBudget,
 }
 
 impl axum::extract::FromRef<App> for DocumentLimits {
@@ -71,49 +71,49 @@ impl App {
     pub(crate) fn new(
         config: &Config,
         archive: Archive,
-        catalogue: Catalogue,
-        stopping: Stopping,
+        catalogue: ZooCache,
+        stopping: StopSignal,
     ) -> sistership_auth::openid::Result<Self> {
         // As many numerical tasks and password hashes run at a time as there are cores; both take
         // their permits from the same semaphore.
         let seats = std::thread::available_parallelism().map_or(2, std::num::NonZero::get);
         let seats = Arc::new(Semaphore::new(seats));
-        let provider = config.openid.clone().map(Provider::new).transpose()?;
+        let provider = config.openid.clone().map(OpenIdProvider::new).transpose()?;
         let (key, people) = (config.api_key.as_deref(), config.accounts);
         let credentials = Credentials::new(key, people, provider, Arc::clone(&seats));
-        let inner = Inner {
+        let inner = SharedState {
             catalogue,
-            form_token: FormToken::of(credentials.key()),
-            drafts: Drafts::default(),
-            sessions: Sessions::new(config.limits.sessions),
+            form_token: FormToken::from_key(credentials.server_key()),
+            drafts: DraftTable::default(),
+            sessions: SessionTable::new(config.limits.sessions),
             credentials,
-            throttle: Throttle::default(),
+            throttle: KeyThrottle::default(),
             proxies: config.proxies.clone(),
             limits: config.limits,
             leases: config.leases,
-            spool: Arc::new(Spool::below(config.data_dir.join("uploads"))),
+            spool: Arc::new(SpoolFolder::with_root(config.data_dir.join("uploads"))),
             no_room: AtomicBool::new(false),
             seats,
             wake: Notify::new(),
             turns: Arc::default(),
-            metrics: Metrics::default(),
-            answers: Answers::default(),
+            metrics: ServerMetrics::default(),
+            answers: AnswerCache::default(),
             manoeuvres: Arc::default(),
             stopping,
-            requests: Budget::new(config.limits.request_memory, "--request-memory-mb"),
-            jobs: Budget::new(config.limits.job_memory, "--job-memory-mb"),
+            requests: MemoryBudget::new(config.limits.request_memory, "--request-memory-mb"),
+            jobs: MemoryBudget::new(config.limits.job_memory, "--job-memory-mb"),
         };
         Ok(Self(Arc::new(inner), Arc::new(archive)))
     }
 
     /// Returns a handle on the same state with another store, such as that of a unit of work.
-    pub(crate) fn within(&self, store: &Store) -> Self {
+    pub(crate) fn with_store(&self, store: &Store) -> Self {
         let archive = Archive { store: store.clone(), objects: self.objects().clone() };
         Self(Arc::clone(&self.0), Arc::new(archive))
     }
 
     /// The zoo as it was last read from the store.
-    pub(crate) fn catalogue(&self) -> &Catalogue {
+    pub(crate) fn catalogue(&self) -> &ZooCache {
         &self.0.catalogue
     }
 
@@ -125,7 +125,7 @@ impl App {
         &self.1.store
     }
 
-    pub(crate) fn objects(&self) -> &Objects {
+    pub(crate) fn objects(&self) -> &ObjectStorage {
         &self.1.objects
     }
 
@@ -136,7 +136,7 @@ impl App {
 
     /// The accounts of the store, with the credentials of this process.
     pub(crate) fn accounts(&self) -> Accounts<'_> {
-        self.credentials().of(self.store())
+        self.credentials().with_store(self.store())
     }
 
     /// Token that the forms of the pages carry.
@@ -145,17 +145,17 @@ impl App {
     }
 
     /// Uploads that a person reviews before they are kept.
-    pub(crate) fn drafts(&self) -> &Drafts {
+    pub(crate) fn drafts(&self) -> &DraftTable {
         &self.0.drafts
     }
 
     /// Simulation sessions that are open.
-    pub(crate) fn sessions(&self) -> &Sessions {
+    pub(crate) fn sessions(&self) -> &SessionTable {
         &self.0.sessions
     }
 
     /// Addresses that have presented wrong keys.
-    pub(crate) fn throttle(&self) -> &Throttle {
+    pub(crate) fn throttle(&self) -> &KeyThrottle {
         &self.0.throttle
     }
 
@@ -168,28 +168,28 @@ impl App {
         &self.0.limits
     }
 
-    pub(crate) fn leases(&self) -> &Leases {
+    pub(crate) fn leases(&self) -> &LeaseSettings {
         &self.0.leases
     }
 
     /// Folder of uploads until they have been read.
-    pub(crate) fn spool(&self) -> &Spool {
+    pub(crate) fn spool(&self) -> &SpoolFolder {
         &self.0.spool
     }
 
     /// True if the last attempt to write found no space.
-    pub(crate) fn no_room(&self) -> &AtomicBool {
+    pub(crate) fn is_out_of_space(&self) -> &AtomicBool {
         &self.0.no_room
     }
 
     /// Lock that a worker holds while it has a job: shared as a rule, exclusive if a process ended
     /// during an earlier attempt at the job.
-    pub(crate) fn turns(&self) -> &Arc<RwLock<()>> {
+    pub(crate) fn worker_turns(&self) -> &Arc<RwLock<()>> {
         &self.0.turns
     }
 
     /// Signal that wakes the workers of this process.
-    pub(crate) fn wake(&self) -> &Notify {
+    pub(crate) fn wake_signal(&self) -> &Notify {
         &self.0.wake
     }
 
@@ -197,52 +197,52 @@ impl App {
     pub(crate) fn wake_all(&self) {
         // `notify_waiters` reaches only those that wait already; `notify_one` leaves a permit for
         // one that begins to wait just now.
-        self.wake().notify_waiters();
-        self.wake().notify_one();
+        self.wake_signal().notify_waiters();
+        self.wake_signal().notify_one();
     }
 
-    pub(crate) fn metrics(&self) -> &Metrics {
+    pub(crate) fn metrics(&self) -> &ServerMetrics {
         &self.0.metrics
     }
 
     /// Cache of the answers with champions.
-    pub(crate) fn answers(&self) -> &Answers {
+    pub(crate) fn champion_cache(&self) -> &AnswerCache {
         &self.0.answers
     }
 
     /// Signal that the server is to stop.
-    pub(crate) fn stopping(&self) -> Stopping {
+    pub(crate) fn stop_signal(&self) -> StopSignal {
         self.0.stopping.clone()
     }
 
     /// Memory budget of one request.
-    pub(crate) fn held(&self) -> Held {
-        Held::new(self.0.requests.clone(), self.0.limits.memory_wait)
+    pub(crate) fn request_memory(&self) -> RequestMemory {
+        RequestMemory::new(self.0.requests.clone(), self.0.limits.memory_wait)
     }
 
     /// Memory budget of the jobs.
-    pub(crate) fn job_memory(&self) -> &Budget {
+    pub(crate) fn job_memory(&self) -> &MemoryBudget {
         &self.0.jobs
     }
 
     /// Returns the laws of the database, without ships.
-    pub(crate) async fn laws(&self) -> sistership_store::Result<Arc<Zoo>> {
-        self.0.catalogue.laws(self.store()).await
+    pub(crate) async fn stored_laws(&self) -> sistership_store::Result<Arc<Zoo>> {
+        self.0.catalogue.zoo_of_laws(self.store()).await
     }
 
     /// Returns the laws of the database with the ships that a ship is compared with: all ships if
     /// they are few, otherwise the most similar ones of its category.
     pub(crate) async fn zoo_around(&self, target: &Vessel) -> Result<Arc<Zoo>> {
-        Ok(self.0.catalogue.around(self.archive(), target, MOST).await?)
+        Ok(self.0.catalogue.zoo_for_target(self.archive(), target, MAX_COMPARED_SHIPS).await?)
     }
 
     /// Returns the same with at most as many ships as a page lists, if they are many.
     pub(crate) async fn zoo_shown(&self, target: &Vessel) -> Result<Arc<Zoo>> {
-        Ok(self.0.catalogue.around(self.archive(), target, SIMILAR).await?)
+        Ok(self.0.catalogue.zoo_for_target(self.archive(), target, SIMILAR).await?)
     }
 
     /// Cache of the standard manoeuvres of versions, as pages show them.
-    pub(crate) fn manoeuvres(&self) -> Arc<KnownManoeuvres> {
+    pub(crate) fn known_manoeuvres(&self) -> Arc<ManoeuvreCache> {
         Arc::clone(&self.0.manoeuvres)
     }
 
@@ -250,7 +250,7 @@ impl App {
     ///
     /// # Errors
     /// Returns an internal error if the law is missing or cannot be parsed.
-    pub(crate) async fn law(&self, name: &str) -> Result<Arc<Law>> {
+    pub(crate) async fn stored_law(&self, name: &str) -> Result<Arc<Law>> {
         let known = self.find_law(name).await?;
         known
             .map(|known| known.law)
@@ -259,17 +259,17 @@ impl App {
 
     /// Returns a law, or `None` if there is none of this name.
     pub(crate) async fn find_law(&self, name: &str) -> Result<Option<KnownLaw>> {
-        Ok(self.0.catalogue.law(self.store(), name).await?)
+        Ok(self.0.catalogue.find_law(self.store(), name).await?)
     }
 
     /// Runs numerical work on a blocking thread; at most as many tasks at a time as there are
     /// cores.
-    pub(crate) async fn compute<T: Send + 'static>(
+    pub(crate) async fn run_blocking<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T> {
         let seat = Arc::clone(&self.0.seats).acquire_owned().await.map_err(Problem::internal)?;
-        let task = tokio::task::spawn_blocking(budget::carried(move || {
+        let task = tokio::task::spawn_blocking(budget::with_request_memory(move || {
             // Held until the work ends, also if the request that waits for it is dropped.
             let _seat = seat;
             work()

@@ -5,8 +5,8 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use sistership_auth::openid::Settings as OpenIdSettings;
-pub use sistership_jobs::leases::Leases;
+use sistership_auth::openid::ProviderSettings as OpenIdSettings;
+pub use sistership_jobs::leases::LeaseSettings;
 use sistership_jobs::predictions::session::SessionLimits;
 use sistership_listener::TrustedProxies;
 use sistership_store::ObjectsPlace;
@@ -18,7 +18,7 @@ pub const DEFAULT_LISTEN: SocketAddr =
     SocketAddr::new(std::net::IpAddr::V4(std::net::Ipv4Addr::LOCALHOST), 8080);
 
 /// Time allowed for closing the store.
-const CLOSING: Duration = Duration::from_secs(5);
+const CLOSE_TIME: Duration = Duration::from_secs(5);
 
 /// Configuration of a server.
 #[derive(Clone)]
@@ -43,7 +43,7 @@ pub struct Config {
     /// Limits on requests and on resources.
     pub limits: Limits,
     /// Timing of the leases by which workers hold jobs.
-    pub leases: Leases,
+    pub leases: LeaseSettings,
     /// Number of jobs that this process runs at a time; 0 leaves them to other processes.
     pub workers: usize,
 }
@@ -112,7 +112,7 @@ impl Config {
             openid: None,
             proxies: TrustedProxies::default(),
             limits: Limits::default(),
-            leases: Leases::default(),
+            leases: LeaseSettings::default(),
             workers: 1,
         }
     }
@@ -143,8 +143,8 @@ impl Config {
 
     /// Time within which a stopping process has ended in any case: the time for jobs to finish, the
     /// time for jobs and requests to break off, and the time to close the store.
-    pub fn stop_bound(&self) -> Duration {
-        self.leases.drain + self.limits.stop_time + CLOSING
+    pub fn stop_deadline(&self) -> Duration {
+        self.leases.drain + self.limits.stop_time + CLOSE_TIME
     }
 }
 
@@ -168,7 +168,7 @@ impl fmt::Debug for Config {
 
 impl Limits {
     /// Limits of the connections.
-    pub(crate) fn of_connections(&self) -> sistership_listener::Limits {
+    pub(crate) fn connection_limits(&self) -> sistership_listener::ConnectionLimits {
         let Self {
             header_time,
             connections,
@@ -179,7 +179,7 @@ impl Limits {
             stop_time,
             ..
         } = *self;
-        sistership_listener::Limits {
+        sistership_listener::ConnectionLimits {
             header_time,
             connections,
             connections_per_address,
@@ -194,7 +194,7 @@ impl Limits {
 impl Default for Limits {
     fn default() -> Self {
         // One source for the defaults of the listener.
-        let connections = sistership_listener::Limits::default();
+        let connections = sistership_listener::ConnectionLimits::default();
         Self {
             document_bytes: 4 << 20,
             upload_bytes: 256 << 20,

@@ -22,10 +22,10 @@ mod upload;
 mod web;
 mod workers;
 
-pub use config::{Config, DEFAULT_LISTEN, Leases, Limits, sqlite_url};
+pub use config::{Config, DEFAULT_LISTEN, LeaseSettings, Limits, sqlite_url};
 pub use routes::openapi;
-pub use server::{Running, Server};
-pub use sistership_auth::openid::Settings as OpenIdSettings;
+pub use server::{RunningServer, Server};
+pub use sistership_auth::openid::ProviderSettings as OpenIdSettings;
 pub use sistership_listener::{ForwardedHeader, TrustedProxies};
 pub use sistership_store::{ObjectsPlace, S3Place};
 pub use start_error::StartError;

@@ -13,10 +13,10 @@ use crate::search_index;
 use crate::start_error::StartError;
 use crate::tidy;
 use sistership_jobs::archive::Archive;
-use sistership_jobs::catalogue::Catalogue;
+use sistership_jobs::catalogue::ZooCache;
 use sistership_jobs::seed;
-use sistership_jobs::webhooks::Telling;
-use sistership_listener::Stopping;
+use sistership_jobs::webhooks::DeliverySettings;
+use sistership_listener::StopSignal;
 
 /// A process that runs until it is [stopped](Self::stop) or dropped.
 #[derive(Debug)]
@@ -33,21 +33,21 @@ impl Process {
     pub(crate) async fn start(config: &Config, indexes: bool) -> Result<(Self, App), StartError> {
         let archive = Archive::open_at(&config.database_url, &config.objects).await?;
         // Laws and ships of the zoo first: workers and handlers expect them in the store.
-        let catalogue = Catalogue::default();
-        seed::seed(&archive.store, &catalogue).await?;
-        let (stop, stopping) = Stopping::new();
+        let catalogue = ZooCache::default();
+        seed::seed_zoo(&archive.store, &catalogue).await?;
+        let (stop, stopping) = StopSignal::new();
         let app = App::new(config, archive.clone(), catalogue, stopping)?;
-        tidy::once(&app).await;
+        tidy::run_once(&app).await;
         let mut tasks = JoinSet::new();
-        tasks.spawn(tidy::keep(app.clone()));
+        tasks.spawn(tidy::run_loop(app.clone()));
         if indexes {
-            tasks.spawn(search_index::keep(app.clone()));
-            tasks.spawn(told(app.clone()));
+            tasks.spawn(search_index::run_loop(app.clone()));
+            tasks.spawn(deliver_webhooks(app.clone()));
         }
         for _ in 0..config.workers {
             tasks.spawn(Worker::new(app.clone()).run());
         }
-        Ok((Self { archive, tasks, stop, bound: config.stop_bound() }, app))
+        Ok((Self { archive, tasks, stop, bound: config.stop_deadline() }, app))
     }
 
     /// Stops all tasks and waits for their end, but not longer than the configuration allows.
@@ -65,11 +65,12 @@ impl Process {
 }
 
 /// Delivers events to webhooks until the server stops.
-async fn told(app: App) {
-    let telling = Telling { private: app.limits().webhooks_private, poll: app.leases().poll };
-    let mut stopping = app.stopping();
+async fn deliver_webhooks(app: App) {
+    let telling =
+        DeliverySettings { private: app.limits().webhooks_private, poll: app.leases().poll };
+    let mut stopping = app.stop_signal();
     tokio::select! {
-        () = sistership_jobs::webhooks::keep(app.store().clone(), telling) => {}
+        () = sistership_jobs::webhooks::run_deliveries(app.store().clone(), telling) => {}
         () = stopping.wait() => {}
     }
 }

@@ -8,21 +8,21 @@ use sistership_store::StoreError;
 use crate::app::App;
 
 /// Pause after a failure of the database.
-const BREATH: Duration = Duration::from_secs(5);
+const RETRY_DELAY: Duration = Duration::from_secs(5);
 
 /// Writes the facts of ships as they change, until the server stops.
-pub(crate) async fn keep(app: App) {
-    let mut stopping = app.stopping();
+pub(crate) async fn run_loop(app: App) {
+    let mut stopping = app.stop_signal();
     let mut read = false;
     // A failure is logged and tried again after a longer pause; the index only falls behind
     // meanwhile.
-    while !stopping.now() {
-        let work = round(&app, &mut read);
+    while !stopping.is_stopping() {
+        let work = update_index(&app, &mut read);
         let mut pause = app.leases().poll;
         tokio::select! {
             done = work => if let Err(error) = done {
                 tracing::error!(%error, "what ships are found by could not be written");
-                pause = pause.max(BREATH);
+                pause = pause.max(RETRY_DELAY);
             },
             () = stopping.wait() => return,
         }
@@ -35,15 +35,15 @@ pub(crate) async fn keep(app: App) {
 
 /// Writes the facts of the ships that wait for it. If none waits, reads the vectors that have
 /// changed, once, so that an import of many ships does not cause a read after each.
-async fn round(app: &App, read: &mut bool) -> Result<(), StoreError> {
-    if app.store().search_index().waiting("", 1).await?.is_empty() {
+async fn update_index(app: &App, read: &mut bool) -> Result<(), StoreError> {
+    if app.store().search_index().list_stale("", 1).await?.is_empty() {
         if !*read {
-            app.catalogue().vectors().catch_up(app.store()).await?;
+            app.catalogue().known_vectors().refresh_all(app.store()).await?;
         }
         *read = true;
         return Ok(());
     }
     *read = false;
-    let laws = app.laws().await?;
+    let laws = app.stored_laws().await?;
     write_facts(app.archive(), &laws).await
 }

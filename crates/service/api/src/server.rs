@@ -15,7 +15,7 @@ pub struct Server;
 
 /// A running server, until it is [stopped](Self::stop) or dropped.
 #[derive(Debug)]
-pub struct Running {
+pub struct RunningServer {
     addr: SocketAddr,
     process: Process,
 }
@@ -27,11 +27,11 @@ impl Server {
     /// # Errors
     /// Returns an error if the configuration is wrong, or if the address, the data folder or the
     /// store cannot be opened.
-    pub async fn start(config: Config) -> Result<Running, StartError> {
+    pub async fn start(config: Config) -> Result<RunningServer, StartError> {
         config.check()?;
         sistership_store::provide_cryptography();
         // Bind the address first: a process that cannot have it must take no job from others.
-        let limits = sistership_listener::suited(config.limits.of_connections());
+        let limits = sistership_listener::fit_to_descriptors(config.limits.connection_limits());
         let listener = bind(config.listen)
             .map_err(|error| StartError::Listen { listen: config.listen, error })?;
         let addr = listener
@@ -39,16 +39,16 @@ impl Server {
             .map_err(|error| StartError::Listen { listen: config.listen, error })?;
         // `true`: only a server keeps the search index and delivers webhooks.
         let (mut process, app) = Process::start(&config, true).await?;
-        let stopping = app.stopping();
+        let stopping = app.stop_signal();
         process.tasks.spawn(listen(listener, routes::router(app), limits, stopping));
         tracing::info!(%addr, "listening");
-        Ok(Running { addr, process })
+        Ok(RunningServer { addr, process })
     }
 }
 
-impl Running {
+impl RunningServer {
     /// Address and port of the server.
-    pub fn addr(&self) -> SocketAddr {
+    pub fn local_addr(&self) -> SocketAddr {
         self.addr
     }
 

@@ -47,7 +47,7 @@ pub enum StartError {
     OpenIdWithoutAccounts,
     /// The client of the OpenID provider cannot be set up.
     #[error("oidc: {0}")]
-    OpenId(#[from] sistership_auth::openid::Failure),
+    OpenId(#[from] sistership_auth::openid::SignInFailure),
     /// The zoo that is embedded in the program cannot be parsed.
     #[error("the zoo is damaged: {0}")]
     Zoo(#[from] sistership_model::FileError),

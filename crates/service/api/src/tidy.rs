@@ -10,46 +10,50 @@ use sistership_store::StoreError;
 use crate::app::App;
 
 /// Interval of the maintenance.
-const EVERY: Duration = Duration::from_secs(15);
+const MAINTENANCE_INTERVAL: Duration = Duration::from_secs(15);
 /// Interval of the check for space while there is none.
-const WITHOUT_ROOM: Duration = Duration::from_secs(2);
+const SPACE_CHECK_INTERVAL: Duration = Duration::from_secs(2);
 /// Least space that an upload needs, bytes.
 const ROOM_BYTES: usize = 64 << 10;
 
 /// Runs the maintenance until the server stops.
-pub(crate) async fn keep(app: App) {
-    let mut stopping = app.stopping();
-    while !stopping.now() {
-        let pause = if app.no_room().load(Ordering::Relaxed) { WITHOUT_ROOM } else { EVERY };
+pub(crate) async fn run_loop(app: App) {
+    let mut stopping = app.stop_signal();
+    while !stopping.is_stopping() {
+        let pause = if app.is_out_of_space().load(Ordering::Relaxed) {
+            SPACE_CHECK_INTERVAL
+        } else {
+            MAINTENANCE_INTERVAL
+        };
         tokio::select! {
             () = tokio::time::sleep(pause) => {}
             () = stopping.wait() => return,
         }
         tokio::select! {
-            () = once(&app) => {}
+            () = run_once(&app) => {}
             () = stopping.wait() => return,
         }
     }
 }
 
 /// Runs the maintenance once. Failures are logged, and the next run tries again.
-pub(crate) async fn once(app: &App) {
-    app.sessions().tidy();
+pub(crate) async fn run_once(app: &App) {
+    app.sessions().remove_idle();
     let inner = app.clone();
-    let cleared = tokio::task::spawn_blocking(move || inner.spool().clear()).await;
+    let cleared = tokio::task::spawn_blocking(move || inner.spool().clear_ended()).await;
     if let Ok(Err(error)) = cleared {
         tracing::warn!(%error, "the uploads of ended processes could not be removed");
     }
     if let Err(error) = app.objects().clear_staged().await {
         tracing::warn!(%error, "what ended processes have left of objects could not be removed");
     }
-    look_for_room(app).await;
+    check_free_space(app).await;
 }
 
-async fn look_for_room(app: &App) {
-    let found = has_room(app).await;
+async fn check_free_space(app: &App) {
+    let found = has_free_space(app).await;
     // Only a change is logged.
-    let before = app.no_room().load(Ordering::Relaxed);
+    let before = app.is_out_of_space().load(Ordering::Relaxed);
     match found {
         Ok(true) if before => tracing::info!("there is room to write again"),
         Ok(false) if !before => tracing::error!(
@@ -60,16 +64,16 @@ async fn look_for_room(app: &App) {
         }
         _ => {}
     }
-    app.no_room().store(matches!(found, Ok(false)), Ordering::Relaxed);
+    app.is_out_of_space().store(matches!(found, Ok(false)), Ordering::Relaxed);
 }
 
 /// Returns true if the database, the object store and the uploads can be written.
-async fn has_room(app: &App) -> Result<bool, StoreError> {
+async fn has_free_space(app: &App) -> Result<bool, StoreError> {
     // The first step that fails for lack of space decides.
     let written = async {
-        app.objects().mark().await?;
-        app.store().idempotency().purge().await?;
-        app.store().reserve()?;
+        app.objects().write_marker().await?;
+        app.store().idempotency().purge_expired().await?;
+        app.store().reserve_space()?;
         app.store().try_write().await
     };
     match written.await {

@@ -20,13 +20,13 @@ const FREE_OF_CLIENT: f64 = 20.0;
 /// together.
 const FREE_OF_NAME: f64 = 50.0;
 /// Time after which one failed attempt is forgotten.
-const FORGOTTEN: Duration = Duration::from_secs(12);
+const FORGET_AFTER: Duration = Duration::from_secs(12);
 /// Maximum number of entries of each table.
-const KNOWN: usize = 4096;
+const MAX_ENTRIES: usize = 4096;
 
 /// An attempt to sign in.
 #[derive(Debug, Clone, Copy)]
-pub struct Attempt<'a> {
+pub struct SignInAttempt<'a> {
     /// Name of the user.
     pub name: &'a str,
     /// The client's address.
@@ -35,40 +35,40 @@ pub struct Attempt<'a> {
 
 /// Failed attempts by name and client, and the clients from which a name has signed in.
 #[derive(Debug, Default)]
-pub struct Attempts(Mutex<Tables>);
+pub struct FailedAttempts(Mutex<AttemptTables>);
 
 #[derive(Debug, Default)]
-struct Tables {
+struct AttemptTables {
     mistakes: HashMap<String, (f64, Instant)>,
     known: HashMap<String, Instant>,
 }
 
-impl Attempts {
+impl FailedAttempts {
     /// Counts an attempt before its password is compared.
     ///
     /// # Errors
     /// Returns the time to wait if there were too many attempts; this one is not counted then.
-    pub fn begin(&self, attempt: Attempt<'_>, now: Instant) -> Result<(), Duration> {
-        let mut tables = self.tables();
-        let concerned = tables.concerned(attempt);
+    pub fn begin_attempt(&self, attempt: SignInAttempt<'_>, now: Instant) -> Result<(), Duration> {
+        let mut tables = self.lock_tables();
+        let concerned = tables.attempt_keys(attempt);
         let wait = |(whom, free): &(String, f64)| {
-            let count = tables.count(whom, now);
-            (count + 1.0 > *free).then(|| FORGOTTEN.mul_f64(count + 1.0 - free))
+            let count = tables.failure_count(whom, now);
+            (count + 1.0 > *free).then(|| FORGET_AFTER.mul_f64(count + 1.0 - free))
         };
         match concerned.iter().filter_map(wait).max() {
             Some(wait) => Err(wait),
             None => {
-                concerned.iter().for_each(|(whom, _)| tables.add(whom, now));
+                concerned.iter().for_each(|(whom, _)| tables.add_failure(whom, now));
                 Ok(())
             }
         }
     }
 
     /// Removes an attempt from the counts: its password was right, or was not compared.
-    pub fn withdraw(&self, attempt: Attempt<'_>, now: Instant) {
-        let mut tables = self.tables();
-        for (whom, _) in tables.concerned(attempt) {
-            let left = tables.count(&whom, now) - 1.0;
+    pub fn withdraw_attempt(&self, attempt: SignInAttempt<'_>, now: Instant) {
+        let mut tables = self.lock_tables();
+        for (whom, _) in tables.attempt_keys(attempt) {
+            let left = tables.failure_count(&whom, now) - 1.0;
             if let Some(mistakes) = tables.mistakes.get_mut(&whom) {
                 *mistakes = (left.max(0.0), now);
             }
@@ -76,28 +76,28 @@ impl Attempts {
     }
 
     /// Records a successful sign-in: the client becomes known for the name.
-    pub fn right(&self, attempt: Attempt<'_>, now: Instant) {
-        self.withdraw(attempt, now);
-        let mut tables = self.tables();
-        if tables.known.len() >= KNOWN {
+    pub fn record_success(&self, attempt: SignInAttempt<'_>, now: Instant) {
+        self.withdraw_attempt(attempt, now);
+        let mut tables = self.lock_tables();
+        if tables.known.len() >= MAX_ENTRIES {
             // A full table drops its oldest entry.
             let oldest = tables.known.iter().min_by_key(|(_, at)| **at);
             if let Some(oldest) = oldest.map(|(whom, _)| whom.clone()) {
                 tables.known.remove(&oldest);
             }
         }
-        tables.known.insert(pair(attempt), now);
+        tables.known.insert(pair_key(attempt), now);
     }
 
-    fn tables(&self) -> MutexGuard<'_, Tables> {
+    fn lock_tables(&self) -> MutexGuard<'_, AttemptTables> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Tables {
+impl AttemptTables {
     /// Returns the keys under which an attempt counts, each with its number of free failures.
-    fn concerned(&self, attempt: Attempt<'_>) -> Vec<(String, f64)> {
-        let pair = pair(attempt);
+    fn attempt_keys(&self, attempt: SignInAttempt<'_>) -> Vec<(String, f64)> {
+        let pair = pair_key(attempt);
         if self.known.contains_key(&pair) {
             return vec![(pair, FREE)];
         }
@@ -106,37 +106,39 @@ impl Tables {
     }
 
     /// Returns the number of failed attempts under a key that are not forgotten yet.
-    fn count(&self, whom: &str, now: Instant) -> f64 {
-        self.mistakes.get(whom).map_or(0.0, |mistakes| left(*mistakes, now))
+    fn failure_count(&self, whom: &str, now: Instant) -> f64 {
+        self.mistakes.get(whom).map_or(0.0, |mistakes| remaining_failures(*mistakes, now))
     }
 
-    fn add(&mut self, whom: &str, now: Instant) {
-        if self.mistakes.len() >= KNOWN && !self.mistakes.contains_key(whom) {
-            self.make_room(now);
+    fn add_failure(&mut self, whom: &str, now: Instant) {
+        if self.mistakes.len() >= MAX_ENTRIES && !self.mistakes.contains_key(whom) {
+            self.evict_entry(now);
         }
-        let count = self.count(whom, now) + 1.0;
+        let count = self.failure_count(whom, now) + 1.0;
         self.mistakes.insert(whom.to_owned(), (count, now));
     }
 
     /// Removes expired entries and, if the table is still full, the one with the fewest failures.
-    fn make_room(&mut self, now: Instant) {
-        self.mistakes.retain(|_, mistakes| left(*mistakes, now) > 0.0);
-        let fewest =
-            self.mistakes.iter().min_by(|a, b| left(*a.1, now).total_cmp(&left(*b.1, now)));
+    fn evict_entry(&mut self, now: Instant) {
+        self.mistakes.retain(|_, mistakes| remaining_failures(*mistakes, now) > 0.0);
+        let fewest = self
+            .mistakes
+            .iter()
+            .min_by(|a, b| remaining_failures(*a.1, now).total_cmp(&remaining_failures(*b.1, now)));
         let fewest = fewest.map(|(whom, _)| whom.clone());
-        if let Some(fewest) = fewest.filter(|_| self.mistakes.len() >= KNOWN) {
+        if let Some(fewest) = fewest.filter(|_| self.mistakes.len() >= MAX_ENTRIES) {
             self.mistakes.remove(&fewest);
         }
     }
 }
 
-fn pair(attempt: Attempt<'_>) -> String {
+fn pair_key(attempt: SignInAttempt<'_>) -> String {
     format!("name {} from {}", attempt.name, attempt.from)
 }
 
-fn left((count, at): (f64, Instant), now: Instant) -> f64 {
+fn remaining_failures((count, at): (f64, Instant), now: Instant) -> f64 {
     // Linear decay: failures are forgotten one by one at a constant rate, in fractions.
-    let passed = now.saturating_duration_since(at).as_secs_f64() / FORGOTTEN.as_secs_f64();
+    let passed = now.saturating_duration_since(at).as_secs_f64() / FORGET_AFTER.as_secs_f64();
     (count - passed).max(0.0)
 }
 
@@ -144,30 +146,30 @@ fn left((count, at): (f64, Instant), now: Instant) -> f64 {
 mod tests {
     use super::*;
 
-    fn attempt<'a>(name: &'a str, from: &'a str) -> Attempt<'a> {
-        Attempt { name, from }
+    fn attempt<'a>(name: &'a str, from: &'a str) -> SignInAttempt<'a> {
+        SignInAttempt { name, from }
     }
 
     #[test]
     fn mistakes_make_wait_and_are_forgotten() {
-        let (attempts, start) = (Attempts::default(), Instant::now());
+        let (attempts, start) = (FailedAttempts::default(), Instant::now());
         let ann = attempt("ann", "a");
-        assert!((0..5).all(|_| attempts.begin(ann, start).is_ok()));
-        assert_eq!(attempts.begin(ann, start), Err(FORGOTTEN));
-        assert_eq!(attempts.begin(attempt("bob", "a"), start), Ok(()));
-        assert_eq!(attempts.begin(ann, start + FORGOTTEN), Ok(()));
-        for n in 0..KNOWN / 2 {
+        assert!((0..5).all(|_| attempts.begin_attempt(ann, start).is_ok()));
+        assert_eq!(attempts.begin_attempt(ann, start), Err(FORGET_AFTER));
+        assert_eq!(attempts.begin_attempt(attempt("bob", "a"), start), Ok(()));
+        assert_eq!(attempts.begin_attempt(ann, start + FORGET_AFTER), Ok(()));
+        for n in 0..MAX_ENTRIES / 2 {
             let name = n.to_string();
-            assert!(attempts.begin(attempt(&name, &name), start).is_ok());
+            assert!(attempts.begin_attempt(attempt(&name, &name), start).is_ok());
         }
-        assert!(attempts.tables().mistakes.len() <= KNOWN);
+        assert!(attempts.lock_tables().mistakes.len() <= MAX_ENTRIES);
     }
 
     #[test]
     fn of_many_at_a_time_five_are_compared() {
-        let (attempts, now) = (Attempts::default(), Instant::now());
+        let (attempts, now) = (FailedAttempts::default(), Instant::now());
         let compared = std::thread::scope(|scope| {
-            let one = |_| scope.spawn(|| attempts.begin(attempt("ann", "a"), now).is_ok());
+            let one = |_| scope.spawn(|| attempts.begin_attempt(attempt("ann", "a"), now).is_ok());
             let all: Vec<_> = (0..400).map(one).collect();
             all.into_iter().filter_map(|one| one.join().ok()).filter(|begun| *begun).count()
         });
@@ -176,36 +178,39 @@ mod tests {
 
     #[test]
     fn a_name_is_not_shut_out_by_those_who_guess_it_elsewhere() {
-        let (attempts, start) = (Attempts::default(), Instant::now());
+        let (attempts, start) = (FailedAttempts::default(), Instant::now());
         let mut now = start;
         for _ in 0..1000 {
             now += Duration::from_millis(12_500);
-            assert!(attempts.begin(attempt("ann", "far"), now).is_ok());
+            assert!(attempts.begin_attempt(attempt("ann", "far"), now).is_ok());
             let own = attempt("ann", "own");
-            assert!(attempts.begin(own, now).is_ok());
-            attempts.withdraw(own, now);
+            assert!(attempts.begin_attempt(own, now).is_ok());
+            attempts.withdraw_attempt(own, now);
         }
         // Many clients together bring a name to its limit, but not where it has signed in.
-        attempts.right(attempt("ann", "home"), now);
+        attempts.record_success(attempt("ann", "home"), now);
         for n in 0..60 {
-            let _ = attempts.begin(attempt("ann", &n.to_string()), now);
+            let _ = attempts.begin_attempt(attempt("ann", &n.to_string()), now);
         }
-        assert!(attempts.begin(attempt("ann", "new"), now).is_err());
-        assert!(attempts.begin(attempt("ann", "home"), now).is_ok());
+        assert!(attempts.begin_attempt(attempt("ann", "new"), now).is_err());
+        assert!(attempts.begin_attempt(attempt("ann", "home"), now).is_ok());
     }
 
     #[test]
     fn others_behind_an_address_are_not_shut_out_by_one_who_errs() {
-        let (attempts, now) = (Attempts::default(), Instant::now());
+        let (attempts, now) = (FailedAttempts::default(), Instant::now());
         for _ in 0..6 {
-            let _ = attempts.begin(attempt("nobody", "office"), now);
+            let _ = attempts.begin_attempt(attempt("nobody", "office"), now);
         }
-        assert!(attempts.begin(attempt("ann", "office"), now).is_ok());
-        attempts.right(attempt("ann", "office"), now);
+        assert!(attempts.begin_attempt(attempt("ann", "office"), now).is_ok());
+        attempts.record_success(attempt("ann", "office"), now);
         for n in 0..40 {
-            let _ = attempts.begin(attempt(&n.to_string(), "office"), now);
+            let _ = attempts.begin_attempt(attempt(&n.to_string(), "office"), now);
         }
-        assert!(attempts.begin(attempt("new", "office"), now).is_err());
-        assert!(attempts.begin(attempt("ann", "office"), now).is_ok(), "it has signed in there");
+        assert!(attempts.begin_attempt(attempt("new", "office"), now).is_err());
+        assert!(
+            attempts.begin_attempt(attempt("ann", "office"), now).is_ok(),
+            "it has signed in there"
+        );
     }
 }

@@ -18,7 +18,7 @@ pub enum Scope {
 
 impl Scope {
     /// Returns kind and name, as they are stored.
-    pub fn parts(&self) -> (&'static str, &str) {
+    pub fn to_parts(&self) -> (&'static str, &str) {
         match self {
             Self::Server => ("server", ""),
             Self::Ship(name) => ("ship", name),
@@ -27,7 +27,7 @@ impl Scope {
     }
 
     /// Creates a scope from kind and name, see [`Scope::parts`]; none if the kind is unknown.
-    pub fn of_parts(kind: &str, name: &str) -> Option<Self> {
+    pub fn from_parts(kind: &str, name: &str) -> Option<Self> {
         match kind {
             "server" => Some(Self::Server),
             "ship" => Some(Self::Ship(name.to_owned())),
@@ -48,7 +48,7 @@ pub struct Grant {
 
 impl Grant {
     /// Creates a role for the whole server.
-    pub fn everywhere(role: Role) -> Self {
+    pub fn on_server(role: Role) -> Self {
         Self { scope: Scope::Server, role }
     }
 }
@@ -69,11 +69,11 @@ impl FromStr for Grant {
     fn from_str(text: &str) -> Result<Self, String> {
         // Without a scope the role is for the whole server.
         let Some((role, scope)) = text.split_once('@') else {
-            return Ok(Self::everywhere(text.parse()?));
+            return Ok(Self::on_server(text.parse()?));
         };
         let role: Role = role.parse()?;
         let scope = match scope.split_once(':').filter(|(_, name)| !name.is_empty()) {
-            Some((kind @ ("ship" | "family"), name)) => Scope::of_parts(kind, name),
+            Some((kind @ ("ship" | "family"), name)) => Scope::from_parts(kind, name),
             _ => None,
         };
         let scope = scope.ok_or_else(|| {
@@ -104,9 +104,9 @@ mod tests {
     #[test]
     fn scopes_are_stored_by_their_parts() {
         for scope in [Scope::Server, Scope::Ship("a".into()), Scope::Family("b".into())] {
-            let (kind, name) = scope.parts();
-            assert_eq!(Scope::of_parts(kind, name), Some(scope.clone()));
+            let (kind, name) = scope.to_parts();
+            assert_eq!(Scope::from_parts(kind, name), Some(scope.clone()));
         }
-        assert_eq!(Scope::of_parts("fleet", "a"), None);
+        assert_eq!(Scope::from_parts("fleet", "a"), None);
     }
 }

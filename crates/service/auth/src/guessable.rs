@@ -55,43 +55,44 @@ const RUN: usize = 3;
 pub(crate) fn independent_parts(password: &str) -> usize {
     let lower: Vec<char> = password.to_lowercase().chars().collect();
     // A repeated text counts once: only its first period is judged.
-    let rest = &lower[..period(&lower)];
+    let rest = &lower[..repetition_period(&lower)];
     let (mut at, mut parts) = (0, 0);
     while at < rest.len() {
-        at += step(&rest[at..]);
+        at += guess_length(&rest[at..]);
         parts += 1;
     }
     parts
 }
 
 /// Returns the period with which a text repeats itself; its length if it does not.
-fn period(text: &[char]) -> usize {
+fn repetition_period(text: &[char]) -> usize {
     let repeats = |length: &usize| text.iter().zip(&text[*length..]).all(|(a, b)| a == b);
     (1..=text.len() / 2).find(repeats).unwrap_or(text.len())
 }
 
 /// Returns the number of leading characters of a text that are one guess.
-fn step(text: &[char]) -> usize {
+fn guess_length(text: &[char]) -> usize {
     // The longest of the three readings counts as one guess.
-    let word = WORDS.iter().filter(|word| begins(text, word)).map(|word| word.len()).max();
-    let row = ROWS.iter().map(|row| along(text, row)).max().filter(|length| *length >= RUN);
-    let run = Some(sequence(text)).filter(|length| *length >= RUN);
+    let word =
+        WORDS.iter().filter(|word| starts_with_word(text, word)).map(|word| word.len()).max();
+    let row = ROWS.iter().map(|row| row_length(text, row)).max().filter(|length| *length >= RUN);
+    let run = Some(sequence_length(text)).filter(|length| *length >= RUN);
     [word, row, run].into_iter().flatten().max().unwrap_or(1)
 }
 
-fn begins(text: &[char], word: &str) -> bool {
+fn starts_with_word(text: &[char], word: &str) -> bool {
     text.len() >= word.len() && word.chars().eq(text[..word.len()].iter().copied())
 }
 
 /// Returns the number of leading characters that follow a row of the keyboard.
-fn along(text: &[char], row: &str) -> usize {
+fn row_length(text: &[char], row: &str) -> usize {
     let start = text.first().and_then(|first| row.find(*first));
     let rest = start.map_or("", |start| &row[start..]);
     rest.chars().zip(text).take_while(|(a, b)| a == *b).count()
 }
 
 /// Returns the number of leading characters with a constant difference of code points: -1, 0 or 1.
-fn sequence(text: &[char]) -> usize {
+fn sequence_length(text: &[char]) -> usize {
     let difference = |pair: &[char]| i64::from(u32::from(pair[1])) - i64::from(u32::from(pair[0]));
     // A single character has no difference; it is a sequence of its own length.
     let Some(first) = text.windows(2).next().map(difference) else { return text.len() };

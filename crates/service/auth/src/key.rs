@@ -4,7 +4,7 @@
 //! A key has 256 random bits and cannot be guessed, so that a fast hash is enough: Argon2id is for
 //! passwords, which people choose, and would cost some 20 ms and 19 MiB for each request.
 
-use crate::secret::{hex, same, secret, sha256};
+use crate::secret::{constant_time_eq, hash_text, random_secret, to_hex};
 
 const MARK: &str = "sis_";
 const PREFIX: usize = 12;
@@ -31,7 +31,7 @@ impl KeyText {
         // Two hexadecimal digits a byte.
         let mut bytes = [0; PREFIX / 2];
         getrandom::fill(&mut bytes)?;
-        Ok(Self(format!("{MARK}{}_{}", hex(&bytes), secret()?)))
+        Ok(Self(format!("{MARK}{}_{}", to_hex(&bytes), random_secret()?)))
     }
 
     /// Returns the text.
@@ -40,15 +40,15 @@ impl KeyText {
     }
 
     /// Returns the stored form of the key.
-    pub fn kept(&self) -> ServiceKey {
-        let prefix = ServiceKey::prefix(&self.0).unwrap_or_default().to_owned();
-        ServiceKey { prefix, sha256: hex(&sha256(&self.0)) }
+    pub fn to_stored(&self) -> ServiceKey {
+        let prefix = ServiceKey::parse_prefix(&self.0).unwrap_or_default().to_owned();
+        ServiceKey { prefix, sha256: to_hex(&hash_text(&self.0)) }
     }
 }
 
 impl ServiceKey {
     /// Returns the prefix of a text, if it has the form of a service key.
-    pub fn prefix(text: &str) -> Option<&str> {
+    pub fn parse_prefix(text: &str) -> Option<&str> {
         let (prefix, rest) = text.strip_prefix(MARK)?.split_once('_')?;
         let hexadecimal = |byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
         let fits = prefix.len() == PREFIX && prefix.bytes().all(hexadecimal) && !rest.is_empty();
@@ -56,8 +56,8 @@ impl ServiceKey {
     }
 
     /// Returns true if a text is this key; the comparison takes constant time.
-    pub fn is(&self, presented: &str) -> bool {
-        same(self.sha256.as_bytes(), hex(&sha256(presented)).as_bytes())
+    pub fn matches_text(&self, presented: &str) -> bool {
+        constant_time_eq(self.sha256.as_bytes(), to_hex(&hash_text(presented)).as_bytes())
     }
 }
 
@@ -69,14 +69,18 @@ mod tests {
     #[test]
     fn a_key_is_found_by_its_prefix_and_told_by_its_hash() {
         let text = KeyText::new().unwrap();
-        let kept = text.kept();
-        assert_eq!(ServiceKey::prefix(text.as_str()), Some(kept.prefix.as_str()));
-        assert!(kept.is(text.as_str()) && !kept.sha256.contains(text.as_str()));
+        let kept = text.to_stored();
+        assert_eq!(ServiceKey::parse_prefix(text.as_str()), Some(kept.prefix.as_str()));
+        assert!(kept.matches_text(text.as_str()) && !kept.sha256.contains(text.as_str()));
         let other = format!("{}x", text.as_str());
-        assert!(!kept.is(&other) && !kept.is("") && !kept.is(KeyText::new().unwrap().as_str()));
+        assert!(
+            !kept.matches_text(&other)
+                && !kept.matches_text("")
+                && !kept.matches_text(KeyText::new().unwrap().as_str())
+        );
         for wrong in ["", "sis_", "sis_0123456789ab_", "sis_0123_x", "sis_0123456789aB_x", "secret"]
         {
-            assert_eq!(ServiceKey::prefix(wrong), None, "{wrong}");
+            assert_eq!(ServiceKey::parse_prefix(wrong), None, "{wrong}");
         }
     }
 }

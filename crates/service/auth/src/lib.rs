@@ -13,12 +13,12 @@ mod role;
 mod secret;
 mod signature;
 
-pub use attempts::{Attempt, Attempts};
+pub use attempts::{FailedAttempts, SignInAttempt};
 pub use grant::{Grant, Scope};
 pub use key::{KeyText, ServiceKey};
 pub use names::{check_name, is_reserved_name};
 pub use password::{PasswordError, check_password, hash_password, verify_password, verify_unknown};
 pub use rights::Rights;
 pub use role::Role;
-pub use secret::{hex, same, secret, sha256};
-pub use signature::sign;
+pub use secret::{constant_time_eq, hash_text, random_secret, to_hex};
+pub use signature::sign_message;

@@ -15,8 +15,8 @@ impl Rights {
     }
 
     /// Creates the rights of an administrator of the whole server.
-    pub fn all() -> Self {
-        Self(vec![Grant::everywhere(Role::Admin)])
+    pub fn full_access() -> Self {
+        Self(vec![Grant::on_server(Role::Admin)])
     }
 
     /// Returns the roles, sorted.
@@ -27,12 +27,12 @@ impl Rights {
     /// Returns true if the role, or a higher one, is granted for the whole server.
     pub fn on_server(&self, role: Role) -> bool {
         // `None` sorts below every role: without a grant the comparison is false.
-        self.highest(|scope| *scope == Scope::Server) >= Some(role)
+        self.highest_role(|scope| *scope == Scope::Server) >= Some(role)
     }
 
     /// Returns true if the role, or a higher one, is granted for any scope.
-    pub fn anywhere(&self, role: Role) -> bool {
-        self.highest(|_| true) >= Some(role)
+    pub fn holds_anywhere(&self, role: Role) -> bool {
+        self.highest_role(|_| true) >= Some(role)
     }
 
     /// Returns true if the role, or a higher one, is granted for a ship: by name, by one of its
@@ -43,7 +43,7 @@ impl Rights {
             Scope::Ship(name) => name == ship,
             Scope::Family(name) => families.contains(name),
         };
-        self.highest(given) >= Some(role)
+        self.highest_role(given) >= Some(role)
     }
 
     /// Returns true if the role, or a higher one, is granted for a family.
@@ -53,7 +53,7 @@ impl Rights {
             Scope::Family(name) => name == family,
             Scope::Ship(_) => false,
         };
-        self.highest(given) >= Some(role)
+        self.highest_role(given) >= Some(role)
     }
 
     /// Returns true if a role is granted for a family, so that the families of a ship must be
@@ -62,7 +62,7 @@ impl Rights {
         self.0.iter().any(|grant| matches!(grant.scope, Scope::Family(_)))
     }
 
-    fn highest(&self, given: impl Fn(&Scope) -> bool) -> Option<Role> {
+    fn highest_role(&self, given: impl Fn(&Scope) -> bool) -> Option<Role> {
         self.0.iter().filter(|grant| given(&grant.scope)).map(|grant| grant.role).max()
     }
 }
@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn each_role_has_the_rights_of_those_before_it() {
         for (n, given) in Role::ALL.into_iter().enumerate() {
-            let rights = Rights::new(vec![Grant::everywhere(given)]);
+            let rights = Rights::new(vec![Grant::on_server(given)]);
             for (m, asked) in Role::ALL.into_iter().enumerate() {
                 assert_eq!(rights.on_server(asked), m <= n, "{given} as {asked}");
                 assert_eq!(rights.on_ship(asked, "any", &[]), m <= n);
@@ -99,14 +99,14 @@ mod tests {
             !rights.on_ship(Role::Engineer, "b", &[]) && !rights.on_family(Role::Engineer, "g")
         );
         assert!(rights.on_server(Role::Reader) && !rights.on_server(Role::Engineer));
-        assert!(rights.anywhere(Role::Approver) && !rights.anywhere(Role::Admin));
+        assert!(rights.holds_anywhere(Role::Approver) && !rights.holds_anywhere(Role::Admin));
         assert!(rights.by_family());
     }
 
     #[test]
     fn who_has_no_role_may_do_nothing() {
         let none = Rights::default();
-        assert!(!none.on_server(Role::Reader) && !none.anywhere(Role::Reader));
+        assert!(!none.on_server(Role::Reader) && !none.holds_anywhere(Role::Reader));
         assert!(!none.on_ship(Role::Reader, "a", &[]) && !none.by_family());
     }
 }

@@ -9,25 +9,25 @@ use subtle::ConstantTimeEq as _;
 ///
 /// # Errors
 /// Returns an error if the system gives no random numbers.
-pub fn secret() -> Result<String, getrandom::Error> {
+pub fn random_secret() -> Result<String, getrandom::Error> {
     let mut bytes = [0; 32];
     getrandom::fill(&mut bytes)?;
     Ok(BASE64_URL_SAFE_NO_PAD.encode(bytes))
 }
 
 /// Returns the SHA-256 of a text.
-pub fn sha256(text: &str) -> [u8; 32] {
+pub fn hash_text(text: &str) -> [u8; 32] {
     Sha256::digest(text.as_bytes()).into()
 }
 
 /// Returns bytes in lower-case hexadecimal.
-pub fn hex(bytes: &[u8]) -> String {
+pub fn to_hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Returns true if two secrets are equal, in a time that does not depend on the position of a
 /// difference.
-pub fn same(a: &[u8], b: &[u8]) -> bool {
+pub fn constant_time_eq(a: &[u8], b: &[u8]) -> bool {
     a.ct_eq(b).into()
 }
 
@@ -38,7 +38,7 @@ mod tests {
 
     #[test]
     fn secrets_are_long_and_differ() {
-        let (a, b) = (secret().unwrap(), secret().unwrap());
+        let (a, b) = (random_secret().unwrap(), random_secret().unwrap());
         assert!(a != b && a.len() == 43);
     }
 
@@ -46,7 +46,10 @@ mod tests {
     fn hashes_are_those_of_the_standard() {
         // NIST FIPS 180-2, appendix B.1.
         let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
-        assert_eq!(hex(&sha256("abc")), abc);
-        assert!(same(&sha256("abc"), &sha256("abc")) && !same(&sha256("abc"), &sha256("abd")));
+        assert_eq!(to_hex(&hash_text("abc")), abc);
+        assert!(
+            constant_time_eq(&hash_text("abc"), &hash_text("abc"))
+                && !constant_time_eq(&hash_text("abc"), &hash_text("abd"))
+        );
     }
 }

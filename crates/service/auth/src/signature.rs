@@ -3,14 +3,14 @@
 use hmac::{Hmac, KeyInit as _, Mac as _};
 use sha2::Sha256;
 
-use crate::secret::hex;
+use crate::secret::to_hex;
 
 /// Returns the HMAC-SHA256 of a message under a key, in hexadecimal.
-pub fn sign(key: &str, message: &[u8]) -> String {
+pub fn sign_message(key: &str, message: &[u8]) -> String {
     // HMAC accepts keys of any length, so that this does not fail.
     let Ok(mut mac) = Hmac::<Sha256>::new_from_slice(key.as_bytes()) else { return String::new() };
     mac.update(message);
-    hex(&mac.finalize().into_bytes())
+    to_hex(&mac.finalize().into_bytes())
 }
 
 #[cfg(test)]
@@ -21,9 +21,9 @@ mod tests {
     fn signatures_are_those_of_the_standard() {
         // RFC 4231, test case 2.
         assert_eq!(
-            sign("Jefe", b"what do ya want for nothing?"),
+            sign_message("Jefe", b"what do ya want for nothing?"),
             "5bdcc146bf60754e6a042426089575c75a003f089d2739839dec58b964ec3843"
         );
-        assert_ne!(sign("Jefe", b"a"), sign("Jefe", b"b"));
+        assert_ne!(sign_message("Jefe", b"a"), sign_message("Jefe", b"b"));
     }
 }

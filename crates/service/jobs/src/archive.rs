@@ -7,16 +7,16 @@ use std::sync::Arc;
 use bytes::Bytes;
 use sistership_fleet::family::FamilyPrior;
 use sistership_model::trial::Trial;
-use sistership_model::version::{RecipeTrial, SourceVersion, sha256};
+use sistership_model::version::{RecipeTrial, SourceVersion, sha256_hex};
 use sistership_model::vessel::VesselFile;
 use sistership_model::{Law, Model, Vessel};
 use sistership_store::{
-    MAX_LIMIT, Objects, ObjectsPlace, Page, Store, StoreError, SystemClock, Version,
+    MAX_LIMIT, ObjectStorage, ObjectsPlace, PageRequest, Store, StoreError, SystemClock, Version,
 };
 use sistership_trials::samples::from_parquet;
 
 use crate::error::DeriveError;
-use crate::library::{self, Library};
+use crate::library::{self, EffectLibrary};
 use crate::recipe::PriorName;
 use crate::version::VersionDocument;
 
@@ -26,7 +26,7 @@ pub struct Archive {
     /// The database.
     pub store: Store,
     /// Samples of trials, and weights of learned corrections.
-    pub objects: Objects,
+    pub objects: ObjectStorage,
 }
 
 type Result<T> = std::result::Result<T, DeriveError>;
@@ -48,21 +48,21 @@ impl Archive {
         database_url: &str,
         samples: &ObjectsPlace,
     ) -> sistership_store::Result<Self> {
-        let objects = Objects::at(samples)?;
-        match objects.mark().await {
+        let objects = ObjectStorage::open_at(samples)?;
+        match objects.write_marker().await {
             // Not fatal: the server writes the mark once there is space again.
             Err(error) if error.is_out_of_space() => {
                 tracing::error!(%error, "the objects could not be marked")
             }
             // Not fatal: requests that need no objects are served, and `/readyz` reports that the
             // object store does not answer.
-            Err(error) if error.is_passing() => {
+            Err(error) if error.is_transient() => {
                 tracing::error!(%error, "the object store does not answer")
             }
             other => other?,
         }
         let store = Store::connect(database_url, Arc::new(SystemClock)).await?;
-        match library::keep(&store).await {
+        match library::store_libraries(&store).await {
             // Not fatal: derivations of this release wait for space on the disk, too.
             Err(error) if error.is_out_of_space() => {
                 tracing::error!(%error, "the library of effects could not be kept")
@@ -73,28 +73,30 @@ impl Archive {
     }
 
     /// Returns the ship at the revision whose document has this hash.
-    pub async fn ship(&self, name: &str, hash: &str) -> Result<Vessel> {
+    pub async fn ship_by_hash(&self, name: &str, hash: &str) -> Result<Vessel> {
         // Revisions are found by the hash of the document itself: the recipe names no revision
         // number.
-        let mut page = Page::first(MAX_LIMIT);
+        let mut page = PageRequest::first_page(MAX_LIMIT);
         loop {
-            let revisions = self.store.ships().revisions(name, &page).await?;
-            if let Some(found) =
-                revisions.items.iter().find(|revision| sha256(revision.document.as_bytes()) == hash)
+            let revisions = self.store.ships().list_revisions(name, &page).await?;
+            if let Some(found) = revisions
+                .items
+                .iter()
+                .find(|revision| sha256_hex(revision.document.as_bytes()) == hash)
             {
-                return vessel(name, &found.document);
+                return parse_vessel(name, &found.document);
             }
             let lost = || {
                 DeriveError::Lost(format!("no revision of the ship `{name}` has the hash {hash}"))
             };
-            page = Page::after(revisions.next.ok_or_else(lost)?, MAX_LIMIT);
+            page = PageRequest::after_key(revisions.next.ok_or_else(lost)?, MAX_LIMIT);
         }
     }
 
     /// Returns the law of this name, whose text must have this hash.
-    pub async fn law(&self, name: &str, hash: &str) -> Result<Law> {
+    pub async fn law_by_hash(&self, name: &str, hash: &str) -> Result<Law> {
         let law = self.store.laws().get(name).await?;
-        same_hash(&format!("the law `{name}`"), &law.document, hash)?;
+        check_hash(&format!("the law `{name}`"), &law.document, hash)?;
         Ok(Law::parse(&law.name, &law.document)?)
     }
 
@@ -103,9 +105,9 @@ impl Archive {
     /// # Errors
     /// Returns an error if the version cannot be read, or if its weights are missing, damaged or
     /// those of another model.
-    pub async fn model(&self, version: &Version) -> Result<Model> {
-        let mut model = document(version)?.model;
-        self.attach(&mut model).await?;
+    pub async fn model_with_weights(&self, version: &Version) -> Result<Model> {
+        let mut model = version_document(version)?.model;
+        self.attach_weights(&mut model).await?;
         Ok(model)
     }
 
@@ -113,23 +115,23 @@ impl Archive {
     ///
     /// # Errors
     /// Returns an error if the weights are missing, damaged or those of another model.
-    pub async fn attach(&self, model: &mut Model) -> Result<()> {
+    pub async fn attach_weights(&self, model: &mut Model) -> Result<()> {
         let Some(branch) = &model.branch else { return Ok(()) };
         let weights = self.objects.get(&branch.weights_sha256).await?;
         Ok(sistership_learned::attach(model, &weights)?)
     }
 
     /// Returns the source model of a refinement, without the weights of its learned correction.
-    pub async fn source(&self, source: &SourceVersion) -> Result<Model> {
+    pub async fn source_model(&self, source: &SourceVersion) -> Result<Model> {
         let version = self.store.versions().get(&source.ship, source.number).await?;
         let SourceVersion { ship, number, sha256 } = source;
-        same_hash(&format!("version {ship}/{number}"), &version.document, sha256)?;
-        Ok(document(&version)?.model)
+        check_hash(&format!("version {ship}/{number}"), &version.document, sha256)?;
+        Ok(version_document(&version)?.model)
     }
 
     /// Returns the library of effects with this hash.
-    pub async fn effects(&self, hash: &str) -> Result<Library> {
-        let found = match self.store.effects().get(hash).await {
+    pub async fn effect_library(&self, hash: &str) -> Result<EffectLibrary> {
+        let found = match self.store.effect_libraries().get(hash).await {
             Err(StoreError::NotFound { .. }) => {
                 let mend = "restore it from a backup, or open the store once with a release that \
                     carries it";
@@ -139,15 +141,15 @@ impl Archive {
             }
             other => other?,
         };
-        same_hash("the library of effects", &found.document, hash)?;
-        Ok(Library::parse(&found.document)?)
+        check_hash("the library of effects", &found.document, hash)?;
+        Ok(EffectLibrary::parse(&found.document)?)
     }
 
     /// Returns the prior of a family at the revision that a recipe names.
-    pub async fn prior(&self, name: &PriorName) -> Result<FamilyPrior> {
+    pub async fn family_prior(&self, name: &PriorName) -> Result<FamilyPrior> {
         let PriorName { family, revision, sha256 } = name;
-        let row = self.store.families().prior(family, Some(*revision)).await?;
-        same_hash(
+        let row = self.store.families().get_prior(family, Some(*revision)).await?;
+        check_hash(
             &format!("the prior of the family `{family}` at revision {revision}"),
             &row.document,
             sha256,
@@ -157,7 +159,7 @@ impl Archive {
 
     /// Returns trials with their samples, in the order given. Each is decoded before the next is
     /// fetched, so that at most one is in memory in its stored form.
-    pub async fn trials(&self, trials: &[RecipeTrial]) -> Result<Vec<Trial>> {
+    pub async fn read_trials(&self, trials: &[RecipeTrial]) -> Result<Vec<Trial>> {
         let mut read = Vec::with_capacity(trials.len());
         for trial in trials {
             let samples: Bytes = self.objects.get(&trial.sha256).await?;
@@ -168,16 +170,16 @@ impl Archive {
 }
 
 /// Parses a ship from its document.
-pub fn vessel(name: &str, document: &str) -> Result<Vessel> {
+pub fn parse_vessel(name: &str, document: &str) -> Result<Vessel> {
     let file: VesselFile =
-        serde_json::from_str(document).map_err(|error| damaged("ship", name, &error))?;
+        serde_json::from_str(document).map_err(|error| damaged_document("ship", name, &error))?;
     Ok(Vessel::from_file(name, file)?)
 }
 
 /// Checks that a document has the hash that is asked for. The hash is computed from the bytes: the
 /// recorded one may belong to a document that was damaged later.
-fn same_hash(what: &str, document: &str, hash: &str) -> Result<()> {
-    match sha256(document.as_bytes()) {
+fn check_hash(what: &str, document: &str, hash: &str) -> Result<()> {
+    match sha256_hex(document.as_bytes()) {
         actual if actual == hash => Ok(()),
         actual => Err(DeriveError::Lost(format!(
             "{what} has the hash {actual}, not {hash}: it is damaged or another one"
@@ -186,11 +188,12 @@ fn same_hash(what: &str, document: &str, hash: &str) -> Result<()> {
 }
 
 /// Parses the document of a version.
-pub fn document(version: &Version) -> Result<VersionDocument> {
+pub fn version_document(version: &Version) -> Result<VersionDocument> {
     let name = format!("{}/{}", version.head.model, version.head.number);
-    serde_json::from_str(&version.document).map_err(|error| damaged("version", &name, &error))
+    serde_json::from_str(&version.document)
+        .map_err(|error| damaged_document("version", &name, &error))
 }
 
-fn damaged(kind: &str, name: &str, error: &serde_json::Error) -> DeriveError {
+fn damaged_document(kind: &str, name: &str, error: &serde_json::Error) -> DeriveError {
     DeriveError::Lost(format!("the document of the {kind} `{name}` does not read: {error}"))
 }

@@ -13,14 +13,14 @@ use tokio::sync::{Notify, OwnedSemaphorePermit, Semaphore};
 
 const KIB: u64 = 1 << 10;
 /// Poll interval of a waiting reservation, in case a notification is missed.
-const LOOK: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Memory budget of one kind of work. A clone is another handle on the same budget.
 #[derive(Debug, Clone)]
-pub struct Budget(Arc<Inner>);
+pub struct MemoryBudget(Arc<BudgetState>);
 
 #[derive(Debug)]
-struct Inner {
+struct BudgetState {
     /// One permit for each KiB.
     permits: Arc<Semaphore>,
     given_back: Arc<Notify>,
@@ -30,14 +30,14 @@ struct Inner {
 
 /// Share of a budget, returned when it is dropped.
 #[derive(Debug)]
-pub struct Share {
+pub struct MemoryShare {
     permit: Option<OwnedSemaphorePermit>,
     given_back: Arc<Notify>,
 }
 
 /// Reason for which memory cannot be reserved, with sizes in bytes.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Shortage {
+pub enum MemoryShortage {
     /// More than the whole budget.
     #[error("this takes about {} MiB of memory, more than the {} MiB that there are ({setting})", mib(*.needed), mib(*.bytes))]
     Never {
@@ -69,7 +69,7 @@ fn mib(bytes: u64) -> u64 {
     bytes.div_ceil(1 << 20)
 }
 
-impl Budget {
+impl MemoryBudget {
     /// Creates a budget of `bytes`; `setting` is the name of the setting in messages.
     pub fn new(bytes: u64, setting: &'static str) -> Self {
         let permits =
@@ -77,7 +77,7 @@ impl Budget {
             // it.
             usize::try_from(bytes / KIB).unwrap_or(usize::MAX).min(Semaphore::MAX_PERMITS);
         let given_back = Arc::new(Notify::new());
-        Self(Arc::new(Inner {
+        Self(Arc::new(BudgetState {
             permits: Arc::new(Semaphore::new(permits)),
             given_back,
             bytes,
@@ -89,9 +89,9 @@ impl Budget {
     ///
     /// # Errors
     /// Returns an error with the sizes if the budget is too small, or too little of it is free now.
-    pub fn try_take(&self, bytes: u64) -> Result<Share, Shortage> {
-        let Inner { permits, given_back, bytes: all, setting } = &*self.0;
-        let never = || Shortage::Never { needed: bytes, bytes: *all, setting };
+    pub fn try_reserve(&self, bytes: u64) -> Result<MemoryShare, MemoryShortage> {
+        let BudgetState { permits, given_back, bytes: all, setting } = &*self.0;
+        let never = || MemoryShortage::Never { needed: bytes, bytes: *all, setting };
         let needed = u32::try_from(bytes.div_ceil(KIB))
             .ok()
             .filter(|needed| u64::from(*needed) * KIB <= *all)
@@ -99,9 +99,13 @@ impl Budget {
         let taken = Arc::clone(permits).try_acquire_many_owned(needed);
         // Only for the message; others may take or return memory meanwhile.
         let free = permits.available_permits() as u64 * KIB;
-        let permit =
-            taken.map_err(|_| Shortage::Busy { needed: bytes, free, bytes: *all, setting })?;
-        Ok(Share { permit: Some(permit), given_back: Arc::clone(given_back) })
+        let permit = taken.map_err(|_| MemoryShortage::Busy {
+            needed: bytes,
+            free,
+            bytes: *all,
+            setting,
+        })?;
+        Ok(MemoryShare { permit: Some(permit), given_back: Arc::clone(given_back) })
     }
 
     /// Reserves a share as soon as it is free. There is no queue: a small reservation may pass a
@@ -110,32 +114,40 @@ impl Budget {
     /// # Errors
     /// Returns an error with the sizes if the budget is too small, or too little of it is free
     /// until `patience` has passed.
-    pub async fn take(&self, bytes: u64, patience: Duration) -> Result<Share, Shortage> {
+    pub async fn reserve(
+        &self,
+        bytes: u64,
+        patience: Duration,
+    ) -> Result<MemoryShare, MemoryShortage> {
         let end = tokio::time::Instant::now() + patience;
         loop {
             // Created before the attempt, so that a share that is returned in between is not
             // missed.
             let given_back = self.0.given_back.notified();
-            let shortage = match self.try_take(bytes) {
-                Err(shortage @ Shortage::Busy { .. }) if tokio::time::Instant::now() < end => {
+            let shortage = match self.try_reserve(bytes) {
+                Err(shortage @ MemoryShortage::Busy { .. })
+                    if tokio::time::Instant::now() < end =>
+                {
                     shortage
                 }
                 other => return other,
             };
             tracing::trace!(%shortage, "waiting for memory");
-            let _ =
-                tokio::time::timeout_at(end.min(tokio::time::Instant::now() + LOOK), given_back)
-                    .await;
+            let _ = tokio::time::timeout_at(
+                end.min(tokio::time::Instant::now() + POLL_INTERVAL),
+                given_back,
+            )
+            .await;
         }
     }
 
     /// Free memory, bytes.
-    pub fn free(&self) -> u64 {
+    pub fn free_bytes(&self) -> u64 {
         self.0.permits.available_permits() as u64 * KIB
     }
 }
 
-impl Drop for Share {
+impl Drop for MemoryShare {
     fn drop(&mut self) {
         // The permits go back first: a task that is woken must find them.
         drop(self.permit.take());
@@ -146,32 +158,32 @@ impl Drop for Share {
 /// Memory reserved by a request. A clone is another handle; the memory is returned with the last
 /// one.
 #[derive(Debug, Clone)]
-pub struct Held(Arc<Holding>);
+pub struct RequestMemory(Arc<RequestMemoryState>);
 
 #[derive(Debug)]
-struct Holding {
-    budget: Budget,
+struct RequestMemoryState {
+    budget: MemoryBudget,
     patience: Duration,
-    shares: Mutex<Vec<Share>>,
+    shares: Mutex<Vec<MemoryShare>>,
 }
 
 tokio::task_local! {
-    static HELD: Held;
+    static HELD: RequestMemory;
 }
 
-impl Held {
+impl RequestMemory {
     /// Creates an empty reservation; each later one waits at most `patience` for the budget.
-    pub fn new(budget: Budget, patience: Duration) -> Self {
-        Self(Arc::new(Holding { budget, patience, shares: Mutex::default() }))
+    pub fn new(budget: MemoryBudget, patience: Duration) -> Self {
+        Self(Arc::new(RequestMemoryState { budget, patience, shares: Mutex::default() }))
     }
 
     /// Runs a request; reservations within it belong to this request.
-    pub async fn scope<T>(self, work: impl Future<Output = T>) -> T {
+    pub async fn run_async<T>(self, work: impl Future<Output = T>) -> T {
         HELD.scope(self, work).await
     }
 
     /// Runs a closure on a blocking thread; reservations within it belong to this request.
-    pub fn sync_scope<T>(self, work: impl FnOnce() -> T) -> T {
+    pub fn run_blocking<T>(self, work: impl FnOnce() -> T) -> T {
         HELD.sync_scope(self, work)
     }
 
@@ -180,7 +192,7 @@ impl Held {
         HELD.try_with(Self::clone).ok()
     }
 
-    fn keep(&self, share: Share) {
+    fn add_share(&self, share: MemoryShare) {
         // A poisoned lock is usable: a push leaves the list complete or unchanged.
         self.0.shares.lock().unwrap_or_else(PoisonError::into_inner).push(share);
     }
@@ -191,9 +203,9 @@ impl Held {
 /// # Errors
 /// Returns an error with the sizes if the budget is too small, or too little of it becomes free in
 /// time.
-pub async fn take(bytes: u64) -> Result<(), Shortage> {
-    if let Some(held) = Held::current() {
-        held.keep(held.0.budget.take(bytes, held.0.patience).await?);
+pub async fn reserve_for_request(bytes: u64) -> Result<(), MemoryShortage> {
+    if let Some(held) = RequestMemory::current() {
+        held.add_share(held.0.budget.reserve(bytes, held.0.patience).await?);
     }
     Ok(())
 }
@@ -204,9 +216,9 @@ pub async fn take(bytes: u64) -> Result<(), Shortage> {
 /// # Errors
 /// Returns an error with the sizes if the budget is too small, or too little of it becomes free in
 /// time.
-pub async fn share(bytes: u64) -> Result<Option<Share>, Shortage> {
-    let Some(held) = Held::current() else { return Ok(None) };
-    Ok(Some(held.0.budget.take(bytes, held.0.patience).await?))
+pub async fn reserve_share(bytes: u64) -> Result<Option<MemoryShare>, MemoryShortage> {
+    let Some(held) = RequestMemory::current() else { return Ok(None) };
+    Ok(Some(held.0.budget.reserve(bytes, held.0.patience).await?))
 }
 
 /// Reserves memory for the current request from a thread that cannot wait. Does nothing outside of
@@ -214,29 +226,32 @@ pub async fn share(bytes: u64) -> Result<Option<Share>, Shortage> {
 ///
 /// # Errors
 /// Returns an error with the sizes if the budget is too small, or too little of it is free now.
-pub fn take_now(bytes: u64) -> Result<(), Shortage> {
-    if let Some(held) = Held::current() {
-        held.keep(held.0.budget.try_take(bytes)?);
+pub fn try_reserve_for_request(bytes: u64) -> Result<(), MemoryShortage> {
+    if let Some(held) = RequestMemory::current() {
+        held.add_share(held.0.budget.try_reserve(bytes)?);
     }
     Ok(())
 }
 
 /// Wraps work for a blocking thread so that it keeps the memory of the current request until it
 /// ends.
-pub fn carried<T>(
+pub fn with_request_memory<T>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> impl FnOnce() -> T + Send + 'static {
-    let held = Held::current();
+    let held = RequestMemory::current();
     move || match held {
-        Some(held) => held.sync_scope(work),
+        Some(held) => held.run_blocking(work),
         None => work(),
     }
 }
 
 /// Runs a future that continues after the client has disconnected, with the memory of its request.
-pub async fn carried_on<T>(held: Option<Held>, work: impl Future<Output = T>) -> T {
+pub async fn run_with_request_memory<T>(
+    held: Option<RequestMemory>,
+    work: impl Future<Output = T>,
+) -> T {
     match held {
-        Some(held) => held.scope(work).await,
+        Some(held) => held.run_async(work).await,
         None => work.await,
     }
 }
@@ -250,55 +265,55 @@ mod tests {
 
     #[tokio::test]
     async fn what_never_fits_is_refused_and_what_is_taken_waits() {
-        let budget = Budget::new(4 * MIB, "--memory-mb");
-        let never = budget.take(5 * MIB, Duration::from_secs(60)).await.unwrap_err();
+        let budget = MemoryBudget::new(4 * MIB, "--memory-mb");
+        let never = budget.reserve(5 * MIB, Duration::from_secs(60)).await.unwrap_err();
         assert_eq!(
             never.to_string(),
             "this takes about 5 MiB of memory, more than the 4 MiB that there are (--memory-mb)"
         );
-        assert!(matches!(never, Shortage::Never { .. }));
-        let most = budget.try_take(3 * MIB).unwrap();
-        let busy = budget.take(2 * MIB, Duration::from_millis(20)).await.unwrap_err();
+        assert!(matches!(never, MemoryShortage::Never { .. }));
+        let most = budget.try_reserve(3 * MIB).unwrap();
+        let busy = budget.reserve(2 * MIB, Duration::from_millis(20)).await.unwrap_err();
         assert!(busy.to_string().contains("1 of 4 MiB are free"), "{busy}");
-        assert!(matches!(busy, Shortage::Busy { .. }));
-        let small = budget.try_take(MIB).unwrap();
+        assert!(matches!(busy, MemoryShortage::Busy { .. }));
+        let small = budget.try_reserve(MIB).unwrap();
         let waiting = tokio::spawn({
             let budget = budget.clone();
-            async move { budget.take(2 * MIB, Duration::from_secs(60)).await.map(drop) }
+            async move { budget.reserve(2 * MIB, Duration::from_secs(60)).await.map(drop) }
         });
         tokio::task::yield_now().await;
         drop((most, small));
         waiting.await.unwrap().unwrap();
-        assert_eq!(budget.free(), 4 * MIB);
+        assert_eq!(budget.free_bytes(), 4 * MIB);
     }
 
     #[tokio::test]
     async fn small_requests_pass_a_large_one_that_waits() {
-        let budget = Budget::new(4 * MIB, "x");
-        let first = budget.try_take(2 * MIB).unwrap();
+        let budget = MemoryBudget::new(4 * MIB, "x");
+        let first = budget.try_reserve(2 * MIB).unwrap();
         let other = budget.clone();
         let large =
             tokio::spawn(
-                async move { other.take(4 * MIB, Duration::from_secs(60)).await.map(drop) },
+                async move { other.reserve(4 * MIB, Duration::from_secs(60)).await.map(drop) },
             );
         tokio::task::yield_now().await;
-        drop(budget.take(2 * MIB, Duration::ZERO).await.unwrap());
+        drop(budget.reserve(2 * MIB, Duration::ZERO).await.unwrap());
         drop(first);
         large.await.unwrap().unwrap();
     }
 
     #[tokio::test]
     async fn what_a_request_has_taken_outlives_it_where_work_goes_on() {
-        let budget = Budget::new(4 * MIB, "x");
-        let held = Held::new(budget.clone(), Duration::ZERO);
+        let budget = MemoryBudget::new(4 * MIB, "x");
+        let held = RequestMemory::new(budget.clone(), Duration::ZERO);
         let left = held
-            .scope(async {
-                take(3 * MIB).await.unwrap();
-                carried(|| take_now(MIB).unwrap())
+            .run_async(async {
+                reserve_for_request(3 * MIB).await.unwrap();
+                with_request_memory(|| try_reserve_for_request(MIB).unwrap())
             })
             .await;
-        assert_eq!(budget.free(), MIB);
+        assert_eq!(budget.free_bytes(), MIB);
         left();
-        assert_eq!(budget.free(), 4 * MIB);
+        assert_eq!(budget.free_bytes(), 4 * MIB);
     }
 }

@@ -8,18 +8,18 @@ use std::sync::Arc;
 
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel, Zoo};
-use sistership_priors::similarity::{Definition, RankedSource};
-use sistership_priors::source::{Similarity, similar, similar_with};
+use sistership_priors::similarity::{RankedSource, VectorDefinition};
+use sistership_priors::source::{SimilarityRanking, rank_similar, rank_similar_with};
 use sistership_store::Version;
 
-use crate::archive::{Archive, document};
+use crate::archive::{Archive, version_document};
 use crate::error::DeriveError;
-use crate::recipe::Recipe;
+use crate::recipe::DerivationRecipe;
 
 type Result<T> = std::result::Result<T, DeriveError>;
 
 /// Number of champions whose documents are read at once.
-const AT_ONCE: usize = 25;
+const READ_BATCH: usize = 25;
 
 /// Champions that ships of a store provide as source models in place of their published ones.
 #[derive(Debug, Clone, Default)]
@@ -37,28 +37,28 @@ impl SourceModels {
     ///
     /// # Errors
     /// Returns an error if the store does not answer.
-    pub async fn read(archive: &Archive, zoo: &Zoo) -> Result<Self> {
+    pub async fn for_zoo(archive: &Archive, zoo: &Zoo) -> Result<Self> {
         let ships: Vec<String> = zoo.vessels().map(|vessel| vessel.name().to_owned()).collect();
-        Self::of_ships(archive, zoo, &ships).await
+        Self::for_ships(archive, zoo, &ships).await
     }
 
     /// Reads the champions of some ships.
     ///
     /// # Errors
     /// Returns an error if the store does not answer.
-    pub async fn of_ships(archive: &Archive, zoo: &Zoo, ships: &[String]) -> Result<Self> {
+    pub async fn for_ships(archive: &Archive, zoo: &Zoo, ships: &[String]) -> Result<Self> {
         let mut models = Self::default();
-        for some in ships.chunks(AT_ONCE) {
-            for version in archive.store.champions(some).await? {
-                models.add(zoo, &version);
+        for some in ships.chunks(READ_BATCH) {
+            for version in archive.store.list_champions(some).await? {
+                models.add_champion(zoo, &version);
             }
         }
         Ok(models)
     }
 
-    fn add(&mut self, zoo: &Zoo, version: &Version) {
+    fn add_champion(&mut self, zoo: &Zoo, version: &Version) {
         let ship = version.head.model.clone();
-        match source_model(zoo, version) {
+        match champion_as_source(zoo, version) {
             Ok(Some(model)) => {
                 self.numbers.insert(ship.clone(), version.head.number);
                 self.champions.insert(ship, model);
@@ -71,18 +71,18 @@ impl SourceModels {
     }
 
     /// Ranks the ships of a zoo as sources for a target.
-    pub fn rank(
+    pub fn rank_sources(
         &self,
         zoo: &Zoo,
         target: &Vessel,
-        definition: Option<Definition>,
+        definition: Option<VectorDefinition>,
         trials: &[&Trial],
-    ) -> Similarity {
-        self.explained(similar_with(zoo, target, definition, trials, &self.champions))
+    ) -> SimilarityRanking {
+        self.explain_ineligible(rank_similar_with(zoo, target, definition, trials, &self.champions))
     }
 
     /// Adds to a ranking the reason for which a champion is not eligible.
-    pub fn explained(&self, mut similarity: Similarity) -> Similarity {
+    pub fn explain_ineligible(&self, mut similarity: SimilarityRanking) -> SimilarityRanking {
         for ranked in similarity.ranking.iter_mut().filter(|ranked| ranked.model.is_none()) {
             let reason = self.unusable.get(&ranked.ship);
             // The last reason is the one for the missing model; the champion's reason is more
@@ -98,7 +98,7 @@ impl SourceModels {
     ///
     /// # Errors
     /// Returns an error if the store does not answer.
-    pub async fn version(&self, archive: &Archive, ship: &str) -> Result<Option<Version>> {
+    pub async fn source_version(&self, archive: &Archive, ship: &str) -> Result<Option<Version>> {
         match self.numbers.get(ship) {
             Some(number) => Ok(Some(archive.store.versions().get(ship, *number).await?)),
             None => Ok(None),
@@ -119,20 +119,20 @@ pub async fn most_similar_ships(
 ) -> Result<Vec<RankedSource>> {
     // Two passes: similarity selects the ships, then only their champions are read.
     let (near, named) = (Arc::clone(&zoo), target.clone());
-    let ships = blocking(move || {
-        let ranking = similar(&near, &named, None, &[]).ranking.into_iter();
+    let ships = run_blocking(move || {
+        let ranking = rank_similar(&near, &named, None, &[]).ranking.into_iter();
         ranking.take(count).map(|ranked| ranked.ship).collect::<Vec<_>>()
     });
-    let models = SourceModels::of_ships(archive, &zoo, &ships.await?).await?;
-    blocking(move || {
-        let mut ranking = models.rank(&zoo, &target, None, &[]).ranking;
+    let models = SourceModels::for_ships(archive, &zoo, &ships.await?).await?;
+    run_blocking(move || {
+        let mut ranking = models.rank_sources(&zoo, &target, None, &[]).ranking;
         ranking.truncate(count);
         ranking
     })
     .await
 }
 
-async fn blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Result<T> {
+async fn run_blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Result<T> {
     Ok(tokio::task::spawn_blocking(work).await?)
 }
 
@@ -142,16 +142,18 @@ async fn blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) 
 /// # Errors
 /// Returns the reason for which it is not eligible. A damaged champion must not prevent the use of
 /// the others.
-fn source_model(zoo: &Zoo, version: &Version) -> std::result::Result<Option<Model>, String> {
+fn champion_as_source(zoo: &Zoo, version: &Version) -> std::result::Result<Option<Model>, String> {
     let number = version.head.number;
-    let document = document(version)
+    let document = version_document(version)
         .map_err(|error| format!("its champion, version {number}, cannot be read: {error}"))?;
-    if matches!(document.recipe, Recipe::Plain(sistership_model::version::Recipe::Published { .. }))
-    {
+    if matches!(
+        document.recipe,
+        DerivationRecipe::Plain(sistership_model::version::VersionRecipe::Published { .. })
+    ) {
         return Ok(None);
     }
     // The learned correction is specific to the ship's own trials and is removed.
-    let model = document.model.foundation();
+    let model = document.model.without_correction();
     if let Some(effect) = model.effects.first() {
         // An effect was identified for one ship in its own trials and does not transfer.
         return Err(format!(

@@ -1,7 +1,7 @@
 //! Export of versions to other tools.
 
 use serde::Deserialize;
-use sistership_export::{ExportError, Plan, Subject, by_name};
+use sistership_export::{ExportError, ExportPlan, ExportSubject, by_name};
 use sistership_model::{Law, Model};
 use sistership_store::Version;
 use utoipa::ToSchema;
@@ -27,7 +27,7 @@ pub enum ExportFormat {
 
 /// Exported version.
 #[derive(Debug, Clone)]
-pub struct Exported {
+pub struct ExportedFile {
     /// The name of the file.
     pub file: String,
     /// Its bytes.
@@ -52,19 +52,19 @@ impl ExportFormat {
     ///
     /// # Errors
     /// Returns an error if the version cannot be exported in this format.
-    pub fn write(
+    pub fn export_version(
         self,
         version: &Version,
         (model, law): (&Model, &Law),
-    ) -> Result<Exported, ExportError> {
+    ) -> Result<ExportedFile, ExportError> {
         let missing = || ExportError::Archive("there is no such format".to_owned());
         let line = format!("{}/{}", version.head.model, version.head.number);
         let sha256 = version.head.sha256.clone();
         // The exported file names the version and its hash, so that it can be traced.
-        let plan = Plan::new(&Subject { model, law, version: Some(line), sha256 })?;
+        let plan = ExportPlan::new(&ExportSubject { model, law, version: Some(line), sha256 })?;
         let format = by_name(self.name()).ok_or_else(missing)?;
         let file = format!("{}.{}", plan.identifier, format.extension());
-        Ok(Exported { file, bytes: format.write(&plan)? })
+        Ok(ExportedFile { file, bytes: format.write(&plan)? })
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 /// Document that a derivation reads, by its kind and the SHA-256 of its bytes.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Input {
+pub struct DerivationInput {
     /// Its kind.
     pub kind: InputKind,
     /// The hash.
@@ -30,8 +30,8 @@ pub enum InputKind {
 
 impl InputKind {
     /// Returns the input of this kind with this hash.
-    pub fn of(self, sha256: &str) -> Input {
-        Input { kind: self, sha256: sha256.to_owned() }
+    pub fn with_hash(self, sha256: &str) -> DerivationInput {
+        DerivationInput { kind: self, sha256: sha256.to_owned() }
     }
 
     fn name(self) -> &'static str {
@@ -46,7 +46,7 @@ impl InputKind {
     }
 }
 
-impl fmt::Display for Input {
+impl fmt::Display for DerivationInput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "the {} {}", self.kind.name(), self.sha256)
     }

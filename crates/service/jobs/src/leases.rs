@@ -4,7 +4,7 @@ use std::time::Duration;
 
 /// Durations of the leases of workers on jobs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Leases {
+pub struct LeaseSettings {
     /// Time without a heartbeat after which another worker may take the job.
     pub lease: Duration,
     /// Interval of heartbeats.
@@ -15,7 +15,7 @@ pub struct Leases {
     pub drain: Duration,
 }
 
-impl Leases {
+impl LeaseSettings {
     /// Longest lease.
     pub const MAX: Duration = Duration::from_secs(3600);
 
@@ -24,7 +24,7 @@ impl Leases {
 
     /// Returns the durations for a lease with five heartbeats in it: four may be missed before the
     /// job is lost.
-    pub fn of(lease: Duration) -> Self {
+    pub fn with_lease(lease: Duration) -> Self {
         Self {
             lease,
             beat: lease / 5,
@@ -34,8 +34,8 @@ impl Leases {
     }
 }
 
-impl Default for Leases {
+impl Default for LeaseSettings {
     fn default() -> Self {
-        Self::of(Duration::from_secs(15))
+        Self::with_lease(Duration::from_secs(15))
     }
 }

@@ -4,20 +4,20 @@
 
 use std::sync::{Arc, OnceLock};
 
-use sistership_model::version::sha256;
+use sistership_model::version::sha256_hex;
 use sistership_model::{Effect, FileError, Zoo};
 use sistership_store::{Store, StoreError};
 
 /// SHA-256 of the library of recipes that do not name one, which were made by the first releases.
 /// It never changes.
 pub const FIRST_SHA256: &str = "4ffa596faa665cb151e92fab50bfd47e95ca36c187ac9218ee4a6d1a04b0e769";
-const FIRST: &str = include_str!("../../../../models/libraries/first.yaml");
+const FIRST_LIBRARY: &str = include_str!("../../../../models/libraries/first.yaml");
 /// First line of the file of each effect.
-const BEGIN: &str = "kind: effect";
+const FIRST_LINE: &str = "kind: effect";
 
 /// A library of effects.
 #[derive(Debug)]
-pub struct Library {
+pub struct EffectLibrary {
     /// The effects, by name.
     pub effects: Vec<Arc<Effect>>,
     /// The SHA-256 of `document`.
@@ -26,31 +26,31 @@ pub struct Library {
     pub document: String,
 }
 
-impl Library {
+impl EffectLibrary {
     /// Parses a library.
     ///
     /// # Errors
     /// Returns an error that names the effect that cannot be parsed, by its number in the library.
     pub fn parse(document: &str) -> Result<Self, FileError> {
-        let hash = sha256(document.as_bytes());
+        let hash = sha256_hex(document.as_bytes());
         let read = |(index, text): (usize, String)| {
             Effect::parse(&format!("library of effects {hash}, effect {}", index + 1), &text)
                 .map(Arc::new)
         };
         let effects =
-            files(document).into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
+            split_files(document).into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
         Ok(Self { effects, sha256: hash, document: document.to_owned() })
     }
 }
 
 /// Splits a document into its files; text before the first `kind:` line belongs to the first file.
-fn files(document: &str) -> Vec<String> {
+fn split_files(document: &str) -> Vec<String> {
     let mut files = vec![String::new()];
     for line in document.split_inclusive('\n') {
         // Text before the first `kind: effect` line must not become a file of its own.
         let begun =
-            files.last().is_some_and(|file| file.lines().any(|line| line.trim_end() == BEGIN));
-        if begun && line.trim_end() == BEGIN {
+            files.last().is_some_and(|file| file.lines().any(|line| line.trim_end() == FIRST_LINE));
+        if begun && line.trim_end() == FIRST_LINE {
             files.push(String::new());
         }
         files.last_mut().into_iter().for_each(|file| file.push_str(line));
@@ -62,27 +62,30 @@ fn files(document: &str) -> Vec<String> {
 ///
 /// # Errors
 /// Returns an error if a file cannot be parsed, which a test rules out for releases.
-pub fn library() -> Result<&'static Library, FileError> {
-    static LIBRARY: OnceLock<Result<Library, FileError>> = OnceLock::new();
-    LIBRARY.get_or_init(|| of(&Zoo::embedded()?)).as_ref().map_err(FileError::clone)
+pub fn embedded_library() -> Result<&'static EffectLibrary, FileError> {
+    static LIBRARY: OnceLock<Result<EffectLibrary, FileError>> = OnceLock::new();
+    LIBRARY
+        .get_or_init(|| parse_embedded(&Zoo::load_embedded()?))
+        .as_ref()
+        .map_err(FileError::clone)
 }
 
-fn of(zoo: &Zoo) -> Result<Library, FileError> {
-    Library::parse(
+fn parse_embedded(zoo: &Zoo) -> Result<EffectLibrary, FileError> {
+    EffectLibrary::parse(
         &zoo.effects().filter_map(|effect| zoo.effect_text(&effect.name)).collect::<String>(),
     )
 }
 
 /// Stores the libraries that are embedded in this program, in addition to existing ones.
-pub async fn keep(store: &Store) -> Result<(), StoreError> {
-    let current = match library() {
+pub async fn store_libraries(store: &Store) -> Result<(), StoreError> {
+    let current = match embedded_library() {
         Ok(library) => &library.document,
         Err(error) => {
             return Err(StoreError::Invalid { field: "effects", message: error.to_string() });
         }
     };
-    for document in [FIRST, current] {
-        store.effects().keep(document).await?;
+    for document in [FIRST_LIBRARY, current] {
+        store.effect_libraries().insert_absent(document).await?;
     }
     Ok(())
 }
@@ -94,22 +97,26 @@ mod tests {
 
     #[test]
     fn the_document_of_the_library_reads_back_as_the_effects_of_the_zoo() {
-        let zoo = Zoo::embedded().unwrap();
-        assert_eq!(library().unwrap().effects, zoo.effects().cloned().collect::<Vec<_>>());
-        assert_eq!(library().unwrap().sha256, sha256(library().unwrap().document.as_bytes()));
+        let zoo = Zoo::load_embedded().unwrap();
+        assert_eq!(embedded_library().unwrap().effects, zoo.effects().cloned().collect::<Vec<_>>());
+        assert_eq!(
+            embedded_library().unwrap().sha256,
+            sha256_hex(embedded_library().unwrap().document.as_bytes())
+        );
     }
 
     #[test]
     fn the_first_library_is_what_it_was() {
-        let first = Library::parse(FIRST).unwrap();
+        let first = EffectLibrary::parse(FIRST_LIBRARY).unwrap();
         assert_eq!((first.sha256.as_str(), first.effects.len()), (FIRST_SHA256, 15));
         assert!(first.effects.iter().any(|effect| effect.name == "current"));
     }
 
     #[test]
     fn the_effect_that_does_not_read_is_named() {
-        let error =
-            Library::parse(&FIRST.replace("name: wind\n", "nome: wind\n")).unwrap_err().to_string();
+        let error = EffectLibrary::parse(&FIRST_LIBRARY.replace("name: wind\n", "nome: wind\n"))
+            .unwrap_err()
+            .to_string();
         assert!(error.contains("effect 14"), "{error}");
     }
 }

@@ -1,6 +1,6 @@
 //! Aliases of a ship's versions, and how they move with a new version.
 
-use sistership_store::{Alias, AliasMove, Expect, Store, StoreError};
+use sistership_store::{Alias, AliasMove, ExpectedRevision, Store, StoreError};
 
 type Result<T> = std::result::Result<T, StoreError>;
 
@@ -14,12 +14,12 @@ pub const LATEST: &str = "latest";
 const PUBLISHED: &str = "published-";
 
 /// Returns the alias of a published model, by which `ship/model` is found among the versions.
-pub fn alias_of(model: &str) -> String {
+pub fn published_alias(model: &str) -> String {
     format!("{PUBLISHED}{model}")
 }
 
 /// Creates a move of an alias in the name of the server.
-pub fn step(alias: &str, expect: Expect, reason: &str) -> AliasMove {
+pub fn server_move(alias: &str, expect: ExpectedRevision, reason: &str) -> AliasMove {
     AliasMove {
         alias: alias.to_owned(),
         expect,
@@ -29,8 +29,8 @@ pub fn step(alias: &str, expect: Expect, reason: &str) -> AliasMove {
 }
 
 /// Returns the precondition that an alias is unchanged when it is moved.
-pub fn expected(current: Option<&Alias>) -> Expect {
-    current.map_or(Expect::Absent, |alias| Expect::Revision(alias.revision))
+pub fn expect_unchanged(current: Option<&Alias>) -> ExpectedRevision {
+    current.map_or(ExpectedRevision::Absent, |alias| ExpectedRevision::Revision(alias.revision))
 }
 
 /// Returns true if only the server may move the alias.
@@ -39,7 +39,7 @@ pub fn is_reserved(alias: &str) -> bool {
 }
 
 /// State of a ship's versions before a new one is created.
-pub struct Standing {
+pub struct VersionHistory {
     /// True if there is a champion.
     pub champion: bool,
     /// True if a version may become champion only by a person other than its author (four-eyes
@@ -50,18 +50,18 @@ pub struct Standing {
     latest: Option<Alias>,
 }
 
-impl Standing {
+impl VersionHistory {
     /// Reads the state of a ship's versions.
     ///
     /// # Errors
     /// Returns an error if the store does not answer.
-    pub async fn of(store: &Store, model: &str) -> Result<Self> {
+    pub async fn read_current(store: &Store, model: &str) -> Result<Self> {
         // No transaction is needed: a version created meanwhile makes the move of `latest` fail.
-        let latest = alias(store, model, LATEST).await?;
-        let champion = alias(store, model, CHAMPION).await?.is_some();
+        let latest = find_alias(store, model, LATEST).await?;
+        let champion = find_alias(store, model, CHAMPION).await?.is_some();
         Ok(Self {
             champion,
-            second_person: store.settings().second_person().await?,
+            second_person: store.settings().requires_second_person().await?,
             next: latest.as_ref().map_or(1, |alias| alias.version_number + 1),
             latest,
         })
@@ -69,13 +69,13 @@ impl Standing {
 
     /// Returns the move that belongs to every new version; it fails if another version was created
     /// first.
-    pub fn follow(&self, reason: &str) -> AliasMove {
-        step(LATEST, expected(self.latest.as_ref()), reason)
+    pub fn move_latest(&self, reason: &str) -> AliasMove {
+        server_move(LATEST, expect_unchanged(self.latest.as_ref()), reason)
     }
 }
 
 /// Returns an alias, or `None` if it does not exist.
-pub async fn alias(store: &Store, model: &str, alias: &str) -> Result<Option<Alias>> {
+pub async fn find_alias(store: &Store, model: &str, alias: &str) -> Result<Option<Alias>> {
     match store.aliases().get(model, alias).await {
         Ok(alias) => Ok(Some(alias)),
         Err(StoreError::NotFound { .. }) => Ok(None),

@@ -4,26 +4,27 @@
 use std::sync::Arc;
 
 use sistership_identification::refine::{
-    Extent, Family, Refinement, ReplayedTrials, Request, Settings, SourceEnvelopes, Thinning, weigh,
+    Refinement, RefinementExtent, RefinementSettings, RefinementSpec, ReplayedTrials,
+    SourceEnvelopes, TermFamily, ThinningSettings, evaluate_candidates,
 };
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Vessel};
 use sistership_simulation::Ship;
 use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 
-use crate::archive::{Archive, document};
-use crate::derive::Refined;
+use crate::archive::{Archive, version_document};
+use crate::derive::RefinementRun;
 use crate::error::DeriveError;
-use crate::line::{CHAMPION, alias};
+use crate::line::{CHAMPION, find_alias};
 use crate::version::VersionDocument;
 
 /// Prior strength that leaves the coefficients of a source unchanged.
-const KEPT: f64 = 1e9;
+const FIXED_STRENGTH: f64 = 1e9;
 
 /// Comparison of a new version with the champion, by the standardised squared error.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Comparison {
+pub struct ChampionComparison {
     /// Error of the new version on held-out manoeuvres.
     pub error: f64,
     /// Error of the champion; `None` if its simulation stops early.
@@ -34,7 +35,7 @@ pub struct Comparison {
     pub trials: usize,
 }
 
-impl Comparison {
+impl ChampionComparison {
     /// Returns true if the new version is no candidate: it is worse and the champion had no
     /// advantage.
     pub fn is_worse(&self) -> bool {
@@ -42,7 +43,7 @@ impl Comparison {
     }
 
     /// Describes the comparison in one sentence.
-    pub fn words(&self) -> String {
+    pub fn describe(&self) -> String {
         let Self { error, champion, seen_by_champion, trials } = self;
         let champion = match champion {
             Some(champion) => format!("the champion's is {champion:.4}"),
@@ -61,23 +62,23 @@ impl Comparison {
 ///
 /// # Errors
 /// Returns an error if the champion cannot be read.
-pub async fn against_champion(
+pub async fn compare_with_champion(
     archive: &Archive,
     ship: &str,
-    refined: Arc<Refined>,
+    refined: Arc<RefinementRun>,
     hashes: Vec<String>,
-) -> Result<Option<Comparison>, DeriveError> {
-    let Some(alias) = alias(&archive.store, ship, CHAMPION).await? else { return Ok(None) };
+) -> Result<Option<ChampionComparison>, DeriveError> {
+    let Some(alias) = find_alias(&archive.store, ship, CHAMPION).await? else { return Ok(None) };
     let version = archive.store.versions().get(ship, alias.version_number).await?;
-    let mut champion = document(&version)?;
-    archive.attach(&mut champion.model).await?;
-    let law = archive.law(&champion.model.law, champion.recipe.law_sha256()).await?;
+    let mut champion = version_document(&version)?;
+    archive.attach_weights(&mut champion.model).await?;
+    let law = archive.law_by_hash(&champion.model.law, champion.recipe.law_sha256()).await?;
     let compare = move || {
         let ingredients = &refined.ingredients;
         // Trials are compared by the hash of their samples, because names may repeat.
         let trials: Vec<(&Trial, &str)> =
             ingredients.trials.iter().zip(hashes.iter().map(String::as_str)).collect();
-        compared(&Contest {
+        compare_errors(&ComparisonInputs {
             champion: &champion,
             law: &law,
             target: &ingredients.target,
@@ -90,7 +91,7 @@ pub async fn against_champion(
 
 /// Inputs of the comparison.
 #[derive(Debug, Clone, Copy)]
-struct Contest<'a> {
+struct ComparisonInputs<'a> {
     /// Document of the champion.
     champion: &'a VersionDocument,
     /// Its law.
@@ -105,7 +106,7 @@ struct Contest<'a> {
 
 /// Compares the errors; `None` if the new version has none, or if the champion cannot be simulated
 /// on these trials.
-fn compared(contest: &Contest<'_>) -> Option<Comparison> {
+fn compare_errors(contest: &ComparisonInputs<'_>) -> Option<ChampionComparison> {
     let refinement = contest.refinement;
     // The held-out error of the chosen step, which the champion's error is comparable with.
     let error = refinement.options.iter().find(|option| option.chosen)?.error?;
@@ -116,7 +117,7 @@ fn compared(contest: &Contest<'_>) -> Option<Comparison> {
         .collect();
     let known = contest.champion.recipe.trials();
     let is_known = |sha256: &str| known.iter().any(|trial| trial.sha256 == sha256);
-    Some(Comparison {
+    Some(ChampionComparison {
         error,
         champion: champion_error(contest)?,
         seen_by_champion: fitted.iter().filter(|(_, sha256)| is_known(sha256)).count(),
@@ -126,25 +127,25 @@ fn compared(contest: &Contest<'_>) -> Option<Comparison> {
 
 /// Returns the error of the unchanged champion; the outer `None` if it cannot be simulated on these
 /// trials, the inner one if its simulation stops early.
-fn champion_error(contest: &Contest<'_>) -> Option<Option<f64>> {
+fn champion_error(contest: &ComparisonInputs<'_>) -> Option<Option<f64>> {
     if contest.champion.model.branch.is_some() {
         return corrected_error(contest);
     }
     let trials: Vec<&Trial> = contest.trials.iter().map(|(trial, _)| *trial).collect();
-    let Contest { champion, law, target, refinement, .. } = *contest;
+    let ComparisonInputs { champion, law, target, refinement, .. } = *contest;
     // The same cross-validation as for the new version, with a prior so strong that nothing is
     // fitted.
-    let settings = Settings {
+    let settings = RefinementSettings {
         held_out: refinement.settings.held_out.clone(),
         restart_s: refinement.settings.restart_s,
         method: refinement.settings.method,
-        strengths: vec![KEPT],
-        families: vec![Family::Own],
-        ..Settings::default()
+        strengths: vec![FIXED_STRENGTH],
+        families: vec![TermFamily::Own],
+        ..RefinementSettings::default()
     };
     let source: &Model = &champion.model;
     let source_law = None;
-    let request = Request {
+    let request = RefinementSpec {
         target,
         source,
         source_law,
@@ -153,14 +154,18 @@ fn champion_error(contest: &Contest<'_>) -> Option<Option<f64>> {
         population: &[],
         settings: &settings,
     };
-    let weighed =
-        weigh((&request, &SourceEnvelopes::default()), Extent::Source, &|_, _| true).ok()?;
+    let weighed = evaluate_candidates(
+        (&request, &SourceEnvelopes::default()),
+        RefinementExtent::Source,
+        &|_, _| true,
+    )
+    .ok()?;
     Some(weighed.first()?.error)
 }
 
 /// Returns the error of a champion with a learned correction, from its own simulations with the
 /// scales of the refinement: the transfer to another ship would remove the correction.
-fn corrected_error(contest: &Contest<'_>) -> Option<Option<f64>> {
+fn corrected_error(contest: &ComparisonInputs<'_>) -> Option<Option<f64>> {
     let settings = &contest.refinement.settings;
     let trials = contest.trials.iter().map(|(trial, _)| *trial);
     let fitted: Vec<&Trial> =
@@ -170,8 +175,12 @@ fn corrected_error(contest: &Contest<'_>) -> Option<Option<f64>> {
     let speeds = fitted.iter().flat_map(|trial| trial.channel(Channel::U).unwrap_or_default());
     // The physical range must contain the fastest fitted trial, as in the refinement.
     ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
-    let replayed =
-        ReplayedTrials::new(contest.law, Some(ship.lpp_m()), &fitted, Thinning::from(settings));
+    let replayed = ReplayedTrials::new(
+        contest.law,
+        Some(ship.lpp_m()),
+        &fitted,
+        ThinningSettings::from(settings),
+    );
     let steps = ReplaySettings {
         restart_s: settings.restart_s,
         step_s: replayed.step_s,
@@ -179,11 +188,11 @@ fn corrected_error(contest: &Contest<'_>) -> Option<Option<f64>> {
     };
     let mut total = SquaredError::default();
     for trial in &replayed.trials {
-        let run = replay(&ship, trial, &steps).ok()?;
+        let run = replay_trial(&ship, trial, &steps).ok()?;
         if run.stopped.is_some() {
             return Some(None);
         }
-        total.add(&SquaredError::of(trial, &run));
+        total.add(&SquaredError::from_trial(trial, &run));
     }
     Some(Some(standardised_mse(&total, &standard_deviations(&fitted))))
 }
@@ -192,8 +201,12 @@ fn corrected_error(contest: &Contest<'_>) -> Option<Option<f64>> {
 mod tests {
     use super::*;
 
-    fn comparison(error: f64, champion: Option<f64>, seen_by_champion: usize) -> Comparison {
-        Comparison { error, champion, seen_by_champion, trials: 4 }
+    fn comparison(
+        error: f64,
+        champion: Option<f64>,
+        seen_by_champion: usize,
+    ) -> ChampionComparison {
+        ChampionComparison { error, champion, seen_by_champion, trials: 4 }
     }
 
     #[test]
@@ -202,6 +215,8 @@ mod tests {
         assert!(!comparison(0.1, Some(0.2), 0).is_worse());
         assert!(!comparison(0.2, None, 0).is_worse());
         let favoured = comparison(0.2, Some(0.1), 3);
-        assert!(!favoured.is_worse() && favoured.words().contains("fitted on 3 of these 4 trials"));
+        assert!(
+            !favoured.is_worse() && favoured.describe().contains("fitted on 3 of these 4 trials")
+        );
     }
 }

@@ -1,13 +1,15 @@
 //! Publication of the models of a ship's own document as versions.
 
-use sistership_model::version::sha256;
+use sistership_model::version::sha256_hex;
 use sistership_model::{Vessel, Zoo};
-use sistership_store::{Alias, AliasMove, Expect, NewVersion, Store, StoreError};
+use sistership_store::{Alias, AliasMove, ExpectedRevision, NewVersion, Store, StoreError};
 
-use crate::archive::document;
+use crate::archive::version_document;
 use crate::derive::published_document;
 use crate::error::DeriveError;
-use crate::line::{CHAMPION, Standing, alias, alias_of, expected, step};
+use crate::line::{
+    CHAMPION, VersionHistory, expect_unchanged, find_alias, published_alias, server_move,
+};
 use crate::version::VersionDocument;
 
 type Result<T> = std::result::Result<T, DeriveError>;
@@ -16,11 +18,16 @@ type Result<T> = std::result::Result<T, DeriveError>;
 const METHOD: &str = "published-source";
 const REASON: &str = "published with the ship's document";
 /// Number of attempts when other processes write at the same time.
-const TRIES: usize = 5;
+const MAX_ATTEMPTS: usize = 5;
 
 /// Creates a version of each published model that is new or has changed; the first becomes champion
 /// if there is none.
-pub async fn publish(store: &Store, zoo: &Zoo, vessel: &Vessel, ship_document: &str) -> Result<()> {
+pub async fn publish_models(
+    store: &Store,
+    zoo: &Zoo,
+    vessel: &Vessel,
+    ship_document: &str,
+) -> Result<()> {
     for file in &vessel.file.models {
         let no_law = || DeriveError::Unexpected(format!("there is no law `{}`", file.law));
         let law = zoo.law(&file.law).ok_or_else(no_law)?;
@@ -29,23 +36,23 @@ pub async fn publish(store: &Store, zoo: &Zoo, vessel: &Vessel, ship_document: &
             vessel,
             &file.name,
             law,
-            &sha256(ship_document.as_bytes()),
-            &sha256(text.as_bytes()),
+            &sha256_hex(ship_document.as_bytes()),
+            &sha256_hex(text.as_bytes()),
         )?;
         let new = NewVersion {
             model: vessel.name().to_owned(),
             parent: None,
             law: file.law.clone(),
             method: METHOD.to_owned(),
-            document: published.canonical()?,
+            document: published.to_canonical_json()?,
             weights: None,
         };
-        put(store, &new, &file.name, &published).await?;
+        create_version(store, &new, &file.name, &published).await?;
     }
     Ok(())
 }
 
-async fn put(
+async fn create_version(
     store: &Store,
     new: &NewVersion,
     name: &str,
@@ -53,14 +60,18 @@ async fn put(
 ) -> Result<()> {
     // Optimistic concurrency: the version is created only if its aliases have not moved since they
     // were read.
-    for _ in 0..TRIES {
-        let current = alias(store, &new.model, &alias_of(name)).await?;
+    for _ in 0..MAX_ATTEMPTS {
+        let current = find_alias(store, &new.model, &published_alias(name)).await?;
         if let Some(current) = &current
-            && same(store, current, published).await?
+            && is_same_model(store, current, published).await?
         {
             return Ok(());
         }
-        match store.versions().create(new, &moves(store, &new.model, name, current).await?).await {
+        match store
+            .versions()
+            .create(new, &alias_moves(store, &new.model, name, current).await?)
+            .await
+        {
             // Another process was first: read the aliases again.
             Err(StoreError::PreconditionFailed { .. }) => {}
             other => return Ok(other.map(drop)?),
@@ -69,24 +80,31 @@ async fn put(
     Err(DeriveError::Unexpected(format!("the published models of `{}` kept changing", new.model)))
 }
 
-async fn moves(
+async fn alias_moves(
     store: &Store,
     model: &str,
     name: &str,
     current: Option<Alias>,
 ) -> Result<Vec<AliasMove>> {
-    let standing = Standing::of(store, model).await?;
-    let mut moves =
-        vec![step(&alias_of(name), expected(current.as_ref()), REASON), standing.follow(REASON)];
+    let standing = VersionHistory::read_current(store, model).await?;
+    let mut moves = vec![
+        server_move(&published_alias(name), expect_unchanged(current.as_ref()), REASON),
+        standing.move_latest(REASON),
+    ];
     // The first published model of a ship without champion becomes the version in use.
     if !standing.champion {
-        moves.push(step(CHAMPION, Expect::Absent, REASON));
+        moves.push(server_move(CHAMPION, ExpectedRevision::Absent, REASON));
     }
     Ok(moves)
 }
 
 /// Returns true if the version of a published model has the same model and the same law.
-async fn same(store: &Store, current: &Alias, published: &VersionDocument) -> Result<bool> {
-    let there = document(&store.versions().get(&current.model, current.version_number).await?)?;
+async fn is_same_model(
+    store: &Store,
+    current: &Alias,
+    published: &VersionDocument,
+) -> Result<bool> {
+    let there =
+        version_document(&store.versions().get(&current.model, current.version_number).await?)?;
     Ok(there.model == published.model && there.recipe.law_sha256() == published.recipe.law_sha256())
 }

@@ -6,16 +6,16 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sistership_fleet::bulk::BulkSettings;
-use sistership_learned::Training;
+use sistership_learned::CorrectionTraining;
 use sistership_model::version::{self, PopulationMember, RecipeTrial, SourceVersion};
 
-use crate::input::{Input, InputKind};
+use crate::input::{DerivationInput, InputKind};
 use crate::library::FIRST_SHA256;
 
 /// Derivation of a version.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Recipe {
+pub enum DerivationRecipe {
     /// Addition of the effects that a diagnosis finds.
     Diagnosis(DiagnosisRecipe),
     /// Refinement of a member of a family, from statistics.
@@ -25,7 +25,7 @@ pub enum Recipe {
     /// Registration of a model that was made elsewhere.
     Registered(RegisteredRecipe),
     /// Publication by a ship's own document, or refinement.
-    Plain(version::Recipe),
+    Plain(version::VersionRecipe),
 }
 
 /// Derivation of a diagnosis. Every input is named by the SHA-256 of its bytes.
@@ -64,7 +64,7 @@ pub struct TrainingRecipe {
     /// SHA-256 of the library of effects.
     pub effects_sha256: String,
     /// Every setting, the seed among them.
-    pub settings: Training,
+    pub settings: CorrectionTraining,
     /// Revision of the program.
     pub code_revision: String,
 }
@@ -153,7 +153,7 @@ pub struct PriorName {
     pub sha256: String,
 }
 
-impl Recipe {
+impl DerivationRecipe {
     /// Returns the hash of the law's file.
     pub fn law_sha256(&self) -> &str {
         match self {
@@ -162,8 +162,8 @@ impl Recipe {
             | Self::Training(TrainingRecipe { law_sha256, .. })
             | Self::Registered(RegisteredRecipe { law_sha256, .. })
             | Self::Plain(
-                version::Recipe::Published { law_sha256, .. }
-                | version::Recipe::Refinement { law_sha256, .. },
+                version::VersionRecipe::Published { law_sha256, .. }
+                | version::VersionRecipe::Refinement { law_sha256, .. },
             ) => law_sha256,
         }
     }
@@ -174,8 +174,10 @@ impl Recipe {
             Self::Diagnosis(DiagnosisRecipe { code_revision, .. })
             | Self::Family(FamilyRecipe { code_revision, .. })
             | Self::Training(TrainingRecipe { code_revision, .. })
-            | Self::Plain(version::Recipe::Refinement { code_revision, .. }) => Some(code_revision),
-            Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => None,
+            | Self::Plain(version::VersionRecipe::Refinement { code_revision, .. }) => {
+                Some(code_revision)
+            }
+            Self::Plain(version::VersionRecipe::Published { .. }) | Self::Registered(_) => None,
         }
     }
 
@@ -185,8 +187,8 @@ impl Recipe {
             Self::Diagnosis(DiagnosisRecipe { trials, .. })
             | Self::Family(FamilyRecipe { trials, .. })
             | Self::Training(TrainingRecipe { trials, .. })
-            | Self::Plain(version::Recipe::Refinement { trials, .. }) => trials,
-            Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => &[],
+            | Self::Plain(version::VersionRecipe::Refinement { trials, .. }) => trials,
+            Self::Plain(version::VersionRecipe::Published { .. }) | Self::Registered(_) => &[],
         }
     }
 
@@ -194,8 +196,8 @@ impl Recipe {
     pub fn ship_sha256(&self) -> Option<&str> {
         match self {
             Self::Plain(
-                version::Recipe::Published { ship_sha256, .. }
-                | version::Recipe::Refinement { ship_sha256, .. },
+                version::VersionRecipe::Published { ship_sha256, .. }
+                | version::VersionRecipe::Refinement { ship_sha256, .. },
             ) => Some(ship_sha256),
             Self::Family(recipe) => recipe.ship_sha256.as_deref(),
             Self::Diagnosis(_) | Self::Training(_) | Self::Registered(_) => None,
@@ -203,13 +205,13 @@ impl Recipe {
     }
 
     /// Returns the version that it starts from; `None` for a published or registered model.
-    pub fn starts_from(&self) -> Option<&SourceVersion> {
+    pub fn source_version(&self) -> Option<&SourceVersion> {
         match self {
-            Self::Plain(version::Recipe::Refinement { source, .. }) => source.as_ref(),
-            Self::Plain(version::Recipe::Published { .. }) | Self::Registered(_) => None,
+            Self::Plain(version::VersionRecipe::Refinement { source, .. }) => source.as_ref(),
+            Self::Plain(version::VersionRecipe::Published { .. }) | Self::Registered(_) => None,
             Self::Family(recipe) => Some(&recipe.start),
             Self::Training(recipe) => Some(&recipe.foundation),
-            Self::Diagnosis(_) => self.diagnosed(),
+            Self::Diagnosis(_) => self.diagnosed_version(),
         }
     }
 
@@ -219,17 +221,17 @@ impl Recipe {
         match self {
             Self::Diagnosis(recipe) => Some(&recipe.effects_sha256),
             Self::Training(recipe) => Some(&recipe.effects_sha256),
-            Self::Plain(version::Recipe::Refinement { effects_sha256, .. }) => {
+            Self::Plain(version::VersionRecipe::Refinement { effects_sha256, .. }) => {
                 Some(effects_sha256.as_deref().unwrap_or(FIRST_SHA256))
             }
             Self::Family(_)
-            | Self::Plain(version::Recipe::Published { .. })
+            | Self::Plain(version::VersionRecipe::Published { .. })
             | Self::Registered(_) => None,
         }
     }
 
     /// Returns the prior of a family, if that was the prior of the coefficients.
-    pub fn prior(&self) -> Option<&PriorName> {
+    pub fn family_prior(&self) -> Option<&PriorName> {
         match self {
             Self::Family(recipe) => recipe.prior.as_ref(),
             _ => None,
@@ -237,46 +239,52 @@ impl Recipe {
     }
 
     /// Returns every version that it names.
-    pub fn versions(&self) -> Vec<&SourceVersion> {
+    pub fn source_versions(&self) -> Vec<&SourceVersion> {
         let foundation = match self {
             Self::Family(recipe) => Some(&recipe.foundation),
             _ => None,
         };
-        let population = self.population().iter().map(|member| &member.version);
-        self.starts_from().into_iter().chain(foundation).chain(population).collect()
+        let population = self.population_members().iter().map(|member| &member.version);
+        self.source_version().into_iter().chain(foundation).chain(population).collect()
     }
 
     /// Returns the ships of its population, if that was the prior.
-    pub fn population(&self) -> &[PopulationMember] {
+    pub fn population_members(&self) -> &[PopulationMember] {
         match self {
-            Self::Plain(version::Recipe::Refinement { population, .. }) => population,
+            Self::Plain(version::VersionRecipe::Refinement { population, .. }) => population,
             _ => &[],
         }
     }
 
     /// Returns all inputs of the derivation.
-    pub fn inputs(&self) -> BTreeSet<Input> {
-        let mut inputs = BTreeSet::from([InputKind::Law.of(self.law_sha256())]);
-        if let Self::Plain(version::Recipe::Refinement { across: Some(across), .. }) = self {
+    pub fn all_inputs(&self) -> BTreeSet<DerivationInput> {
+        let mut inputs = BTreeSet::from([InputKind::Law.with_hash(self.law_sha256())]);
+        if let Self::Plain(version::VersionRecipe::Refinement { across: Some(across), .. }) = self {
             // Across laws the source model is evaluated with its own law.
-            inputs.insert(InputKind::Law.of(&across.source_law_sha256));
+            inputs.insert(InputKind::Law.with_hash(&across.source_law_sha256));
         }
-        let laws = self.population().iter().map(|member| InputKind::Law.of(&member.law_sha256));
+        let laws = self
+            .population_members()
+            .iter()
+            .map(|member| InputKind::Law.with_hash(&member.law_sha256));
         inputs.extend(laws);
-        inputs.extend(self.ship_sha256().map(|hash| InputKind::Ship.of(hash)));
+        inputs.extend(self.ship_sha256().map(|hash| InputKind::Ship.with_hash(hash)));
         inputs.extend(
-            self.versions().into_iter().map(|version| InputKind::Version.of(&version.sha256)),
+            self.source_versions()
+                .into_iter()
+                .map(|version| InputKind::Version.with_hash(&version.sha256)),
         );
         // Weights of learned corrections are no inputs of their own: a version's document names
         // them.
-        inputs.extend(self.trials().iter().map(|trial| InputKind::Samples.of(&trial.sha256)));
-        inputs.extend(self.effects_sha256().map(|hash| InputKind::Effects.of(hash)));
-        inputs.extend(self.prior().map(|prior| InputKind::Prior.of(&prior.sha256)));
+        inputs
+            .extend(self.trials().iter().map(|trial| InputKind::Samples.with_hash(&trial.sha256)));
+        inputs.extend(self.effects_sha256().map(|hash| InputKind::Effects.with_hash(hash)));
+        inputs.extend(self.family_prior().map(|prior| InputKind::Prior.with_hash(&prior.sha256)));
         inputs
     }
 
     /// Returns the version that was diagnosed.
-    pub fn diagnosed(&self) -> Option<&SourceVersion> {
+    pub fn diagnosed_version(&self) -> Option<&SourceVersion> {
         match self {
             Self::Diagnosis(recipe) => Some(&recipe.diagnosed),
             _ => None,
@@ -310,11 +318,13 @@ mod tests {
                 "seed": 1, "window_s": 2.0, "hop_s": 0.5, "fade": 1.0 }, "code_revision": "1" });
         let all = [(published, None), (registered, None), (diagnosed, Some(2)), (trained, None)];
         for (value, kind) in all {
-            let recipe: Recipe = serde_json::from_value(value.clone()).unwrap();
-            assert_eq!(recipe.diagnosed().map(|source| source.number), kind);
+            let recipe: DerivationRecipe = serde_json::from_value(value.clone()).unwrap();
+            assert_eq!(recipe.diagnosed_version().map(|source| source.number), kind);
             assert_eq!(serde_json::to_value(&recipe).unwrap(), value);
             assert_eq!(recipe.law_sha256(), "b");
         }
-        assert!(serde_json::from_value::<Recipe>(json!({ "kind": "diagnosis" })).is_err());
+        assert!(
+            serde_json::from_value::<DerivationRecipe>(json!({ "kind": "diagnosis" })).is_err()
+        );
     }
 }

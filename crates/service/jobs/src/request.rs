@@ -1,11 +1,11 @@
 //! Requests of jobs, as stored in their rows.
 
 use serde::{Deserialize, Serialize};
-use sistership_identification::refine::Settings;
+use sistership_identification::refine::RefinementSettings;
 use sistership_learned::BranchSettings;
 
 /// Kind of refinement jobs.
-pub const REFINEMENT: &str = "refinement";
+pub const REFINEMENT_JOB_KIND: &str = "refinement";
 
 /// Request of a refinement. Everything except the choice of an `auto` source is resolved on
 /// submission.
@@ -25,7 +25,7 @@ pub struct RefinementJob {
     /// The trials' ids.
     pub trials: Vec<String>,
     /// Every setting.
-    pub settings: Settings,
+    pub settings: RefinementSettings,
     /// SHA-256 of the request's idempotency key in rows of earlier releases; the store keeps the
     /// key now.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -33,7 +33,7 @@ pub struct RefinementJob {
 }
 
 /// Kind of diagnosis jobs.
-pub const DIAGNOSIS: &str = "diagnosis";
+pub const DIAGNOSIS_JOB_KIND: &str = "diagnosis";
 
 /// Request of a diagnosis; everything is resolved on submission.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -58,7 +58,7 @@ pub struct DiagnosisJob {
 }
 
 /// Kind of jobs that train learned corrections.
-pub const BRANCH: &str = "branch";
+pub const BRANCH_JOB_KIND: &str = "branch";
 
 /// Request to train a learned correction; everything except an open kind is resolved on submission.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

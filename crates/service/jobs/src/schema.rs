@@ -4,6 +4,6 @@ use utoipa::openapi::{Ref, RefOr, Schema};
 
 /// Returns a reference to a type's schema, which the document has under its schemars name.
 #[must_use]
-pub fn described<T: schemars::JsonSchema>() -> RefOr<Schema> {
+pub fn schema_reference<T: schemars::JsonSchema>() -> RefOr<Schema> {
     Ref::from_schema_name(T::schema_name()).into()
 }

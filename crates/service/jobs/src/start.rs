@@ -3,29 +3,30 @@
 
 use std::sync::Arc;
 
-use sistership_identification::refine::{Member, Prior, Settings};
+use sistership_identification::refine::{PopulationShip, Prior, RefinementSettings};
 use sistership_model::trial::Trial;
 use sistership_model::version::{
-    AcrossLaws, PopulationMember, Recipe, RecipeTrial, SourceVersion, code_revision, sha256,
+    AcrossLaws, PopulationMember, RecipeTrial, SourceVersion, VersionRecipe, code_revision,
+    sha256_hex,
 };
 use sistership_model::{Vessel, Zoo};
-use sistership_model_selection::{Asked, Ladder, best_start, population};
-use sistership_priors::source::{Similarity, best_ranked};
+use sistership_model_selection::{SelectionReport, StartRequest, best_start, similar_population};
+use sistership_priors::source::{SimilarityRanking, best_ranked};
 use sistership_store::{Law, Ship, Version};
 
 use crate::archive::Archive;
 use crate::champions::SourceModels;
-use crate::derive::Progress;
+use crate::derive::ProgressCallback;
 use crate::error::DeriveError;
-use crate::library::{self, Library, library};
-use crate::line::{alias, alias_of};
-use crate::sorted::sorted;
+use crate::library::{self, EffectLibrary, embedded_library};
+use crate::line::{find_alias, published_alias};
+use crate::sorted::sort_keys;
 
 type Result<T> = std::result::Result<T, DeriveError>;
 
 /// Start of a refinement.
 #[derive(Debug)]
-pub struct Start {
+pub struct RefinementStart {
     /// The source model; `None` if the model is identified from the trials alone.
     pub source: Option<Version>,
     /// The law to fit; by default the source's.
@@ -33,18 +34,22 @@ pub struct Start {
     /// Versions of the population that is the prior; empty with another prior.
     pub population: Vec<Version>,
     /// Every setting.
-    pub settings: Settings,
+    pub settings: RefinementSettings,
     /// Ranking of the ships, if they were compared.
-    pub similarity: Option<Similarity>,
+    pub similarity: Option<SimilarityRanking>,
     /// Selection report, if the start was selected.
-    pub ladder: Option<Ladder>,
+    pub ladder: Option<SelectionReport>,
 }
 
-impl Start {
+impl RefinementStart {
     /// Creates the start that a person named.
-    pub fn at(source: Version, law: Option<String>, settings: Settings) -> Self {
+    pub fn from_version(
+        source: Version,
+        law: Option<String>,
+        settings: RefinementSettings,
+    ) -> Self {
         // One order of lists, so that the same settings give the same recipe and the same bytes.
-        let settings = settings.as_ordered();
+        let settings = settings.with_request_defaults();
         // Nothing was compared, so there is neither a ranking nor a selection report.
         let source = Some(source);
         Self { source, law, population: Vec::new(), settings, similarity: None, ladder: None }
@@ -61,46 +66,49 @@ impl Start {
         target: &Vessel,
     ) -> Result<Self> {
         let members = match self.settings.prior {
-            Prior::Population => population(zoo, target),
+            Prior::Population => similar_population(zoo, target),
             Prior::Source | Prior::Mixture => Vec::new(),
         };
-        Ok(Self { population: published(archive, &members).await?, ..self })
+        Ok(Self { population: population_versions(archive, &members).await?, ..self })
     }
 
     /// Returns the recipe of a refinement of a ship with this start.
     ///
     /// # Errors
     /// Returns an error if a law is missing, or if a setting is not finite.
-    pub async fn recipe(
+    pub async fn refinement_recipe(
         &self,
         archive: &Archive,
         ship: &Ship,
         trials: Vec<RecipeTrial>,
-    ) -> Result<Recipe> {
-        let (named, law, across) = self.laws(archive).await?;
+    ) -> Result<VersionRecipe> {
+        let (named, law, across) = self.resolve_laws(archive).await?;
         let mut population = Vec::new();
         for version in &self.population {
             let law_sha256 = archive.store.laws().get(&version.head.law).await?.sha256;
             // Each member has the law of its own published model.
-            population.push(PopulationMember { version: from(version), law_sha256 });
+            population.push(PopulationMember { version: version_reference(version), law_sha256 });
         }
-        Ok(Recipe::Refinement {
-            source: self.source.as_ref().map(from),
+        Ok(VersionRecipe::Refinement {
+            source: self.source.as_ref().map(version_reference),
             law: named,
-            ship_sha256: sha256(ship.document.as_bytes()),
+            ship_sha256: sha256_hex(ship.document.as_bytes()),
             law_sha256: law.sha256,
             across,
             population,
-            effects_sha256: Some(library_of(archive).await?.sha256.clone()),
+            effects_sha256: Some(stored_library(archive).await?.sha256.clone()),
             trials,
-            settings: sorted(serde_json::to_value(&self.settings)?),
+            settings: sort_keys(serde_json::to_value(&self.settings)?),
             code_revision: code_revision().to_owned(),
         })
     }
 
     /// Returns the name of the law if there is no source, the law that is fitted, and both laws if
     /// they differ.
-    async fn laws(&self, archive: &Archive) -> Result<(Option<String>, Law, Option<AcrossLaws>)> {
+    async fn resolve_laws(
+        &self,
+        archive: &Archive,
+    ) -> Result<(Option<String>, Law, Option<AcrossLaws>)> {
         let laws = archive.store.laws();
         let Some(source) = &self.source else {
             let neither = || DeriveError::Lost("neither a source nor a law is named".into());
@@ -126,30 +134,30 @@ impl Start {
 ///
 /// # Errors
 /// Returns an error if the store does not answer.
-pub async fn library_of(archive: &Archive) -> Result<&'static Library> {
-    library::keep(&archive.store).await?;
-    library().map_err(DeriveError::File)
+pub async fn stored_library(archive: &Archive) -> Result<&'static EffectLibrary> {
+    library::store_libraries(&archive.store).await?;
+    embedded_library().map_err(DeriveError::File)
 }
 
 /// Selects the best start of all candidates.
 ///
 /// # Errors
 /// Returns an error if it was cancelled, or if no candidate could be simulated to the end.
-pub async fn searched(
+pub async fn select_start(
     archive: &Archive,
     zoo: Arc<Zoo>,
     target: Vessel,
     trials: &[RecipeTrial],
-    settings: Settings,
-    progress: Progress,
-) -> Result<Start> {
-    let models = Arc::new(SourceModels::read(archive, &zoo).await?);
-    let trials = archive.trials(trials).await?;
+    settings: RefinementSettings,
+    progress: ProgressCallback,
+) -> Result<RefinementStart> {
+    let models = Arc::new(SourceModels::for_zoo(archive, &zoo).await?);
+    let trials = archive.read_trials(trials).await?;
     let known = Arc::clone(&models);
     let best = tokio::task::spawn_blocking(move || {
         let trials: Vec<&Trial> = trials.iter().collect();
         let (zoo, target, champions) = (&*zoo, &target, &known.champions);
-        let asked = Asked { zoo, target, champions, trials: &trials, settings: &settings };
+        let asked = StartRequest { zoo, target, champions, trials: &trials, settings: &settings };
         best_start(&asked, &|fraction, what| progress(fraction, what))
     })
     .await??;
@@ -162,12 +170,12 @@ pub async fn searched(
             Some(source_version(archive, &models, (ship, &entrant.source.name)).await?)
         }
     };
-    Ok(Start {
+    Ok(RefinementStart {
         source,
         law: Some(entrant.law.name.clone()),
-        population: published(archive, &best.population).await?,
+        population: population_versions(archive, &best.population).await?,
         settings: best.settings,
-        similarity: Some(models.explained(best.similarity)),
+        similarity: Some(models.explain_ineligible(best.similarity)),
         ladder: Some(best.ladder),
     })
 }
@@ -176,17 +184,18 @@ pub async fn searched(
 ///
 /// # Errors
 /// Returns an error with the reasons if no ship is eligible.
-pub async fn most_similar(
+pub async fn most_similar_source(
     archive: &Archive,
     zoo: Arc<Zoo>,
     target: Vessel,
     trials: &[RecipeTrial],
-) -> Result<(Version, Similarity)> {
-    let models = Arc::new(SourceModels::read(archive, &zoo).await?);
-    let trials = archive.trials(trials).await?;
+) -> Result<(Version, SimilarityRanking)> {
+    let models = Arc::new(SourceModels::for_zoo(archive, &zoo).await?);
+    let trials = archive.read_trials(trials).await?;
     let known = Arc::clone(&models);
     let best = move || {
-        let similarity = known.rank(&zoo, &target, None, &trials.iter().collect::<Vec<_>>());
+        let similarity =
+            known.rank_sources(&zoo, &target, None, &trials.iter().collect::<Vec<_>>());
         best_ranked(&similarity).cloned().map(|best| (best, similarity))
     };
     let (best, similarity) = tokio::task::spawn_blocking(best)
@@ -202,13 +211,13 @@ async fn source_version(
     models: &SourceModels,
     (ship, model): (&str, &str),
 ) -> Result<Version> {
-    match models.version(archive, ship).await? {
+    match models.source_version(archive, ship).await? {
         Some(champion) => Ok(champion),
         None => published_version(archive, model).await,
     }
 }
 
-fn from(source: &Version) -> SourceVersion {
+fn version_reference(source: &Version) -> SourceVersion {
     SourceVersion {
         ship: source.head.model.clone(),
         number: source.head.number,
@@ -217,7 +226,10 @@ fn from(source: &Version) -> SourceVersion {
 }
 
 /// Returns the versions of the published models of a population.
-async fn published(archive: &Archive, members: &[Member]) -> Result<Vec<Version>> {
+async fn population_versions(
+    archive: &Archive,
+    members: &[PopulationShip],
+) -> Result<Vec<Version>> {
     let mut versions = Vec::new();
     for member in members {
         versions.push(published_version(archive, &member.model.name).await?);
@@ -228,7 +240,7 @@ async fn published(archive: &Archive, members: &[Member]) -> Result<Vec<Version>
 /// Returns the version of a published model.
 async fn published_version(archive: &Archive, name: &str) -> Result<Version> {
     let (ship, model) = name.split_once('/').unwrap_or((name, ""));
-    let found = alias(&archive.store, ship, &alias_of(model)).await?;
+    let found = find_alias(&archive.store, ship, &published_alias(model)).await?;
     // The server creates the versions of published models when it starts.
     let missing = || {
         DeriveError::Lost(format!(

@@ -2,17 +2,17 @@
 
 use sistership_identification::refine::RefineError;
 use sistership_learned::{
-    BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, Kinds, choose,
+    BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, KindSearch, select_kind,
 };
 use sistership_model::trial::Trial;
 use sistership_model::version::{RecipeTrial, SourceVersion, code_revision};
 use sistership_store::Version;
 
-use crate::archive::{Archive, document};
-use crate::derive::Progress;
+use crate::archive::{Archive, version_document};
+use crate::derive::ProgressCallback;
 use crate::error::DeriveError;
 use crate::recipe::{TrainingKind, TrainingRecipe};
-use crate::start::library_of;
+use crate::start::stored_library;
 
 /// Returns the recipe of a learned correction of a version, with all settings resolved.
 ///
@@ -25,14 +25,14 @@ pub async fn training_recipe(
     trials: Vec<RecipeTrial>,
     settings: &BranchSettings,
 ) -> Result<TrainingRecipe, DeriveError> {
-    let stored = document(version)?;
+    let stored = version_document(version)?;
     let law_sha256 = stored.recipe.law_sha256().to_owned();
-    let law = archive.law(&stored.model.law, &law_sha256).await?;
+    let law = archive.law_by_hash(&stored.model.law, &law_sha256).await?;
     // The samples are read here, because defaults such as the window depend on them.
-    let read = archive.trials(&trials).await?;
+    let read = archive.read_trials(&trials).await?;
     let read: Vec<&Trial> = read.iter().collect();
     let settings = settings
-        .training(&stored.model, &law, &read)
+        .complete_training(&stored.model, &law, &read)
         .map_err(|error| DeriveError::Lost(error.to_string()))?;
     let head = &version.head;
     let (ship, number, sha256) = (head.model.clone(), head.number, head.sha256.clone());
@@ -41,7 +41,7 @@ pub async fn training_recipe(
         foundation: SourceVersion { ship, number, sha256 },
         law_sha256,
         trials,
-        effects_sha256: library_of(archive).await?.sha256.clone(),
+        effects_sha256: stored_library(archive).await?.sha256.clone(),
         settings,
         code_revision: code_revision().to_owned(),
     })
@@ -52,23 +52,23 @@ pub async fn training_recipe(
 /// # Errors
 /// Same as [`training_recipe`]; also if a trial cannot be used for training, or if it was
 /// cancelled.
-pub async fn chosen(
+pub async fn choose_kind(
     archive: &Archive,
     version: &Version,
     trials: &[RecipeTrial],
     settings: BranchSettings,
-    progress: Progress,
+    progress: ProgressCallback,
 ) -> Result<BranchChoice, DeriveError> {
-    let stored = document(version)?;
-    let law = archive.law(&stored.model.law, stored.recipe.law_sha256()).await?;
-    let read = archive.trials(trials).await?;
+    let stored = version_document(version)?;
+    let law = archive.law_by_hash(&stored.model.law, stored.recipe.law_sha256()).await?;
+    let read = archive.read_trials(trials).await?;
     let work = move || -> Result<BranchChoice, DeriveError> {
         let read: Vec<&Trial> = read.iter().collect();
         let told = |kind: BranchKind| progress(0.1, &format!("trying {}", kind.name()));
         // The foundation is the same in every fold.
-        let folds = HeldOutFold::of_one(&stored.model, read.len());
+        let folds = HeldOutFold::with_one_foundation(&stored.model, read.len());
         let on = HeldOutTrials { law: &law, trials: &read, folds: &folds };
-        let choice = choose(&stored.model, &on, (&settings, Kinds::Every), &told)?;
+        let choice = select_kind(&stored.model, &on, (&settings, KindSearch::Every), &told)?;
         choice.ok_or(DeriveError::Refine(RefineError::Cancelled))
     };
     tokio::task::spawn_blocking(work).await?
@@ -79,19 +79,19 @@ pub async fn chosen(
 ///
 /// # Errors
 /// Returns an error if the store does not answer, or if a version cannot be read.
-pub async fn foundation_of(
+pub async fn foundation_number(
     archive: &Archive,
     ship: &str,
     number: i64,
 ) -> Result<Option<i64>, DeriveError> {
     let mut number = number;
     loop {
-        let stored = document(&archive.store.versions().get(ship, number).await?)?;
+        let stored = version_document(&archive.store.versions().get(ship, number).await?)?;
         // Diagnoses may have added effects to a corrected version, so there may be several steps.
         if stored.model.branch.is_none() {
             return Ok(Some(number));
         }
-        let Some(earlier) = stored.recipe.starts_from() else { return Ok(None) };
+        let Some(earlier) = stored.recipe.source_version() else { return Ok(None) };
         number = earlier.number;
     }
 }

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use sistership_assessment::uncertainty::{Sampling, draws};
+use sistership_assessment::uncertainty::{Sampling, draw_from_posterior};
 pub use sistership_assessment::validation::Validation;
 use sistership_assessment::validation::{TrialOfShip, validate};
 use sistership_model::version::RecipeTrial;
 use sistership_model::{Law, Model, Trial, Vessel};
 use sistership_simulation::PlantError;
-use sistership_store::{Page, Version};
+use sistership_store::{PageRequest, Version};
 
-use crate::archive::{Archive, document, vessel};
+use crate::archive::{Archive, parse_vessel, version_document};
 use crate::error::DeriveError;
 use crate::memory::trial_bytes;
 
@@ -18,11 +18,11 @@ use crate::memory::trial_bytes;
 const MOST_TRIALS: usize = 48;
 /// Number of models drawn for the uncertainty of the posterior: the relative standard error of a
 /// standard deviation of 40 draws is 1/sqrt(2 * 39), 11 %.
-const DRAWS: usize = 40;
+const POSTERIOR_DRAWS: usize = 40;
 
 /// Inputs of a validation.
 #[derive(Debug)]
-pub struct ToValidate {
+pub struct ValidationInputs {
     model: Model,
     law: Law,
     vessel: Vessel,
@@ -31,24 +31,24 @@ pub struct ToValidate {
     fitted: BTreeSet<String>,
 }
 
-impl ToValidate {
+impl ValidationInputs {
     /// Loads a version, its ship at the present revision, and its turning circles and zigzags.
     ///
     /// # Errors
     /// Returns an error if the version, its law or its ship is missing or damaged.
-    pub async fn gather(archive: &Archive, version: &Version) -> Result<Self, DeriveError> {
+    pub async fn load(archive: &Archive, version: &Version) -> Result<Self, DeriveError> {
         let ship = &version.head.model;
-        let own = document(version)?;
+        let own = version_document(version)?;
         let mut model = own.model;
-        archive.attach(&mut model).await?;
-        let law = archive.law(&model.law, own.recipe.law_sha256()).await?;
-        let fitted = fitted(archive, version).await?;
-        let vessel = vessel(ship, &archive.store.ships().get(ship).await?.document)?;
-        Ok(Self { model, law, vessel, trials: manoeuvres(archive, ship).await?, fitted })
+        archive.attach_weights(&mut model).await?;
+        let law = archive.law_by_hash(&model.law, own.recipe.law_sha256()).await?;
+        let fitted = fitted_hashes(archive, version).await?;
+        let vessel = parse_vessel(ship, &archive.store.ships().get(ship).await?.document)?;
+        Ok(Self { model, law, vessel, trials: standard_trials(archive, ship).await?, fitted })
     }
 
     /// Names and hashes of the samples that it reads.
-    pub fn samples(&self) -> Vec<RecipeTrial> {
+    pub fn recipe_trials(&self) -> Vec<RecipeTrial> {
         let of = |trial: &sistership_store::Trial| RecipeTrial {
             name: trial.name.clone(),
             sha256: trial.object_key.clone(),
@@ -57,7 +57,7 @@ impl ToValidate {
     }
 
     /// Memory that it needs, bytes: the samples, and as much again for their simulations.
-    pub fn demand(&self) -> u64 {
+    pub fn memory_demand(&self) -> u64 {
         2 * self.trials.iter().map(|trial| trial_bytes(trial.sample_rows)).sum::<u64>()
     }
 
@@ -65,26 +65,31 @@ impl ToValidate {
     ///
     /// # Errors
     /// Returns an error if the model cannot be simulated.
-    pub fn validation(&self, samples: &[Trial]) -> Result<Validation, PlantError> {
+    pub fn run_validation(&self, samples: &[Trial]) -> Result<Validation, PlantError> {
         let of_ship = self.trials.iter().zip(samples).map(|(row, trial)| TrialOfShip {
             name: &row.name,
             trial,
             fitted: self.fitted.contains(&row.object_key),
         });
         let of_ship: Vec<TrialOfShip<'_>> = of_ship.collect();
-        let sampling = Sampling { samples: DRAWS, ..Sampling::default() };
+        let sampling = Sampling { samples: POSTERIOR_DRAWS, ..Sampling::default() };
         // A model without posterior is validated without the uncertainty of its parameters.
-        let drawn = draws(&self.model, sampling).unwrap_or_default();
+        let drawn = draw_from_posterior(&self.model, sampling).unwrap_or_default();
         validate(&self.vessel, &self.model, &self.law, &drawn, &of_ship)
     }
 }
 
 /// Returns the hashes of the samples that a version and its ancestors were fitted on.
-async fn fitted(archive: &Archive, version: &Version) -> Result<BTreeSet<String>, DeriveError> {
+async fn fitted_hashes(
+    archive: &Archive,
+    version: &Version,
+) -> Result<BTreeSet<String>, DeriveError> {
     let mut all = BTreeSet::new();
     let mut next = Some(version.clone());
     while let Some(one) = next {
-        all.extend(document(&one)?.recipe.trials().iter().map(|trial| trial.sha256.clone()));
+        all.extend(
+            version_document(&one)?.recipe.trials().iter().map(|trial| trial.sha256.clone()),
+        );
         // Parents only: the source of a refinement may be another ship, whose trials are others.
         next = match &one.head.parent {
             Some(id) => Some(archive.store.versions().by_id(id).await?),
@@ -95,17 +100,17 @@ async fn fitted(archive: &Archive, version: &Version) -> Result<BTreeSet<String>
 }
 
 /// Reads the turning circles and zigzags of a ship, oldest first.
-async fn manoeuvres(
+async fn standard_trials(
     archive: &Archive,
     ship: &str,
 ) -> Result<Vec<sistership_store::Trial>, DeriveError> {
     // Manoeuvres are known by name only, so all rows of the ship are read until there are enough.
-    let (mut found, mut page) = (Vec::new(), Page::first(200));
+    let (mut found, mut page) = (Vec::new(), PageRequest::first_page(200));
     loop {
         let rows = archive.store.trials().list(ship, &page).await?;
         found.extend(rows.items.into_iter().filter(is_judged));
         match rows.next {
-            Some(next) if found.len() < MOST_TRIALS => page = Page::after(next, 200),
+            Some(next) if found.len() < MOST_TRIALS => page = PageRequest::after_key(next, 200),
             _ => break,
         }
     }

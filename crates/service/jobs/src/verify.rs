@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use serde::Serialize;
 use serde_json::Value;
-use sistership_model::version::{code_revision, sha256};
+use sistership_model::version::{code_revision, sha256_hex};
 use utoipa::ToSchema;
 
-use crate::archive::{Archive, document};
-use crate::derive::{DeriveError, Progress, derive};
-use crate::memory::{DERIVING, trial_bytes};
-use crate::recipe::Recipe;
+use crate::archive::{Archive, version_document};
+use crate::derive::{DeriveError, ProgressCallback, derive};
+use crate::memory::{BYTES_PER_SAMPLE, trial_bytes};
+use crate::recipe::DerivationRecipe;
 use crate::version::VersionDocument;
 
 /// Relative difference below which numbers count as rounded differently.
@@ -43,26 +43,31 @@ pub struct Verification {
 ///
 /// # Errors
 /// Returns an error if an input of the recipe is missing, or if the derivation is refused.
-pub async fn verify(
+pub async fn verify_version(
     archive: &Archive,
     ship: &str,
     number: i64,
 ) -> Result<Verification, DeriveError> {
-    verify_with(archive, ship, number, Arc::new(|_, _| true)).await
+    verify_with_progress(archive, ship, number, Arc::new(|_, _| true)).await
 }
 
 /// Estimates the memory that a verification needs, bytes.
-pub async fn demand(archive: &Archive, ship: &str, number: i64) -> Result<u64, DeriveError> {
-    let trials = match document(&archive.store.versions().get(ship, number).await?)?.recipe {
-        Recipe::Plain(sistership_model::version::Recipe::Refinement { trials, .. }) => trials,
-        Recipe::Diagnosis(recipe) => recipe.trials,
-        Recipe::Training(recipe) => recipe.trials,
+pub async fn memory_demand(archive: &Archive, ship: &str, number: i64) -> Result<u64, DeriveError> {
+    let trials = match version_document(&archive.store.versions().get(ship, number).await?)?.recipe
+    {
+        DerivationRecipe::Plain(sistership_model::version::VersionRecipe::Refinement {
+            trials,
+            ..
+        }) => trials,
+        DerivationRecipe::Diagnosis(recipe) => recipe.trials,
+        DerivationRecipe::Training(recipe) => recipe.trials,
         _ => return Ok(0),
     };
     let mut bytes = 0;
     for trial in &trials {
         // Samples are compressed to about a third of their size in memory.
-        bytes += 3 * archive.objects.size(&trial.sha256).await? / trial_bytes(1) * DERIVING;
+        bytes += 3 * archive.objects.object_size(&trial.sha256).await? / trial_bytes(1)
+            * BYTES_PER_SAMPLE;
     }
     Ok(bytes)
 }
@@ -72,29 +77,31 @@ pub async fn demand(archive: &Archive, ship: &str, number: i64) -> Result<u64, D
 /// # Errors
 /// Returns an error if an input of the recipe is missing, or if the derivation is refused or
 /// stopped.
-pub async fn verify_with(
+pub async fn verify_with_progress(
     archive: &Archive,
     ship: &str,
     number: i64,
-    progress: Progress,
+    progress: ProgressCallback,
 ) -> Result<Verification, DeriveError> {
     let version = archive.store.versions().get(ship, number).await?;
-    let stored = document(&version)?;
+    let stored = version_document(&version)?;
     let derived = match &stored.recipe {
         // Nothing to derive: the document is checked and serialised again.
-        Recipe::Registered(recipe) => checked(archive, &stored, &recipe.law_sha256).await?,
+        DerivationRecipe::Registered(recipe) => {
+            check_registered(archive, &stored, &recipe.law_sha256).await?
+        }
         recipe => {
             let derived = derive(archive, ship, recipe, progress).await?;
             // The document names weights by hash only; the stored ones must be intact, too.
-            archive.attach(&mut stored.model.clone()).await?;
-            derived.document.canonical()?
+            archive.attach_weights(&mut stored.model.clone()).await?;
+            derived.document.to_canonical_json()?
         }
     };
     let (stored_sha256, derived_sha256) =
-        (sha256(version.document.as_bytes()), sha256(derived.as_bytes()));
+        (sha256_hex(version.document.as_bytes()), sha256_hex(derived.as_bytes()));
     let made_by = stored.recipe.code_revision().map(str::to_owned);
     let identical = version.head.sha256 == stored_sha256 && version.document == derived;
-    let remarks = remarks(
+    let remarks = list_remarks(
         made_by.as_deref(),
         (&version.document, &derived),
         version.head.sha256 == stored_sha256,
@@ -114,20 +121,24 @@ pub async fn verify_with(
 
 /// Checks a model that was made elsewhere against its law, and serialises it again: it has no
 /// derivation.
-async fn checked(
+async fn check_registered(
     archive: &Archive,
     stored: &VersionDocument,
     law_sha256: &str,
 ) -> Result<String, DeriveError> {
-    let law = archive.law(&stored.model.law, law_sha256).await?;
+    let law = archive.law_by_hash(&stored.model.law, law_sha256).await?;
     let wrong =
         |(field, message): (String, String)| DeriveError::Lost(format!("{field}: {message}"));
-    stored.model.check(&law).map_err(wrong)?;
-    archive.attach(&mut stored.model.clone()).await?;
-    Ok(stored.canonical()?)
+    stored.model.check_against(&law).map_err(wrong)?;
+    archive.attach_weights(&mut stored.model.clone()).await?;
+    Ok(stored.to_canonical_json()?)
 }
 
-fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bool) -> Vec<String> {
+fn list_remarks(
+    made_by: Option<&str>,
+    (stored, derived): (&str, &str),
+    undamaged: bool,
+) -> Vec<String> {
     let mut remarks = Vec::new();
     if !undamaged {
         remarks.push(
@@ -147,9 +158,9 @@ fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bo
     let read = |text| serde_json::from_str::<Value>(text).unwrap_or_default();
     if stored != derived {
         let (stored, derived) = (read(stored), read(derived));
-        let place = difference(&stored, &derived, String::new());
+        let place = first_difference(&stored, &derived, String::new());
         remarks.push(place.unwrap_or_else(|| "the same values, written differently".to_owned()));
-        remarks.extend(rounding(&stored, &derived).map(|largest| {
+        remarks.extend(rounding_difference(&stored, &derived).map(|largest| {
             format!(
                 "nothing but numbers differs, by at most {largest:.0e} of themselves: another \
                  processor (without fused multiplication) or another C library rounds like that; \
@@ -162,16 +173,16 @@ fn remarks(made_by: Option<&str>, (stored, derived): (&str, &str), undamaged: bo
 
 /// Returns the largest relative difference of two documents that differ only in the last digits of
 /// numbers; `None` for any other difference.
-fn rounding(stored: &Value, derived: &Value) -> Option<f64> {
+fn rounding_difference(stored: &Value, derived: &Value) -> Option<f64> {
     let largest = |mut all: &mut dyn Iterator<Item = Option<f64>>| {
         (&mut all).try_fold(0.0, |most: f64, one| Some(most.max(one?)))
     };
     match (stored, derived) {
         (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
-            largest(&mut a.values().zip(b.values()).map(|(a, b)| rounding(a, b)))
+            largest(&mut a.values().zip(b.values()).map(|(a, b)| rounding_difference(a, b)))
         }
         (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
-            largest(&mut a.iter().zip(b).map(|(a, b)| rounding(a, b)))
+            largest(&mut a.iter().zip(b).map(|(a, b)| rounding_difference(a, b)))
         }
         (Value::Number(a), Value::Number(b)) => {
             let (a, b) = (a.as_f64()?, b.as_f64()?);
@@ -184,27 +195,27 @@ fn rounding(stored: &Value, derived: &Value) -> Option<f64> {
 }
 
 /// Describes the first place at which two documents differ.
-fn difference(stored: &Value, derived: &Value, path: String) -> Option<String> {
+fn first_difference(stored: &Value, derived: &Value, path: String) -> Option<String> {
     match (stored, derived) {
         (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => a
             .iter()
             .zip(b.values())
-            .find_map(|((key, a), b)| difference(a, b, format!("{path}/{key}"))),
+            .find_map(|((key, a), b)| first_difference(a, b, format!("{path}/{key}"))),
         (Value::Array(a), Value::Array(b)) if a.len() == b.len() => a
             .iter()
             .zip(b)
             .enumerate()
-            .find_map(|(index, (a, b))| difference(a, b, format!("{path}/{index}"))),
+            .find_map(|(index, (a, b))| first_difference(a, b, format!("{path}/{index}"))),
         _ if stored == derived => None,
         _ => Some(format!(
             "first difference at {path}: stored {}, derived {}",
-            short(stored),
-            short(derived)
+            abbreviate(stored),
+            abbreviate(derived)
         )),
     }
 }
 
-fn short(value: &Value) -> String {
+fn abbreviate(value: &Value) -> String {
     value.to_string().chars().take(80).collect()
 }
 
@@ -216,14 +227,14 @@ mod tests {
     #[test]
     fn the_first_difference_is_placed() {
         let (a, b) = (json!({"model": {"X_uu": [1, 2.5]}}), json!({"model": {"X_uu": [1, 2.25]}}));
-        let place = difference(&a, &b, String::new()).unwrap_or_default();
+        let place = first_difference(&a, &b, String::new()).unwrap_or_default();
         assert_eq!(place, "first difference at /model/X_uu/1: stored 2.5, derived 2.25");
-        assert_eq!(difference(&a, &a, String::new()), None);
+        assert_eq!(first_difference(&a, &a, String::new()), None);
     }
 
     #[test]
     fn rounding_is_told_from_another_input() {
-        let said = |derived: &str| remarks(None, (r#"{"a":[1.0,2],"b":"x"}"#, derived), true);
+        let said = |derived: &str| list_remarks(None, (r#"{"a":[1.0,2],"b":"x"}"#, derived), true);
         assert!(said(r#"{"a":[1.0000000001,2],"b":"x"}"#)[1].contains("by at most 1e-10"));
         for other in
             [r#"{"a":[1.1,2],"b":"x"}"#, r#"{"a":[1.0,2],"b":"y"}"#, r#"{"a":[1.0],"b":"x"}"#]
@@ -235,10 +246,10 @@ mod tests {
     #[test]
     fn another_revision_is_said() {
         assert!(
-            remarks(Some("0.0.0-other"), ("{}", "{}"), true)[0]
+            list_remarks(Some("0.0.0-other"), ("{}", "{}"), true)[0]
                 .contains("made by revision 0.0.0-other")
         );
-        assert!(remarks(Some(code_revision()), ("{}", "{}"), true).is_empty());
-        assert!(remarks(None, ("{}", "{}"), false)[0].contains("damaged"));
+        assert!(list_remarks(Some(code_revision()), ("{}", "{}"), true).is_empty());
+        assert!(list_remarks(None, ("{}", "{}"), false)[0].contains("damaged"));
     }
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sistership_model::Model;
 
-use crate::recipe::Recipe;
+use crate::recipe::DerivationRecipe;
 
 /// Document of a version. Its bytes are those of its canonical JSON; the hash is over them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -15,7 +15,7 @@ pub struct VersionDocument {
     /// The ship, whose name is also that of its versions.
     pub ship: String,
     /// The recipe of its derivation.
-    pub recipe: Recipe,
+    pub recipe: DerivationRecipe,
     /// The model.
     pub model: Model,
     /// Report of its derivation; null for a published model.
@@ -28,7 +28,7 @@ impl VersionDocument {
     ///
     /// # Errors
     /// Returns an error if a number is not finite, which a checked model rules out.
-    pub fn canonical(&self) -> Result<String, serde_json::Error> {
+    pub fn to_canonical_json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string(self)
     }
 }

@@ -12,7 +12,7 @@ use http_body_util::BodyExt as _;
 use hyper::body::{Body as HttpBody, Frame, Incoming, SizeHint};
 use tokio::time::{Instant, Sleep, sleep_until};
 
-use crate::pace::Pace;
+use crate::pace::ConnectionProgress;
 
 /// Maximum size, and maximum time, for discarding the rest of a body that is refused before its
 /// end. Otherwise a client that still sends would find the connection reset instead of the answer:
@@ -22,25 +22,25 @@ const REST_BYTES: usize = 16 << 20;
 const REST_TIME: Duration = Duration::from_secs(2);
 
 /// The body of a request.
-pub(super) struct Received {
+pub(super) struct RequestBody {
     body: Option<Incoming>,
-    pace: Arc<Pace>,
+    pace: Arc<ConnectionProgress>,
     deadline: Pin<Box<Sleep>>,
-    rest: Rest,
+    rest: UnreadBody,
 }
 
 /// The unread rest of a request's body after the handler has dropped it.
 #[derive(Clone, Default)]
-pub(super) struct Rest(Arc<Mutex<Option<Incoming>>>);
+pub(super) struct UnreadBody(Arc<Mutex<Option<Incoming>>>);
 
-impl Rest {
-    fn slot(&self) -> std::sync::MutexGuard<'_, Option<Incoming>> {
+impl UnreadBody {
+    fn lock_body(&self) -> std::sync::MutexGuard<'_, Option<Incoming>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Discards the rest as it arrives, within the bounds of size and time.
     pub(super) async fn discard(&self) {
-        let Some(mut body) = self.slot().take() else { return };
+        let Some(mut body) = self.lock_body().take() else { return };
         let mut left = REST_BYTES;
         let discarded = async {
             while let Some(Ok(frame)) = body.frame().await {
@@ -56,18 +56,18 @@ impl Rest {
 }
 
 /// The body of an answer.
-pub(super) struct Sent {
+pub(super) struct ResponseBody {
     body: Body,
-    pace: Arc<Pace>,
+    pace: Arc<ConnectionProgress>,
 }
 
-impl Received {
-    pub(super) fn new(body: Incoming, pace: Arc<Pace>, rest: Rest) -> Self {
+impl RequestBody {
+    pub(super) fn new(body: Incoming, pace: Arc<ConnectionProgress>, rest: UnreadBody) -> Self {
         Self { body: Some(body), pace, deadline: Box::pin(sleep_until(Instant::now())), rest }
     }
 }
 
-impl HttpBody for Received {
+impl HttpBody for RequestBody {
     type Data = Bytes;
     type Error = BoxError;
 
@@ -79,7 +79,7 @@ impl HttpBody for Received {
         if let Poll::Ready(frame) = Pin::new(body).poll_frame(context) {
             // Each byte extends the deadline of the transfer.
             let bytes = frame.iter().flatten().filter_map(Frame::data_ref).map(Bytes::len).sum();
-            self.pace.received(bytes);
+            self.pace.record_received(bytes);
             return Poll::Ready(frame.map(|frame| frame.map_err(BoxError::from)));
         }
         let until = self.pace.awaits_body();
@@ -89,8 +89,8 @@ impl HttpBody for Received {
         }
         ready!(self.deadline.as_mut().poll(context));
         // The deadline has passed: the handler gets an error instead of the rest of the body.
-        self.pace.too_slow();
-        self.pace.received(0);
+        self.pace.mark_slow();
+        self.pace.record_received(0);
         Poll::Ready(Some(Err("the body came too slowly".into())))
     }
 
@@ -103,22 +103,22 @@ impl HttpBody for Received {
     }
 }
 
-impl Drop for Received {
+impl Drop for RequestBody {
     /// Ends the wait for the body and keeps its unread rest, to be discarded after the answer is
     /// made.
     fn drop(&mut self) {
-        self.pace.received(0);
-        *self.rest.slot() = self.body.take().filter(|body| !body.is_end_stream());
+        self.pace.record_received(0);
+        *self.rest.lock_body() = self.body.take().filter(|body| !body.is_end_stream());
     }
 }
 
-impl Sent {
-    pub(super) fn new(body: Body, pace: Arc<Pace>) -> Self {
+impl ResponseBody {
+    pub(super) fn new(body: Body, pace: Arc<ConnectionProgress>) -> Self {
         Self { body, pace }
     }
 }
 
-impl HttpBody for Sent {
+impl HttpBody for ResponseBody {
     type Data = Bytes;
     type Error = axum::Error;
 
@@ -138,8 +138,8 @@ impl HttpBody for Sent {
     }
 }
 
-impl Drop for Sent {
+impl Drop for ResponseBody {
     fn drop(&mut self) {
-        self.pace.end();
+        self.pace.end_answer();
     }
 }

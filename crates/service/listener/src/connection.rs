@@ -16,14 +16,14 @@ use hyper_util::server::graceful::Watcher;
 use hyper_util::service::TowerToHyperService;
 use tokio::net::TcpStream;
 
-use crate::address::party;
-use crate::body::{Received, Rest, Sent};
-use crate::limits::Limits;
-use crate::pace::Pace;
-use crate::peer::{Peer, is_health};
-use crate::seats::{Seat, Seats};
-use crate::stopping::Stopping;
-use crate::stream::Stream;
+use crate::address::counted_address;
+use crate::body::{RequestBody, ResponseBody, UnreadBody};
+use crate::limits::ConnectionLimits;
+use crate::pace::ConnectionProgress;
+use crate::peer::{PeerInfo, is_health};
+use crate::seats::{ConnectionSlots, Permit};
+use crate::stopping::StopSignal;
+use crate::stream::WatchedStream;
 
 /// Maximum number of headers of a request.
 const MAX_HEADERS: usize = 100;
@@ -31,34 +31,34 @@ const MAX_HEADERS: usize = 100;
 const HEAD_BYTES: usize = 32 << 10;
 
 /// A connection with a permit.
-pub(super) struct Connection {
+pub(super) struct ClientConnection {
     router: Router,
-    limits: Limits,
+    limits: ConnectionLimits,
     address: IpAddr,
-    pace: Arc<Pace>,
-    seat: Arc<Seat>,
+    pace: Arc<ConnectionProgress>,
+    seat: Arc<Permit>,
 }
 
-impl Connection {
+impl ClientConnection {
     pub(super) fn new(
         router: &Router,
-        limits: Limits,
-        seats: &Arc<Seats>,
+        limits: ConnectionLimits,
+        seats: &Arc<ConnectionSlots>,
         address: IpAddr,
     ) -> Option<Self> {
-        let pace = Arc::new(Pace::new(&limits));
-        let seat = Arc::new(Seats::admit(seats, party(address), &pace)?);
+        let pace = Arc::new(ConnectionProgress::new(&limits));
+        let seat = Arc::new(ConnectionSlots::admit(seats, counted_address(address), &pace)?);
         Some(Self { router: router.clone(), limits, address, pace, seat })
     }
 
-    pub(super) async fn serve(self, stream: TcpStream, watcher: Watcher, mut stopping: Stopping) {
-        let stream = Stream::new(stream, Arc::clone(&self.pace));
+    pub(super) async fn serve(self, stream: TcpStream, watcher: Watcher, mut stopping: StopSignal) {
+        let stream = WatchedStream::new(stream, Arc::clone(&self.pace));
         let mut builder = http1::Builder::new();
         builder.timer(TokioTimer::new()).header_read_timeout(self.limits.header_time);
         builder.max_headers(MAX_HEADERS).max_buf_size(HEAD_BYTES);
         let connection = Arc::new(self);
         let serving = Arc::clone(&connection);
-        let service = service_fn(move |request| Arc::clone(&serving).answer(request));
+        let service = service_fn(move |request| Arc::clone(&serving).answer_request(request));
         let served = builder.serve_connection(TokioIo::new(stream), service).with_upgrades();
         let mut served = std::pin::pin!(served);
         let mut told = false;
@@ -86,18 +86,21 @@ impl Connection {
         drop(watcher);
     }
 
-    async fn answer(self: Arc<Self>, request: Request<Incoming>) -> hyper::Result<Response<Sent>> {
+    async fn answer_request(
+        self: Arc<Self>,
+        request: Request<Incoming>,
+    ) -> hyper::Result<Response<ResponseBody>> {
         // Pipelined requests are answered only as fast as the client reads.
-        self.pace.taken().await;
-        self.pace.begin();
+        self.pace.until_read().await;
+        self.pace.begin_request();
         // Health checks are answered without a permit; other requests wait a while for one.
-        let crowded = !is_health(request.uri().path()) && !self.seat.taken().await;
+        let crowded = !is_health(request.uri().path()) && !self.seat.wait_for_permit().await;
         // A client that sent `Expect` waits for the word to continue and has sent no body.
         let waits = request.headers().contains_key(header::EXPECT);
-        let (pace, rest) = (Arc::clone(&self.pace), Rest::default());
+        let (pace, rest) = (Arc::clone(&self.pace), UnreadBody::default());
         let mut request =
-            request.map(|body| Body::new(Received::new(body, Arc::clone(&pace), rest.clone())));
-        request.extensions_mut().insert(Peer {
+            request.map(|body| Body::new(RequestBody::new(body, Arc::clone(&pace), rest.clone())));
+        request.extensions_mut().insert(PeerInfo {
             address: self.address,
             pace: Arc::clone(&pace),
             _seat: Arc::clone(&self.seat),
@@ -110,8 +113,8 @@ impl Connection {
         if !(crowded || waits || pace.is_too_slow()) {
             pace.awaits_body();
             rest.discard().await;
-            pace.received(0);
+            pace.record_received(0);
         }
-        Ok(response.map(|body| Sent::new(body, pace)))
+        Ok(response.map(|body| ResponseBody::new(body, pace)))
     }
 }

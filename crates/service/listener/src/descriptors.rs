@@ -1,6 +1,6 @@
 //! File descriptors of the process: as many as its connections need, else fewer connections.
 
-use crate::limits::Limits;
+use crate::limits::ConnectionLimits;
 use crate::seats::RESERVE;
 
 /// Descriptors other than those of connections: database, samples, uploads, the log.
@@ -11,9 +11,9 @@ const FEWEST: usize = 16;
 
 /// Returns the limits for which the system has file descriptors, after raising the limit of the
 /// process as far as possible.
-pub fn suited(limits: Limits) -> Limits {
+pub fn fit_to_descriptors(limits: ConnectionLimits) -> ConnectionLimits {
     let Some(have) = raised(needed_by(&limits)) else { return limits };
-    let fit = fitting(limits, have);
+    let fit = reduced_limits(limits, have);
     if fit != limits {
         let needed = needed_by(&limits);
         tracing::warn!(
@@ -27,11 +27,11 @@ pub fn suited(limits: Limits) -> Limits {
 }
 
 /// Returns the number of descriptors that a server with these limits needs.
-fn needed_by(limits: &Limits) -> usize {
+fn needed_by(limits: &ConnectionLimits) -> usize {
     limits.connections + RESERVE + OTHER_DESCRIPTORS
 }
 
-fn fitting(mut limits: Limits, have: usize) -> Limits {
+fn reduced_limits(mut limits: ConnectionLimits, have: usize) -> ConnectionLimits {
     let lacking = needed_by(&limits).saturating_sub(have);
     // At least a minimum, unless fewer were configured.
     limits.connections =
@@ -66,11 +66,11 @@ mod tests {
 
     #[test]
     fn connections_fit_the_descriptors() {
-        let limits = Limits::default();
-        assert_eq!(fitting(limits, 1 << 20), limits);
-        let fit = fitting(limits, 600);
+        let limits = ConnectionLimits::default();
+        assert_eq!(reduced_limits(limits, 1 << 20), limits);
+        let fit = reduced_limits(limits, 600);
         assert_eq!(needed_by(&fit), 600);
         assert!(fit.connections_per_address <= fit.connections);
-        assert_eq!(fitting(limits, 10).connections, FEWEST);
+        assert_eq!(reduced_limits(limits, 10).connections, FEWEST);
     }
 }

@@ -5,11 +5,11 @@ use std::str::FromStr;
 
 use axum::http::HeaderMap;
 
-use crate::address::party;
+use crate::address::counted_address;
 
 /// A network of addresses, such as `10.0.0.0/8`; a single address is a network of one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Network {
+pub struct NetworkRange {
     address: IpAddr,
     bits: u32,
 }
@@ -28,12 +28,12 @@ pub enum ForwardedHeader {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct TrustedProxies {
     /// Networks of the proxies.
-    pub networks: Vec<Network>,
+    pub networks: Vec<NetworkRange>,
     /// Header that they write. The other one may come from the client, and is not read.
     pub header: ForwardedHeader,
 }
 
-impl Network {
+impl NetworkRange {
     fn contains(&self, address: IpAddr) -> bool {
         let same = |mine: u128, other: u128, width: u32| {
             // `checked_shr` refuses a shift by all 128 bits (a prefix of 0 bits): both sides are
@@ -51,7 +51,7 @@ impl Network {
     }
 }
 
-impl FromStr for Network {
+impl FromStr for NetworkRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -80,26 +80,26 @@ impl FromStr for ForwardedHeader {
 impl TrustedProxies {
     /// Returns the address by which a request is counted: the peer or, if that is a trusted proxy,
     /// the last address of the header that is not a trusted proxy.
-    pub fn client(&self, peer: IpAddr, headers: &HeaderMap) -> IpAddr {
+    pub fn client_address(&self, peer: IpAddr, headers: &HeaderMap) -> IpAddr {
         let mut client = peer;
-        let mut hops = self.hops(headers);
+        let mut hops = self.header_addresses(headers);
         // From the last hop backwards; the first address that is not a trusted proxy is the client.
         // Addresses before it were written by the client itself and prove nothing.
-        while self.trusts(client) {
-            match hops.pop().and_then(|hop| address(&hop)) {
+        while self.is_trusted(client) {
+            match hops.pop().and_then(|hop| parse_address(&hop)) {
                 Some(before) => client = before,
                 None => break,
             }
         }
-        party(client)
+        counted_address(client)
     }
 
-    fn trusts(&self, address: IpAddr) -> bool {
+    fn is_trusted(&self, address: IpAddr) -> bool {
         self.networks.iter().any(|network| network.contains(address))
     }
 
     /// Returns the addresses of the header, that of the last proxy last.
-    fn hops(&self, headers: &HeaderMap) -> Vec<String> {
+    fn header_addresses(&self, headers: &HeaderMap) -> Vec<String> {
         let name = match self.header {
             ForwardedHeader::XForwardedFor => "x-forwarded-for",
             ForwardedHeader::Forwarded => "forwarded",
@@ -121,7 +121,7 @@ fn forwarded_for(element: &str) -> String {
 }
 
 /// Parses the address of a node, with or without a port.
-fn address(node: &str) -> Option<IpAddr> {
+fn parse_address(node: &str) -> Option<IpAddr> {
     let node = node.trim();
     let bracketed = node.strip_prefix('[').and_then(|rest| rest.split(']').next());
     let plain = bracketed.unwrap_or(node);
@@ -141,7 +141,7 @@ mod tests {
         for (name, value) in values {
             headers.append(*name, value.parse().unwrap());
         }
-        proxies.client(peer.parse().unwrap(), &headers).to_string()
+        proxies.client_address(peer.parse().unwrap(), &headers).to_string()
     }
 
     #[test]
@@ -169,12 +169,12 @@ mod tests {
 
     #[test]
     fn networks_are_read() {
-        let any: Network = "0.0.0.0/0".parse().unwrap();
+        let any: NetworkRange = "0.0.0.0/0".parse().unwrap();
         assert!(any.contains([9, 9, 9, 9].into()));
-        let one: Network = "10.1.2.3".parse().unwrap();
+        let one: NetworkRange = "10.1.2.3".parse().unwrap();
         assert!(one.contains([10, 1, 2, 3].into()) && !one.contains([10, 1, 2, 4].into()));
         for wrong in ["10.0.0.0/33", "10.0.0/8", "::/129", "proxy", "10.0.0.0/"] {
-            assert!(wrong.parse::<Network>().is_err(), "{wrong}");
+            assert!(wrong.parse::<NetworkRange>().is_err(), "{wrong}");
         }
     }
 }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 /// Bounds on connections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Limits {
+pub struct ConnectionLimits {
     /// Maximum time to read the head of a request.
     pub header_time: Duration,
     /// Maximum number of connections; while all of them are busy, further ones are refused.
@@ -24,7 +24,7 @@ pub struct Limits {
     pub stop_time: Duration,
 }
 
-impl Default for Limits {
+impl Default for ConnectionLimits {
     fn default() -> Self {
         Self {
             header_time: Duration::from_secs(10),

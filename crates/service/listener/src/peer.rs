@@ -3,21 +3,21 @@
 use std::net::IpAddr;
 use std::sync::Arc;
 
-use crate::pace::Pace;
-use crate::seats::Seat;
+use crate::pace::ConnectionProgress;
+use crate::seats::Permit;
 
 /// Paths that are answered even without a permit.
 const HEALTH: [&str; 2] = ["/healthz", "/readyz"];
 
 /// Connection of a request.
 #[derive(Clone)]
-pub struct Peer {
+pub struct PeerInfo {
     /// Address of the other end.
     pub address: IpAddr,
     /// Progress of the connection.
-    pub(crate) pace: Arc<Pace>,
+    pub(crate) pace: Arc<ConnectionProgress>,
     /// Permit of the connection, held as long as this value.
-    pub(crate) _seat: Arc<Seat>,
+    pub(crate) _seat: Arc<Permit>,
     /// True if there is no free connection: the request is refused, unless it is a health check.
     pub crowded: bool,
 }
@@ -27,7 +27,7 @@ pub fn is_health(path: &str) -> bool {
     HEALTH.contains(&path)
 }
 
-impl Peer {
+impl PeerInfo {
     /// Returns true if the connection is closed because its body was sent, or its answer read, too
     /// slowly.
     #[must_use]
@@ -42,12 +42,12 @@ impl Peer {
     }
 
     /// Records that the server works for a kept connection.
-    pub fn works(&self) {
-        self.pace.begin();
+    pub fn mark_working(&self) {
+        self.pace.begin_request();
     }
 
     /// Records that the server waits for the other end.
-    pub fn waits(&self) {
-        self.pace.end();
+    pub fn mark_waiting(&self) {
+        self.pace.end_answer();
     }
 }

@@ -8,10 +8,10 @@ use axum::Router;
 use hyper_util::server::graceful::GracefulShutdown;
 use tokio::net::{TcpListener, TcpStream};
 
-use crate::connection::Connection;
-use crate::limits::Limits;
-use crate::seats::Seats;
-use crate::stopping::Stopping;
+use crate::connection::ClientConnection;
+use crate::limits::ConnectionLimits;
+use crate::seats::ConnectionSlots;
+use crate::stopping::StopSignal;
 
 /// Bytes of an answer that the system accepts beyond those in flight. Answers that are not read are
 /// produced no further: otherwise 600 connections with 400 requests each would have had the work of
@@ -19,15 +19,20 @@ use crate::stopping::Stopping;
 #[cfg(any(target_os = "linux", target_os = "android"))]
 const NOT_SENT: u32 = 16 << 10;
 /// Delay before the next attempt when the system has no more sockets.
-const BREATH: Duration = Duration::from_millis(100);
+const RETRY_DELAY: Duration = Duration::from_millis(100);
 
 /// Serves until the stop signal, then waits for the requests in progress.
-pub async fn listen(listener: TcpListener, router: Router, limits: Limits, mut stopping: Stopping) {
-    let server = Server {
+pub async fn listen(
+    listener: TcpListener,
+    router: Router,
+    limits: ConnectionLimits,
+    mut stopping: StopSignal,
+) {
+    let server = ConnectionServer {
         router,
         limits,
         graceful: GracefulShutdown::new(),
-        seats: Seats::new(&limits),
+        seats: ConnectionSlots::new(&limits),
         stopping: stopping.clone(),
     };
     loop {
@@ -36,7 +41,7 @@ pub async fn listen(listener: TcpListener, router: Router, limits: Limits, mut s
             () = stopping.wait() => break,
             taken = listener.accept() => match taken {
                 Ok((stream, from)) => server.serve(stream, from),
-                Err(error) => server.lacks(&error).await,
+                Err(error) => server.handle_shortage(&error).await,
             },
         }
     }
@@ -44,32 +49,32 @@ pub async fn listen(listener: TcpListener, router: Router, limits: Limits, mut s
     drop(listener);
     if tokio::time::timeout(limits.stop_time, server.graceful.shutdown()).await.is_err() {
         tracing::warn!("connections were cut: they did not end in time");
-        server.seats.clear();
+        server.seats.cut_all();
     }
 }
 
 /// Sets the options of a connection: data is sent without delay, and no more is accepted than can
 /// be sent soon.
-fn prepare(stream: &TcpStream) -> std::io::Result<()> {
+fn set_options(stream: &TcpStream) -> std::io::Result<()> {
     #[cfg(any(target_os = "linux", target_os = "android"))]
     socket2::SockRef::from(stream).set_tcp_notsent_lowat(NOT_SENT)?;
     stream.set_nodelay(true)
 }
 
-struct Server {
+struct ConnectionServer {
     router: Router,
-    limits: Limits,
+    limits: ConnectionLimits,
     graceful: GracefulShutdown,
-    seats: Arc<Seats>,
-    stopping: Stopping,
+    seats: Arc<ConnectionSlots>,
+    stopping: StopSignal,
 }
 
-impl Server {
+impl ConnectionServer {
     fn serve(&self, stream: TcpStream, from: SocketAddr) {
-        if let Err(error) = prepare(&stream) {
+        if let Err(error) = set_options(&stream) {
             tracing::debug!(%error, "no TCP_NODELAY or TCP_NOTSENT_LOWAT");
         }
-        match Connection::new(&self.router, self.limits, &self.seats, from.ip()) {
+        match ClientConnection::new(&self.router, self.limits, &self.seats, from.ip()) {
             Some(connection) => drop(tokio::spawn(connection.serve(
                 stream,
                 self.graceful.watcher(),
@@ -80,10 +85,10 @@ impl Server {
     }
 
     /// Handles a failed acceptance: closes a waiting connection, or pauses.
-    async fn lacks(&self, error: &std::io::Error) {
+    async fn handle_shortage(&self, error: &std::io::Error) {
         tracing::warn!(%error, "a connection could not be taken");
-        if !self.seats.spare() {
-            tokio::time::sleep(BREATH).await;
+        if !self.seats.evict_longest() {
+            tokio::time::sleep(RETRY_DELAY).await;
         }
         // Lets the closed connection release its socket before the next attempt.
         tokio::task::yield_now().await;

@@ -4,9 +4,9 @@ use tokio::sync::watch;
 
 /// Receiver of the stop signal; clones receive it as well.
 #[derive(Debug, Clone)]
-pub struct Stopping(watch::Receiver<bool>);
+pub struct StopSignal(watch::Receiver<bool>);
 
-impl Stopping {
+impl StopSignal {
     /// Creates a signal; sending `true`, or dropping the sender, stops the server.
     pub fn new() -> (watch::Sender<bool>, Self) {
         let (sender, receiver) = watch::channel(false);
@@ -14,7 +14,7 @@ impl Stopping {
     }
 
     /// Returns true if the server is to stop.
-    pub fn now(&self) -> bool {
+    pub fn is_stopping(&self) -> bool {
         *self.0.borrow() || self.0.has_changed().is_err()
     }
 

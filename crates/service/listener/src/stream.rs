@@ -9,29 +9,29 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 use tokio::time::{Instant, Sleep, sleep_until};
 
-use crate::pace::Pace;
+use crate::pace::ConnectionProgress;
 
 /// A socket that reports the progress of its other end, and fails if there is none.
-pub(super) struct Stream {
+pub(super) struct WatchedStream {
     socket: TcpStream,
-    pace: Arc<Pace>,
+    pace: Arc<ConnectionProgress>,
     deadline: Pin<Box<Sleep>>,
 }
 
-impl Stream {
-    pub(super) fn new(socket: TcpStream, pace: Arc<Pace>) -> Self {
+impl WatchedStream {
+    pub(super) fn new(socket: TcpStream, pace: Arc<ConnectionProgress>) -> Self {
         Self { socket, pace, deadline: Box::pin(sleep_until(Instant::now())) }
     }
 
     /// Records the result of a write; returns an error if the other end has not read for too long.
-    fn written(
+    fn record_write(
         &mut self,
         context: &mut Context<'_>,
         written: Poll<io::Result<usize>>,
     ) -> Poll<io::Result<usize>> {
         match written {
             // Bytes that the system accepts count as read, within the size of its send buffer.
-            Poll::Ready(Ok(bytes)) => self.pace.sent(bytes),
+            Poll::Ready(Ok(bytes)) => self.pace.record_sent(bytes),
             Poll::Ready(Err(_)) => {}
             Poll::Pending => {
                 let until = self.pace.awaits_reader();
@@ -40,7 +40,7 @@ impl Stream {
                     self.deadline.as_mut().reset(until);
                 }
                 ready!(self.deadline.as_mut().poll(context));
-                self.pace.cut();
+                self.pace.cut_connection();
                 return Poll::Ready(Err(io::Error::new(
                     io::ErrorKind::TimedOut,
                     "the answer was not read",
@@ -51,7 +51,7 @@ impl Stream {
     }
 }
 
-impl AsyncRead for Stream {
+impl AsyncRead for WatchedStream {
     fn poll_read(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -61,14 +61,14 @@ impl AsyncRead for Stream {
     }
 }
 
-impl AsyncWrite for Stream {
+impl AsyncWrite for WatchedStream {
     fn poll_write(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
         bytes: &[u8],
     ) -> Poll<io::Result<usize>> {
         let written = Pin::new(&mut self.socket).poll_write(context, bytes);
-        self.written(context, written)
+        self.record_write(context, written)
     }
 
     fn poll_write_vectored(
@@ -77,7 +77,7 @@ impl AsyncWrite for Stream {
         slices: &[io::IoSlice<'_>],
     ) -> Poll<io::Result<usize>> {
         let written = Pin::new(&mut self.socket).poll_write_vectored(context, slices);
-        self.written(context, written)
+        self.record_write(context, written)
     }
 
     fn is_write_vectored(&self) -> bool {
@@ -93,7 +93,7 @@ impl AsyncWrite for Stream {
     }
 }
 
-impl Drop for Stream {
+impl Drop for WatchedStream {
     /// Discards unread data of a closed connection: the system would keep it for minutes.
     fn drop(&mut self) {
         if self.pace.is_cut() {

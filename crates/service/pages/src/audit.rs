@@ -2,13 +2,13 @@
 
 use askama::Template;
 use sistership_jobs::Archive;
-use sistership_store::{AuditEntry, AuditFilter, Page};
+use sistership_store::{AuditEntry, AuditFilter, PageRequest};
 
-use crate::cursor::{cursor, key};
-use crate::date::date;
+use crate::cursor::{decode_cursor, encode_cursor};
+use crate::date::format_date;
 use crate::error::{PageError, Result};
-use crate::form::Fields;
-use crate::shell::Shell;
+use crate::form::FormFields;
+use crate::shell::PageShell;
 
 /// Number of entries on one page.
 const ENTRIES: i64 = 50;
@@ -16,7 +16,7 @@ const ENTRIES: i64 = 50;
 #[derive(Template)]
 #[template(path = "audit.html")]
 struct AuditPage {
-    shell: Shell,
+    shell: PageShell,
     actor: String,
     subject: String,
     entries: Vec<EntryRow>,
@@ -38,37 +38,37 @@ struct EntryRow {
 ///
 /// # Errors
 /// Returns an error if a field is wrong or the store fails.
-pub async fn page(archive: &Archive, shell: Shell, query: &Fields) -> Result<String> {
-    let (actor, subject) = (query.text("actor"), query.text("subject"));
+pub async fn audit_page(archive: &Archive, shell: PageShell, query: &FormFields) -> Result<String> {
+    let (actor, subject) = (query.get_text("actor"), query.get_text("subject"));
     // The store filters by one of the two only.
     let filter = match (actor, subject) {
         (Some(_), Some(_)) => {
-            return Err(PageError::invalid("subject", "choose by one of the two"));
+            return Err(PageError::invalid_field("subject", "choose by one of the two"));
         }
         (Some(actor), None) => AuditFilter::Actor(actor),
         (None, Some(subject)) => AuditFilter::Subject(subject),
         (None, None) => AuditFilter::All,
     };
-    let page = Page { after: key(query.text("after"))?, limit: ENTRIES };
+    let page = PageRequest { after: decode_cursor(query.get_text("after"))?, limit: ENTRIES };
     let list = archive.store.audit().list(filter, &page).await?;
-    let next = cursor(list.next.as_ref());
+    let next = encode_cursor(list.next.as_ref());
     let page = AuditPage {
-        shell: shell.at("/audit"),
+        shell: shell.at_place("/audit"),
         actor: actor.unwrap_or_default().to_owned(),
         subject: subject.unwrap_or_default().to_owned(),
-        entries: list.items.into_iter().map(EntryRow::of).collect(),
+        entries: list.items.into_iter().map(EntryRow::from_entry).collect(),
         next,
     };
     Ok(page.render()?)
 }
 
 impl EntryRow {
-    fn of(entry: AuditEntry) -> Self {
+    fn from_entry(entry: AuditEntry) -> Self {
         let AuditEntry { number, at_us, actor, origin, action, subject, .. } = entry;
         let (before, after) = (entry.state_before, entry.state_after);
         Self {
             number,
-            at: date(at_us),
+            at: format_date(at_us),
             actor,
             origin,
             action,

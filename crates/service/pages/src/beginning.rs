@@ -3,15 +3,15 @@
 use askama::Template;
 
 use crate::error::Result;
-use crate::shell::Shell;
+use crate::shell::PageShell;
 
 /// First characters of the content of every page.
-const CONTENT: &str = "<main id=\"content\" tabindex=\"-1\">";
+const CONTENT_START: &str = "<main id=\"content\" tabindex=\"-1\">";
 
 #[derive(Template)]
 #[template(path = "blank.html")]
 struct BlankPage<'a> {
-    shell: Shell,
+    shell: PageShell,
     title: &'a str,
 }
 
@@ -19,20 +19,20 @@ struct BlankPage<'a> {
 ///
 /// # Errors
 /// Returns an error if the page cannot be rendered.
-pub fn beginning(shell: Shell, title: &str, place: &'static str) -> Result<String> {
-    let mut page = BlankPage { shell: shell.at(place), title }.render()?;
-    page.truncate(before_content(&page));
+pub fn page_beginning(shell: PageShell, title: &str, place: &'static str) -> Result<String> {
+    let mut page = BlankPage { shell: shell.at_place(place), title }.render()?;
+    page.truncate(content_offset(&page));
     Ok(page)
 }
 
 /// Returns a page from its content on.
 pub fn from_content(page: &str) -> &str {
-    &page[before_content(page)..]
+    &page[content_offset(page)..]
 }
 
 /// Length of the part before the content, bytes.
-fn before_content(page: &str) -> usize {
-    page.find(CONTENT).map_or(0, |at| at + CONTENT.len())
+fn content_offset(page: &str) -> usize {
+    page.find(CONTENT_START).map_or(0, |at| at + CONTENT_START.len())
 }
 
 #[cfg(test)]
@@ -42,8 +42,8 @@ mod tests {
 
     #[test]
     fn both_parts_are_a_page() {
-        let begins = beginning(Shell::default(), "Not found", "").unwrap();
-        let page = crate::problem("Not found", "nothing of that name", &[], "").unwrap();
+        let begins = page_beginning(PageShell::default(), "Not found", "").unwrap();
+        let page = crate::problem_page("Not found", "nothing of that name", &[], "").unwrap();
         assert!(page.starts_with(&begins), "{begins}");
         assert_eq!(format!("{begins}{}", from_content(&page)), page);
     }

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use crate::error::{PageError, Result};
 
 /// Returns a key as text: JSON in URL-safe Base64.
-pub(crate) fn cursor<K: Serialize>(key: Option<&K>) -> Option<String> {
+pub(crate) fn encode_cursor<K: Serialize>(key: Option<&K>) -> Option<String> {
     Some(BASE64_URL_SAFE_NO_PAD.encode(serde_json::to_vec(key?).ok()?))
 }
 
@@ -16,12 +16,12 @@ pub(crate) fn cursor<K: Serialize>(key: Option<&K>) -> Option<String> {
 ///
 /// # Errors
 /// Returns an error if the text is no cursor of this list.
-pub(crate) fn key<K: DeserializeOwned>(after: Option<&str>) -> Result<Option<K>> {
+pub(crate) fn decode_cursor<K: DeserializeOwned>(after: Option<&str>) -> Result<Option<K>> {
     let read = |text: &str| {
         let bytes = BASE64_URL_SAFE_NO_PAD.decode(text).ok();
-        bytes
-            .and_then(|bytes| serde_json::from_slice(&bytes).ok())
-            .ok_or_else(|| PageError::invalid("after", "is no place of this list; begin anew"))
+        bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok()).ok_or_else(|| {
+            PageError::invalid_field("after", "is no place of this list; begin anew")
+        })
     };
     after.map(read).transpose()
 }

@@ -2,7 +2,7 @@
 
 /// Formats a time, µs since 1970, as `2026-11-21 10:06` UTC; the civil calendar from days, after
 /// Howard Hinnant.
-pub(crate) fn date(us: i64) -> String {
+pub(crate) fn format_date(us: i64) -> String {
     let seconds = us.div_euclid(1_000_000);
     let (days, second) = (seconds.div_euclid(86_400), seconds.rem_euclid(86_400));
     // Days since 1 March of the year 0; an era is 400 years of 146097 days, and years begin in
@@ -23,13 +23,13 @@ pub(crate) fn date(us: i64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::date;
+    use super::format_date;
 
     #[test]
     fn dates_are_those_of_the_calendar() {
-        assert_eq!(date(0), "1970-01-01 00:00");
-        assert_eq!(date(951_782_400_000_000), "2000-02-29 00:00");
-        assert_eq!(date(1_798_761_599_000_000), "2026-12-31 23:59");
-        assert_eq!(date(1_800_000_000_000_000), "2027-01-15 08:00");
+        assert_eq!(format_date(0), "1970-01-01 00:00");
+        assert_eq!(format_date(951_782_400_000_000), "2000-02-29 00:00");
+        assert_eq!(format_date(1_798_761_599_000_000), "2026-12-31 23:59");
+        assert_eq!(format_date(1_800_000_000_000_000), "2027-01-15 08:00");
     }
 }

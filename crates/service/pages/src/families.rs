@@ -4,25 +4,25 @@
 use askama::Template;
 use sistership_jobs::Archive;
 use sistership_jobs::fleet::{FamilyDrift, MemberDrift};
-use sistership_store::Page;
+use sistership_store::PageRequest;
 
-use crate::cursor::{cursor, key};
-use crate::date::date;
+use crate::cursor::{decode_cursor, encode_cursor};
+use crate::date::format_date;
 use crate::error::Result;
-use crate::form::Fields;
-use crate::picture::svg;
-use crate::shell::Shell;
+use crate::form::FormFields;
+use crate::picture::render_svg;
+use crate::shell::PageShell;
 use crate::sparkline::sparkline;
 
 /// Number of families on one page.
-const FAMILIES: i64 = 50;
+const FAMILIES_PER_PAGE: i64 = 50;
 /// Number of ships on the page of a family.
-const SHIPS: i64 = 50;
+const SHIPS_PER_PAGE: i64 = 50;
 
 #[derive(Template)]
 #[template(path = "families.html")]
 struct FamiliesPage {
-    shell: Shell,
+    shell: PageShell,
     families: Vec<FamilyRow>,
     next: Option<String>,
 }
@@ -38,28 +38,33 @@ struct FamilyRow {
 ///
 /// # Errors
 /// Returns an error if a field is wrong or the store fails.
-pub async fn list(archive: &Archive, shell: Shell, query: &Fields) -> Result<String> {
+pub async fn families_page(
+    archive: &Archive,
+    shell: PageShell,
+    query: &FormFields,
+) -> Result<String> {
     let families = archive.store.families();
-    let page = Page { after: key(query.text("after"))?, limit: FAMILIES };
+    let page =
+        PageRequest { after: decode_cursor(query.get_text("after"))?, limit: FAMILIES_PER_PAGE };
     let list = families.list(&page).await?;
-    let next = cursor(list.next.as_ref());
+    let next = encode_cursor(list.next.as_ref());
     let mut rows = Vec::new();
     for family in list.items {
         // Counted by the store for each family; a page has few.
         rows.push(FamilyRow {
-            members: families.count(&family.name).await?,
-            created: date(family.created_us),
+            members: families.count_members(&family.name).await?,
+            created: format_date(family.created_us),
             name: family.name,
             title: family.title,
         });
     }
-    Ok(FamiliesPage { shell: shell.at("/families"), families: rows, next }.render()?)
+    Ok(FamiliesPage { shell: shell.at_place("/families"), families: rows, next }.render()?)
 }
 
 #[derive(Template)]
 #[template(path = "family.html")]
 struct FamilyPage {
-    shell: Shell,
+    shell: PageShell,
     name: String,
     title: String,
     foundation: (String, String),
@@ -80,12 +85,12 @@ struct MemberRow {
 ///
 /// # Errors
 /// Returns an error if there is no family of this name or the store fails.
-pub async fn one(archive: &Archive, shell: Shell, name: &str) -> Result<String> {
+pub async fn family_page(archive: &Archive, shell: PageShell, name: &str) -> Result<String> {
     let family = archive.store.families().get(name).await?;
     let head = archive.store.versions().by_id(&family.foundation).await?.head;
-    let drift = FamilyDrift::of(archive, name, SHIPS).await?;
+    let drift = FamilyDrift::read_members(archive, name, SHIPS_PER_PAGE).await?;
     let page = FamilyPage {
-        shell: shell.at("/families"),
+        shell: shell.at_place("/families"),
         name: family.name,
         title: family.title,
         foundation: (
@@ -93,24 +98,24 @@ pub async fn one(archive: &Archive, shell: Shell, name: &str) -> Result<String> 
             format!("/ships/{}/versions/{}", head.model, head.number),
         ),
         members: drift.members,
-        ships: drift.ships.iter().map(MemberRow::of).collect::<Result<_>>()?,
+        ships: drift.ships.iter().map(MemberRow::from_member).collect::<Result<_>>()?,
     };
     Ok(page.render()?)
 }
 
 /// Returns, for each trial, the largest residual over the axes, whether the trial was fitted, and
 /// its time, µs; the oldest first.
-fn residuals(member: &MemberDrift) -> Vec<(f64, bool, i64)> {
+fn trial_residuals(member: &MemberDrift) -> Vec<(f64, bool, i64)> {
     let trials = member.drift.iter().flat_map(|drift| &drift.trials);
-    trials.map(|trial| (trial.largest(), trial.fitted, trial.at_us)).collect()
+    trials.map(|trial| (trial.largest_residual(), trial.fitted, trial.at_us)).collect()
 }
 
 impl MemberRow {
-    fn of(member: &MemberDrift) -> Result<Self> {
-        let all = residuals(member);
+    fn from_member(member: &MemberDrift) -> Result<Self> {
+        let all = trial_residuals(member);
         let newest = all.last().map(|(worst, fitted, at_us)| {
             let fitted = if *fitted { " (fitted)" } else { "" };
-            format!("{}: {:.0} %{fitted}", date(*at_us), 100.0 * worst)
+            format!("{}: {:.0} %{fitted}", format_date(*at_us), 100.0 * worst)
         });
         let worst = member.drift.as_ref().and_then(|drift| drift.worst);
         Ok(Self {
@@ -122,7 +127,7 @@ impl MemberRow {
             // Trials that were not fitted have a dot: only they test the model.
             trend: sparkline(all.iter().map(|(worst, fitted, _)| (*worst, !fitted)))
                 .as_ref()
-                .map(svg)
+                .map(render_svg)
                 .transpose()?,
         })
     }

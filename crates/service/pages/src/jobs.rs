@@ -3,17 +3,17 @@
 use askama::Template;
 use serde_json::Value;
 use sistership_jobs::Archive;
-use sistership_store::{Job, JobFilter, JobState, Page};
+use sistership_store::{Job, JobFilter, JobState, PageRequest};
 
-use crate::cursor::{cursor, key};
-use crate::date::date;
+use crate::cursor::{decode_cursor, encode_cursor};
+use crate::date::format_date;
 use crate::error::{PageError, Result};
-use crate::form::Fields;
+use crate::form::FormFields;
 use crate::rows::JobRow;
-use crate::shell::Shell;
+use crate::shell::PageShell;
 
 /// Number of jobs on one page.
-const JOBS: i64 = 50;
+const JOBS_PER_PAGE: i64 = 50;
 const STATES: [JobState; 5] = [
     JobState::Queued,
     JobState::Running,
@@ -25,7 +25,7 @@ const STATES: [JobState; 5] = [
 #[derive(Template)]
 #[template(path = "jobs.html")]
 struct JobsPage {
-    shell: Shell,
+    shell: PageShell,
     ship: String,
     state: String,
     states: Vec<&'static str>,
@@ -37,32 +37,32 @@ struct JobsPage {
 ///
 /// # Errors
 /// Returns an error if a field is wrong or the store fails.
-pub async fn list(archive: &Archive, shell: Shell, query: &Fields) -> Result<String> {
-    let state = query.text("state").map(state).transpose()?;
-    let filter = JobFilter { ship: query.text("ship").map(str::to_owned), state };
-    let page = Page { after: key(query.text("after"))?, limit: JOBS };
+pub async fn jobs_page(archive: &Archive, shell: PageShell, query: &FormFields) -> Result<String> {
+    let state = query.get_text("state").map(parse_state).transpose()?;
+    let filter = JobFilter { ship: query.get_text("ship").map(str::to_owned), state };
+    let page = PageRequest { after: decode_cursor(query.get_text("after"))?, limit: JOBS_PER_PAGE };
     let jobs = archive.store.jobs().list(&filter, &page).await?;
-    let next = cursor(jobs.next.as_ref());
+    let next = encode_cursor(jobs.next.as_ref());
     let page = JobsPage {
-        shell: shell.at("/jobs"),
+        shell: shell.at_place("/jobs"),
         ship: filter.ship.unwrap_or_default(),
         state: state.map_or_else(String::new, |state| state.as_str().to_owned()),
         states: STATES.map(JobState::as_str).to_vec(),
-        jobs: jobs.items.into_iter().map(JobRow::of).collect(),
+        jobs: jobs.items.into_iter().map(JobRow::from_job).collect(),
         next,
     };
     Ok(page.render()?)
 }
 
-fn state(name: &str) -> Result<JobState> {
+fn parse_state(name: &str) -> Result<JobState> {
     let known = STATES.into_iter().find(|state| state.as_str() == name);
-    known.ok_or_else(|| PageError::invalid("state", format!("there is no state `{name}`")))
+    known.ok_or_else(|| PageError::invalid_field("state", format!("there is no state `{name}`")))
 }
 
 #[derive(Template)]
 #[template(path = "job.html")]
 struct JobPage {
-    shell: Shell,
+    shell: PageShell,
     row: JobRow,
     progress: f64,
     goes_on: bool,
@@ -80,13 +80,13 @@ struct JobPage {
 ///
 /// # Errors
 /// Returns an error if there is no job of this id or the store fails.
-pub async fn one(archive: &Archive, shell: Shell, id: &str) -> Result<String> {
+pub async fn job_page(archive: &Archive, shell: PageShell, id: &str) -> Result<String> {
     let job = archive.store.jobs().get(id).await?;
-    Ok(JobPage::of(shell, job).render()?)
+    Ok(JobPage::from_job(shell, job).render()?)
 }
 
 impl JobPage {
-    fn of(shell: Shell, job: Job) -> Self {
+    fn from_job(shell: PageShell, job: Job) -> Self {
         let result: Value = job
             .result
             .as_deref()
@@ -99,24 +99,27 @@ impl JobPage {
             ("Ended", job.finished_us),
         ];
         Self {
-            shell: shell.at("/jobs"),
+            shell: shell.at_place("/jobs"),
             progress: job.progress.clamp(0.0, 1.0),
             goes_on: !job.state.is_final(),
             may_retry: matches!(job.state, JobState::Failed | JobState::Cancelled),
             cancelling: job.cancel_requested && !job.state.is_final(),
             error: job.error.clone(),
-            times: times.into_iter().filter_map(|(what, at)| Some((what, date(at?)))).collect(),
+            times: times
+                .into_iter()
+                .filter_map(|(what, at)| Some((what, format_date(at?))))
+                .collect(),
             attempt: job.attempt,
             version: result["version"].as_i64(),
             report: result["report"].as_str().map(str::to_owned),
-            request: asked(&job.request),
-            row: JobRow::of(job),
+            request: format_request(&job.request),
+            row: JobRow::from_job(job),
         }
     }
 }
 
 /// Formats the stored request, without the hash of its key.
-fn asked(request: &str) -> String {
+fn format_request(request: &str) -> String {
     let mut asked: Value = serde_json::from_str(request).unwrap_or_default();
     if let Some(fields) = asked.as_object_mut() {
         fields.remove("key_sha256");

@@ -30,8 +30,8 @@ pub mod upload;
 pub mod version;
 pub mod zoo;
 
-pub use beginning::{beginning, from_content};
+pub use beginning::{from_content, page_beginning};
 pub use error::{PageError, Result};
-pub use form::Fields;
-pub use problem::problem;
-pub use shell::{Shell, SignedIn, TOKEN, policy};
+pub use form::FormFields;
+pub use problem::problem_page;
+pub use shell::{PageShell, PageUser, TOKEN_FIELD, security_policy};

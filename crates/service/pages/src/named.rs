@@ -1,8 +1,8 @@
 //! Resolution of version names: `ship`, `ship/number`, `ship/alias`.
 
 use sistership_jobs::Archive;
-use sistership_jobs::archive::document;
-use sistership_jobs::line::{CHAMPION, alias};
+use sistership_jobs::archive::version_document;
+use sistership_jobs::line::{CHAMPION, find_alias};
 use sistership_jobs::version::VersionDocument;
 use sistership_model::Law;
 use sistership_store::{StoreError, Version, VersionHead};
@@ -22,10 +22,10 @@ impl NamedVersion {
     /// # Errors
     /// Returns an error if the name refers to nothing, or if the archive fails.
     pub async fn find(archive: &Archive, field: &str, name: &str) -> Result<Self> {
-        let version = version(archive, field, name).await?;
-        let mut document = document(&version)?;
-        archive.attach(&mut document.model).await?;
-        let law = archive.law(&document.model.law, document.recipe.law_sha256()).await?;
+        let version = find_version(archive, field, name).await?;
+        let mut document = version_document(&version)?;
+        archive.attach_weights(&mut document.model).await?;
+        let law = archive.law_by_hash(&document.model.law, document.recipe.law_sha256()).await?;
         Ok(Self { head: version.head, document, law })
     }
 
@@ -35,15 +35,15 @@ impl NamedVersion {
     }
 }
 
-async fn version(archive: &Archive, field: &str, name: &str) -> Result<Version> {
+async fn find_version(archive: &Archive, field: &str, name: &str) -> Result<Version> {
     let nothing = || {
         let forms = "write a ship (its champion), ship/number or ship/alias";
-        PageError::invalid(field, format!("there is no model `{name}`; {forms}"))
+        PageError::invalid_field(field, format!("there is no model `{name}`; {forms}"))
     };
     let (ship, rest) = name.split_once('/').unwrap_or((name, CHAMPION));
     let number = match rest.parse() {
         Ok(number) => number,
-        Err(_) => alias(&archive.store, ship, rest).await?.ok_or_else(nothing)?.version_number,
+        Err(_) => find_alias(&archive.store, ship, rest).await?.ok_or_else(nothing)?.version_number,
     };
     match archive.store.versions().get(ship, number).await {
         Err(StoreError::NotFound { .. }) => Err(nothing()),

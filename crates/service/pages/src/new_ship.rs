@@ -4,8 +4,8 @@ use askama::Template;
 use serde_json::{Map, Value, json};
 
 use crate::error::{PageError, Result};
-use crate::form::Fields;
-use crate::shell::Shell;
+use crate::form::FormFields;
+use crate::shell::PageShell;
 
 /// Particulars in the form: name, label, and whether similarity and transfer need it.
 pub const PARTICULARS: [(&str, &str, bool); 14] = [
@@ -26,12 +26,12 @@ pub const PARTICULARS: [(&str, &str, bool); 14] = [
 ];
 
 /// Key of the single source.
-const SOURCE: &str = "typed-in";
+const SOURCE_KEY: &str = "typed-in";
 
 #[derive(Template)]
 #[template(path = "new_ship.html")]
 struct NewShipPage<'a> {
-    shell: &'a Shell,
+    shell: &'a PageShell,
     particulars: &'static [(&'static str, &'static str, bool)],
 }
 
@@ -39,7 +39,7 @@ struct NewShipPage<'a> {
 ///
 /// # Errors
 /// Returns an error if the page cannot be rendered.
-pub fn page(shell: &Shell) -> Result<String> {
+pub fn new_ship_page(shell: &PageShell) -> Result<String> {
     Ok(NewShipPage { shell, particulars: &PARTICULARS }.render()?)
 }
 
@@ -47,23 +47,25 @@ pub fn page(shell: &Shell) -> Result<String> {
 ///
 /// # Errors
 /// Returns an error that names a field which is missing or no number.
-pub fn document(form: &Fields) -> Result<Value> {
+pub fn vessel_document(form: &FormFields) -> Result<Value> {
     let text = |name: &str| {
-        let text = form.text(name).map(str::trim).filter(|text| !text.is_empty());
-        text.ok_or_else(|| PageError::invalid(name, "must be given".to_owned()))
+        let text = form.get_text(name).map(str::trim).filter(|text| !text.is_empty());
+        text.ok_or_else(|| PageError::invalid_field(name, "must be given".to_owned()))
     };
     let mut values = Map::new();
     // Optional particulars that are empty are left out of the document.
     for (name, _, needed) in PARTICULARS {
-        match form.text(name).map(str::trim).filter(|text| !text.is_empty()) {
-            None if needed => return Err(PageError::invalid(name, "must be given".to_owned())),
+        match form.get_text(name).map(str::trim).filter(|text| !text.is_empty()) {
+            None if needed => {
+                return Err(PageError::invalid_field(name, "must be given".to_owned()));
+            }
             None => {}
             Some(text) => {
                 // A decimal comma is accepted.
                 let value: Option<f64> = text.replace(',', ".").parse().ok();
-                let value = value
-                    .filter(|value| value.is_finite())
-                    .ok_or_else(|| PageError::invalid(name, format!("`{text}` is not a number")))?;
+                let value = value.filter(|value| value.is_finite()).ok_or_else(|| {
+                    PageError::invalid_field(name, format!("`{text}` is not a number"))
+                })?;
                 values.insert(name.to_owned(), json!(value));
             }
         }
@@ -73,8 +75,8 @@ pub fn document(form: &Fields) -> Result<Value> {
         "name": text("name")?,
         "title": text("title")?,
         "category": text("category")?,
-        "sources": { SOURCE: { "citation": text("citation")? } },
-        "particulars": { "source": SOURCE, "values": values },
+        "sources": { SOURCE_KEY: { "citation": text("citation")? } },
+        "particulars": { "source": SOURCE_KEY, "values": values },
     }))
 }
 
@@ -83,7 +85,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    fn fields(change: &[(&str, &str)]) -> Fields {
+    fn fields(change: &[(&str, &str)]) -> FormFields {
         let mut all = vec![
             ("name", "my-ship"),
             ("title", "My ship"),
@@ -100,12 +102,12 @@ mod tests {
             all.iter_mut().filter(|(known, _)| known == name).for_each(|pair| pair.1 = text);
         }
         let owned = |(name, text): (&str, &str)| (name.to_owned(), text.to_owned());
-        Fields::from(all.into_iter().map(owned).collect::<Vec<_>>())
+        FormFields::from(all.into_iter().map(owned).collect::<Vec<_>>())
     }
 
     #[test]
     fn a_form_becomes_a_document_that_reads() {
-        let document = document(&fields(&[])).unwrap();
+        let document = vessel_document(&fields(&[])).unwrap();
         let file: sistership_model::vessel::VesselFile =
             serde_json::from_value(document.clone()).unwrap();
         let vessel = sistership_model::Vessel::from_file("form", file).unwrap();
@@ -115,7 +117,8 @@ mod tests {
 
     #[test]
     fn a_field_that_is_missing_or_no_number_is_named() {
-        let wrong = |change: &[(&str, &str)]| document(&fields(change)).unwrap_err().to_string();
+        let wrong =
+            |change: &[(&str, &str)]| vessel_document(&fields(change)).unwrap_err().to_string();
         assert!(wrong(&[("lpp_m", "long")]).contains("lpp_m"));
         assert!(wrong(&[("beam_m", " ")]).contains("beam_m"));
         assert!(wrong(&[("citation", "")]).contains("citation"));

@@ -3,12 +3,12 @@
 use askama::Template;
 
 use crate::error::Result;
-use crate::shell::Shell;
+use crate::shell::PageShell;
 
 #[derive(Template)]
 #[template(path = "problem.html")]
 struct ProblemPage<'a> {
-    shell: Shell,
+    shell: PageShell,
     title: &'a str,
     detail: &'a str,
     faults: &'a [(String, String)],
@@ -19,11 +19,11 @@ struct ProblemPage<'a> {
 ///
 /// # Errors
 /// Returns an error if the page cannot be rendered.
-pub fn problem(
+pub fn problem_page(
     title: &str,
     detail: &str,
     faults: &[(String, String)],
     instance: &str,
 ) -> Result<String> {
-    Ok(ProblemPage { shell: Shell::default(), title, detail, faults, instance }.render()?)
+    Ok(ProblemPage { shell: PageShell::default(), title, detail, faults, instance }.render()?)
 }

@@ -3,7 +3,7 @@
 use serde_json::Value;
 use sistership_store::{Job, Trial};
 
-use crate::date::date;
+use crate::date::format_date;
 
 /// A job in a list.
 pub(crate) struct JobRow {
@@ -17,9 +17,10 @@ pub(crate) struct JobRow {
 }
 
 impl JobRow {
-    pub fn of(job: Job) -> Self {
+    pub fn from_job(job: Job) -> Self {
         let percent = (100.0 * job.progress.clamp(0.0, 1.0)).round() as u32;
-        let (state, created, outcome) = (job.state.as_str(), date(job.created_us), outcome(&job));
+        let (state, created, outcome) =
+            (job.state.as_str(), format_date(job.created_us), outcome_text(&job));
         // A result takes precedence over an error, and this over the last message.
         let message = outcome.or(job.error).unwrap_or(job.message);
         let (id, kind, ship) = (job.id, job.kind, job.ship.unwrap_or_default());
@@ -28,10 +29,10 @@ impl JobRow {
 }
 
 /// Returns the result of a completed job in words.
-fn outcome(job: &Job) -> Option<String> {
+fn outcome_text(job: &Job) -> Option<String> {
     let result: Value = serde_json::from_str(job.result.as_deref()?).ok()?;
     if let Some(verdict) = result["verdict"].as_str() {
-        return Some(found(verdict, &result));
+        return Some(diagnosis_text(verdict, &result));
     }
     let (version, alias) = (result["version"].as_i64()?, result["alias"].as_str()?);
     let from = result["from"].as_str().map_or(String::new(), |from| format!(", from {from}"));
@@ -39,7 +40,7 @@ fn outcome(job: &Job) -> Option<String> {
 }
 
 /// Returns the result of a diagnosis in words.
-fn found(verdict: &str, result: &Value) -> String {
+fn diagnosis_text(verdict: &str, result: &Value) -> String {
     let diagnosed = result["diagnosed"].as_str().unwrap_or_default();
     let effects: Vec<&str> =
         result["effects"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
@@ -65,7 +66,7 @@ pub(crate) struct TrialRow {
 }
 
 impl TrialRow {
-    pub fn of(trial: Trial) -> Self {
+    pub fn from_trial(trial: Trial) -> Self {
         let warnings = serde_json::from_str::<Vec<Value>>(&trial.warnings)
             .map_or(0, |warnings| warnings.len());
         Self {
@@ -75,7 +76,7 @@ impl TrialRow {
             rows: trial.sample_rows,
             duration: format!("{:.0} s", trial.duration_s),
             warnings,
-            created: date(trial.created_us),
+            created: format_date(trial.created_us),
         }
     }
 }

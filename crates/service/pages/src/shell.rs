@@ -13,7 +13,7 @@ pub(crate) const STYLE: &str = include_str!("../templates/style.css");
 pub(crate) const SCRIPT: &str = include_str!("../templates/script.js");
 
 /// Name of the form field with the token.
-pub const TOKEN: &str = "form_token";
+pub const TOKEN_FIELD: &str = "form_token";
 
 /// Entries of the navigation.
 const PLACES: [(&str, &str); 8] = [
@@ -27,22 +27,22 @@ const PLACES: [(&str, &str); 8] = [
     ("/audit", "Audit"),
 ];
 /// Entries for admins.
-const ADMINS: [&str; 2] = ["/users", "/audit"];
+const ADMIN_PLACES: [&str; 2] = ["/users", "/audit"];
 
 /// Frame around the content of a page.
 #[derive(Debug, Clone, Default)]
-pub struct Shell {
+pub struct PageShell {
     /// Entry of the navigation; empty if the page belongs to none.
     pub(crate) place: &'static str,
     /// Token of the forms, which no other web site knows.
     pub(crate) token: String,
     /// User of the page, if one is identified.
-    pub(crate) signed_in: Option<SignedIn>,
+    pub(crate) signed_in: Option<PageUser>,
 }
 
 /// User of a page.
 #[derive(Debug, Clone)]
-pub struct SignedIn {
+pub struct PageUser {
     /// Name in the audit.
     pub name: String,
     /// True if the user manages rights and reads the audit.
@@ -51,7 +51,7 @@ pub struct SignedIn {
     pub by_session: bool,
 }
 
-impl Shell {
+impl PageShell {
     /// Returns the frame of pages whose forms carry this token.
     pub fn new(token: impl Into<String>) -> Self {
         Self { place: "", token: token.into(), signed_in: None }
@@ -59,7 +59,7 @@ impl Shell {
 
     /// Returns the frame with a user.
     #[must_use]
-    pub fn with(self, signed_in: Option<SignedIn>) -> Self {
+    pub fn with_user(self, signed_in: Option<PageUser>) -> Self {
         Self { signed_in, ..self }
     }
 
@@ -72,7 +72,7 @@ impl Shell {
     pub(crate) fn places(&self) -> Vec<(&'static str, &'static str)> {
         // Without an identified user, on a loopback interface, all entries are shown.
         let admin = self.signed_in.as_ref().is_none_or(|who| who.is_admin);
-        PLACES.into_iter().filter(|(place, _)| admin || !ADMINS.contains(place)).collect()
+        PLACES.into_iter().filter(|(place, _)| admin || !ADMIN_PLACES.contains(place)).collect()
     }
 
     /// Returns true if the page belongs to this entry.
@@ -81,14 +81,14 @@ impl Shell {
     }
 
     /// Returns the frame of a page that belongs to an entry of the navigation.
-    pub(crate) fn at(self, place: &'static str) -> Self {
+    pub(crate) fn at_place(self, place: &'static str) -> Self {
         Self { place, ..self }
     }
 }
 
 /// Content Security Policy of pages: their own style and script by their hashes (Content Security
 /// Policy Level 3, W3C), requests and forms to this server, and nothing else.
-pub fn policy() -> &'static str {
+pub fn security_policy() -> &'static str {
     static POLICY: LazyLock<String> = LazyLock::new(|| {
         let hash = |text: &str| BASE64_STANDARD.encode(Sha256::digest(text.as_bytes()));
         format!(

@@ -1,12 +1,12 @@
 //! Sparkline of a champion's unexplained force in its trials over time, as small as a word.
 
-use sistership_report::plots::{Plot, Shape, path};
+use sistership_report::plots::{Shape, SvgPlot, path_data};
 
 const SIZE: (f64, f64) = (110.0, 26.0);
 
 /// Plots residuals in the order of the trials; marked ones have a dot. Returns `None` for fewer
 /// than two, or if all are zero.
-pub fn sparkline(all: impl Iterator<Item = (f64, bool)>) -> Option<Plot> {
+pub fn sparkline(all: impl Iterator<Item = (f64, bool)>) -> Option<SvgPlot> {
     let all: Vec<(f64, bool)> = all.collect();
     // Scaled to the largest value, so that the line always fills the height.
     let most = all.iter().map(|(left, _)| *left).fold(0.0, f64::max);
@@ -18,13 +18,13 @@ pub fn sparkline(all: impl Iterator<Item = (f64, bool)>) -> Option<Plot> {
         (4.0 + across * (SIZE.0 - 8.0), SIZE.1 - 4.0 - left / most * (SIZE.1 - 8.0))
     };
     let points: Vec<(f64, f64)> = all.iter().enumerate().map(place).collect();
-    let d = path(&points, |_, _| false);
+    let d = path_data(&points, |_, _| false);
     let marked = points.iter().zip(&all).filter(|(_, (_, marked))| *marked);
     let dots = marked.map(|(at, _)| Shape::Dot { at: *at, radius: 1.2, class: "dot b" });
     let shapes = std::iter::once(Shape::Path { d, class: "line a" }).chain(dots).collect();
     let last = 100.0 * all.last().map_or(0.0, |(left, _)| *left);
     let label = format!("Left of {} trials over time, {last:.0} % of the last", all.len());
-    Some(Plot { width: SIZE.0, height: SIZE.1, label, shapes })
+    Some(SvgPlot { width: SIZE.0, height: SIZE.1, label, shapes })
 }
 
 #[cfg(test)]

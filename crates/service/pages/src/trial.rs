@@ -3,37 +3,37 @@
 use askama::Template;
 use serde::Deserialize;
 use sistership_jobs::Archive;
-use sistership_jobs::archive::document;
-use sistership_jobs::line::{CHAMPION, alias};
+use sistership_jobs::archive::version_document;
+use sistership_jobs::line::{CHAMPION, find_alias};
 use sistership_model::trial::{Channel, Finding, Trial as Samples};
 use sistership_model::version::RecipeTrial;
 use sistership_model::{Law, Model};
-use sistership_report::numbers::significant;
-use sistership_report::plots::Hull;
+use sistership_report::numbers::format_significant;
+use sistership_report::plots::HullOutline;
 use sistership_simulation::Ship;
 use sistership_simulation::error::SquaredError;
-use sistership_simulation::recorded::{ReplaySettings, replay};
-use sistership_store::{Page, Trial};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
+use sistership_store::{PageRequest, Trial};
 
-use crate::date::date;
+use crate::date::format_date;
 use crate::error::Result;
-use crate::picture::svg;
-use crate::plot::{LINES, Track, channels, ground, legend};
-use crate::shell::Shell;
+use crate::picture::render_svg;
+use crate::plot::{LINES, PlotTrack, legend_entries, plot_channels, plot_ground};
+use crate::shell::PageShell;
 
 /// Number of the ship's versions that are searched.
-const VERSIONS: i64 = 30;
+const SEARCHED_VERSIONS: i64 = 30;
 
 /// Inputs of the page.
-pub struct Gathered {
-    shell: Shell,
+pub struct TrialPageInputs {
+    shell: PageShell,
     trial: Trial,
     samples: Samples,
-    champion: Option<Champion>,
+    champion: Option<ChampionModel>,
     versions: Vec<(i64, String)>,
 }
 
-struct Champion {
+struct ChampionModel {
     number: i64,
     model: Model,
     law: Law,
@@ -42,8 +42,8 @@ struct Champion {
 #[derive(Template)]
 #[template(path = "trial.html")]
 struct TrialPage<'a> {
-    of: &'a Gathered,
-    shell: &'a Shell,
+    of: &'a TrialPageInputs,
+    shell: &'a PageShell,
     created: String,
     findings: Vec<Finding>,
     legend: Vec<(&'static str, String)>,
@@ -56,12 +56,12 @@ struct TrialPage<'a> {
 
 /// The part of a version's document that names its trials.
 #[derive(Deserialize)]
-struct MadeOf {
-    recipe: Recipe,
+struct VersionTrials {
+    recipe: RecipeTrials,
 }
 
 #[derive(Deserialize)]
-struct Recipe {
+struct RecipeTrials {
     #[serde(default)]
     trials: Vec<RecipeTrial>,
 }
@@ -70,37 +70,42 @@ struct Recipe {
 ///
 /// # Errors
 /// Returns an error if there is no such trial, or if the archive does not give its samples.
-pub async fn gather(archive: &Archive, shell: Shell, id: &str) -> Result<Gathered> {
+pub async fn gather_inputs(
+    archive: &Archive,
+    shell: PageShell,
+    id: &str,
+) -> Result<TrialPageInputs> {
     let trial = archive.store.trials().get(id).await?;
     // The key of the object is the hash by which recipes name the samples.
     let named = RecipeTrial { name: trial.name.clone(), sha256: trial.object_key.clone() };
-    let samples = archive.trials(&[named]).await?.pop().unwrap_or_default();
-    Ok(Gathered {
-        champion: champion(archive, &trial.ship).await?,
-        versions: made_of(archive, &trial).await?,
-        shell: shell.at("/"),
+    let samples = archive.read_trials(&[named]).await?.pop().unwrap_or_default();
+    Ok(TrialPageInputs {
+        champion: load_champion(archive, &trial.ship).await?,
+        versions: fitted_versions(archive, &trial).await?,
+        shell: shell.at_place("/"),
         trial,
         samples,
     })
 }
 
-async fn champion(archive: &Archive, ship: &str) -> Result<Option<Champion>> {
-    let Some(alias) = alias(&archive.store, ship, CHAMPION).await? else { return Ok(None) };
+async fn load_champion(archive: &Archive, ship: &str) -> Result<Option<ChampionModel>> {
+    let Some(alias) = find_alias(&archive.store, ship, CHAMPION).await? else { return Ok(None) };
     let number = alias.version_number;
-    let mut version = document(&archive.store.versions().get(ship, number).await?)?;
-    archive.attach(&mut version.model).await?;
-    let law = archive.law(&version.model.law, version.recipe.law_sha256()).await?;
-    Ok(Some(Champion { number, model: version.model, law }))
+    let mut version = version_document(&archive.store.versions().get(ship, number).await?)?;
+    archive.attach_weights(&mut version.model).await?;
+    let law = archive.law_by_hash(&version.model.law, version.recipe.law_sha256()).await?;
+    Ok(Some(ChampionModel { number, model: version.model, law }))
 }
 
 /// Returns number and method of the ship's versions that were fitted to a trial.
-async fn made_of(archive: &Archive, trial: &Trial) -> Result<Vec<(i64, String)>> {
+async fn fitted_versions(archive: &Archive, trial: &Trial) -> Result<Vec<(i64, String)>> {
     let mut found = Vec::new();
     let versions = archive.store.versions();
-    for head in versions.list(&trial.ship, &Page::first(VERSIONS)).await?.items {
+    for head in versions.list(&trial.ship, &PageRequest::first_page(SEARCHED_VERSIONS)).await?.items
+    {
         let text = versions.get(&trial.ship, head.number).await?.document;
         // Documents that cannot be parsed are skipped: the list is for information only.
-        let made: Option<MadeOf> = serde_json::from_str(&text).ok();
+        let made: Option<VersionTrials> = serde_json::from_str(&text).ok();
         if made.is_some_and(|made| made.recipe.trials.iter().any(|one| one.sha256 == trial.sha256))
         {
             found.push((head.number, head.method));
@@ -109,17 +114,17 @@ async fn made_of(archive: &Archive, trial: &Trial) -> Result<Vec<(i64, String)>>
     Ok(found)
 }
 
-impl Gathered {
+impl TrialPageInputs {
     /// Returns the page, for which the champion is simulated.
     ///
     /// # Errors
     /// Returns an error if the page cannot be rendered.
-    pub fn html(&self) -> Result<String> {
-        let mut tracks = vec![Track::measured(&self.samples)];
+    pub fn render_html(&self) -> Result<String> {
+        let mut tracks = vec![PlotTrack::from_trial(&self.samples)];
         let (mut errors, mut said) = (Vec::new(), None);
         if let Some(champion) = &self.champion {
             // A champion that cannot be simulated leaves the measured track alone, with the reason.
-            match champion.sailed(&self.samples) {
+            match champion.simulate_trial(&self.samples) {
                 Ok((track, found)) => {
                     tracks.push(track);
                     errors = found;
@@ -127,45 +132,54 @@ impl Gathered {
                 Err(reason) => said = Some(reason),
             }
         }
-        let hull = self.champion.as_ref().and_then(|known| Hull::of(&known.model.particulars));
+        let hull = self
+            .champion
+            .as_ref()
+            .and_then(|known| HullOutline::from_particulars(&known.model.particulars));
         let label = format!("Track of {}", self.trial.name);
         let page = TrialPage {
             of: self,
             shell: &self.shell,
-            created: date(self.trial.created_us),
+            created: format_date(self.trial.created_us),
             findings: serde_json::from_str(&self.trial.warnings).unwrap_or_default(),
-            legend: legend(&tracks),
-            track: ground(&tracks, hull, &label).as_ref().map(svg).transpose()?,
-            series: svg(&channels(&tracks, &format!("Channels of {} over time", self.trial.name)))?,
+            legend: legend_entries(&tracks),
+            track: plot_ground(&tracks, hull, &label).as_ref().map(render_svg).transpose()?,
+            series: render_svg(&plot_channels(
+                &tracks,
+                &format!("Channels of {} over time", self.trial.name),
+            ))?,
             errors,
             said,
-            manifest: pretty(&self.trial.manifest),
+            manifest: format_json(&self.trial.manifest),
         };
         Ok(page.render()?)
     }
 }
 
-fn pretty(json: &str) -> String {
+fn format_json(json: &str) -> String {
     let value: serde_json::Value = serde_json::from_str(json).unwrap_or_default();
     serde_json::to_string_pretty(&value).unwrap_or_default()
 }
 
-impl Champion {
+impl ChampionModel {
     /// Simulates the rudder and revolutions of a trial; returns the track and its errors.
     ///
     /// # Errors
     /// Returns the reason, in words, for which the champion cannot be simulated.
-    fn sailed(&self, trial: &Samples) -> Result<(Track, Vec<(String, String)>), String> {
+    fn simulate_trial(
+        &self,
+        trial: &Samples,
+    ) -> Result<(PlotTrack, Vec<(String, String)>), String> {
         let mut ship = Ship::new(&self.model, &self.law).map_err(|error| error.to_string())?;
         // The trial may be faster than the approach speed of the model.
         let speeds = trial.channel(Channel::U).into_iter().flatten();
         ship.set_envelope_speed(speeds.fold(0.0, |most: f64, speed| most.max(speed.abs())));
-        let run =
-            replay(&ship, trial, &ReplaySettings::default()).map_err(|error| error.to_string())?;
-        let errors = SquaredError::of(trial, &run).rmse();
+        let run = replay_trial(&ship, trial, &ReplaySettings::default())
+            .map_err(|error| error.to_string())?;
+        let errors = SquaredError::from_trial(trial, &run).rmse_by_channel();
         let errors =
-            errors.into_iter().map(|(name, value)| (name, significant(value, 3))).collect();
+            errors.into_iter().map(|(name, value)| (name, format_significant(value, 3))).collect();
         let name = format!("champion, version {}", self.number);
-        Ok((Track::simulated(LINES[0], name, &run.track, run.has_roll), errors))
+        Ok((PlotTrack::from_simulation(LINES[0], name, &run.track, run.has_roll), errors))
     }
 }

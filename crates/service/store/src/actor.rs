@@ -39,7 +39,7 @@ impl Actor {
 
     /// Runs a future in the name of this author. A task-local does not follow `tokio::spawn`: tasks
     /// that the work spawns must be wrapped again.
-    pub async fn acting<T>(self, work: impl Future<Output = T>) -> T {
+    pub async fn run_scoped<T>(self, work: impl Future<Output = T>) -> T {
         ACTING.scope(self, work).await
     }
 
@@ -58,9 +58,9 @@ mod tests {
     async fn a_task_works_for_whoever_is_named() {
         assert!(Actor::current().is_program());
         let ann = Actor::new("ann", "::1");
-        let seen = ann.clone().acting(async { Actor::current() }).await;
+        let seen = ann.clone().run_scoped(async { Actor::current() }).await;
         assert_eq!(seen, ann);
-        let inner = Actor::command_line().acting(async { Actor::current() });
-        assert!(ann.acting(inner).await.is_program());
+        let inner = Actor::command_line().run_scoped(async { Actor::current() });
+        assert!(ann.run_scoped(inner).await.is_program());
     }
 }

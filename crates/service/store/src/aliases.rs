@@ -4,9 +4,9 @@ use serde_json::{Value, json};
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
-use crate::page::{List, Page};
+use crate::page::{ListPage, PageRequest};
 use crate::record::record;
 use crate::search_index;
 use crate::settings;
@@ -16,7 +16,7 @@ use crate::version;
 use crate::webhooks;
 
 /// The alias whose moves are reported to webhooks.
-const CHAMPION: &str = "champion";
+const CHAMPION_ALIAS: &str = "champion";
 
 statements! {
     // The row of the model is locked, so that moves within one model are serial and the history has
@@ -86,7 +86,7 @@ record! {
 
 /// Precondition on the present revision of an alias that is to move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Expect {
+pub enum ExpectedRevision {
     /// No condition.
     Any,
     /// The alias does not exist yet.
@@ -95,8 +95,8 @@ pub enum Expect {
     Revision(i64),
 }
 
-impl Expect {
-    fn holds(self, current: Option<i64>) -> bool {
+impl ExpectedRevision {
+    fn is_fulfilled(self, current: Option<i64>) -> bool {
         match self {
             Self::Any => true,
             Self::Absent => current.is_none(),
@@ -111,7 +111,7 @@ pub struct AliasMove {
     /// The alias.
     pub alias: String,
     /// Precondition of the move (compare-and-swap).
-    pub expect: Expect,
+    pub expect: ExpectedRevision,
     /// Reason of the move, kept in the history.
     pub reason: String,
     /// Author of the move, kept in the history.
@@ -120,16 +120,16 @@ pub struct AliasMove {
 
 /// Repository of aliases.
 #[derive(Debug, Clone, Copy)]
-pub struct Aliases<'a>(pub(crate) &'a Store);
+pub struct AliasRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of aliases and their history.
-    pub fn aliases(&self) -> Aliases<'_> {
-        Aliases(self)
+    pub fn aliases(&self) -> AliasRepository<'_> {
+        AliasRepository(self)
     }
 }
 
-impl Aliases<'_> {
+impl AliasRepository<'_> {
     /// Moves an alias of a model to the version number `to`.
     ///
     /// # Errors
@@ -137,76 +137,84 @@ impl Aliases<'_> {
     /// exist.
     pub async fn move_to(&self, model: &str, to: i64, change: &AliasMove) -> Result<Alias> {
         let mut tx = self.0.begin().await?;
-        let alias = shift(self.0, &mut tx, model, to, change).await?;
+        let alias = move_alias(self.0, &mut tx, model, to, change).await?;
         tx.commit().await?;
         Ok(alias)
     }
 
     /// Returns an alias of a model.
     pub async fn get(&self, model: &str, alias: &str) -> Result<Alias> {
-        let found = self.0.database().optional(GET, args![model: model, alias: alias]).await?;
-        found.ok_or_else(|| StoreError::missing("alias", format!("{model}/{alias}")))
+        let found =
+            self.0.database().fetch_optional(GET, args![model: model, alias: alias]).await?;
+        found.ok_or_else(|| StoreError::not_found("alias", format!("{model}/{alias}")))
     }
 
     /// Lists the aliases of a model, ordered by name.
-    pub async fn list(&self, model: &str, page: &Page) -> Result<List<Alias>> {
-        let values = args![model: model, after: &page.after, limit: page.fetch()?];
-        let aliases = self.0.database().all(LIST, values).await?;
-        Ok(page.of(aliases, |alias: &Alias| alias.alias.clone()))
+    pub async fn list(&self, model: &str, page: &PageRequest) -> Result<ListPage<Alias>> {
+        let values = args![model: model, after: &page.after, limit: page.fetch_limit()?];
+        let aliases = self.0.database().fetch_all(LIST, values).await?;
+        Ok(page.build_page(aliases, |alias: &Alias| alias.alias.clone()))
     }
 
     /// Lists the moves of an alias, the latest first; the cursor is the revision.
-    pub async fn history(
+    pub async fn list_history(
         &self,
         model: &str,
         alias: &str,
-        page: &Page<i64>,
-    ) -> Result<List<AliasChange, i64>> {
-        let values = args![model: model, alias: alias, after: page.after, limit: page.fetch()?];
-        let changes = self.0.database().all(HISTORY, values).await?;
-        Ok(page.of(changes, |change: &AliasChange| change.revision))
+        page: &PageRequest<i64>,
+    ) -> Result<ListPage<AliasChange, i64>> {
+        let values =
+            args![model: model, alias: alias, after: page.after, limit: page.fetch_limit()?];
+        let changes = self.0.database().fetch_all(HISTORY, values).await?;
+        Ok(page.build_page(changes, |change: &AliasChange| change.revision))
     }
 }
 
 /// Moves an alias within a transaction.
-pub(crate) async fn shift(
+pub(crate) async fn move_alias(
     store: &Store,
-    tx: &mut Transaction,
+    tx: &mut AuditedTransaction,
     model: &str,
     to: i64,
     change: &AliasMove,
 ) -> Result<Alias> {
-    checks::name("alias", &change.alias)?;
+    checks::check_name("alias", &change.alias)?;
     // The lock comes before the read of the present revision: between both no other move may pass.
-    lock(tx, model).await?;
+    lock_model(tx, model).await?;
     version::check_exists(tx, model, to).await?;
-    let before: Option<Alias> = tx.optional(GET, args![model: model, alias: &change.alias]).await?;
+    let before: Option<Alias> =
+        tx.fetch_optional(GET, args![model: model, alias: &change.alias]).await?;
     let current = before.as_ref().map(|alias| alias.revision);
-    if !change.expect.holds(current) {
-        return Err(StoreError::stale("alias", format!("{model}/{}", change.alias), current));
+    if !change.expect.is_fulfilled(current) {
+        return Err(StoreError::precondition_failed(
+            "alias",
+            format!("{model}/{}", change.alias),
+            current,
+        ));
     }
     settings::check_promotion(tx, model, &change.alias, to).await?;
-    let after = tx.one(PUT, args![model: model, alias: &change.alias, version_number: to]).await?;
+    let after =
+        tx.fetch_one(PUT, args![model: model, alias: &change.alias, version_number: to]).await?;
     let from = before.as_ref().map(|alias| alias.version_number);
-    remember(store, tx, before, &after, change).await?;
-    search_index::mark_moved(store, tx, model, &change.alias).await?;
-    if change.alias == CHAMPION {
+    record_move(store, tx, before, &after, change).await?;
+    search_index::queue_moved(store, tx, model, &change.alias).await?;
+    if change.alias == CHAMPION_ALIAS {
         let about =
             json!({ "from": from, "version": to, "reason": change.reason, "actor": change.actor });
         // Within the same transaction: a move that is undone is never reported.
-        webhooks::tell(store, tx, webhooks::CHAMPION_MOVED, model, about).await?;
+        webhooks::notify(store, tx, webhooks::CHAMPION_MOVED, model, about).await?;
     }
     Ok(after)
 }
 
-async fn lock(tx: &mut Transaction, model: &str) -> Result<()> {
-    let locked: Option<LockedModel> = tx.optional(LOCK, args![model: model]).await?;
-    locked.map(drop).ok_or_else(|| StoreError::missing("model", model))
+async fn lock_model(tx: &mut AuditedTransaction, model: &str) -> Result<()> {
+    let locked: Option<LockedModel> = tx.fetch_optional(LOCK, args![model: model]).await?;
+    locked.map(drop).ok_or_else(|| StoreError::not_found("model", model))
 }
 
-async fn remember(
+async fn record_move(
     store: &Store,
-    tx: &mut Transaction,
+    tx: &mut AuditedTransaction,
     before: Option<Alias>,
     after: &Alias,
     change: &AliasMove,
@@ -216,7 +224,13 @@ async fn remember(
     let mut now = place(after);
     now["reason"] = Value::from(change.reason.as_str());
     let subject = format!("alias:{}/{}", after.model, after.alias);
-    tx.note(store.now_us(), "alias.move", subject, before.as_ref().map(place), Some(now));
+    tx.record_audit_event(
+        store.now_us(),
+        "alias.move",
+        subject,
+        before.as_ref().map(place),
+        Some(now),
+    );
     let from = before.map(|alias| alias.version_number);
     let id = store.new_id();
     let values = args![id: &id, model: &after.model, alias: &after.alias, from_number: from,

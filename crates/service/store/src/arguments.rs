@@ -5,7 +5,7 @@ use crate::checks;
 use crate::error::Result;
 
 /// Arguments of a statement, the values of `$1`, `$2`, ... in order.
-pub(crate) type Args<'a> = &'a [(&'static str, Arg<'a>)];
+pub(crate) type StatementArgs<'a> = &'a [(&'static str, Arg<'a>)];
 
 /// One argument of a statement; `None` is SQL's NULL.
 #[derive(Clone, Copy)]
@@ -42,10 +42,10 @@ pub(crate) use bind;
 
 /// Checks all arguments of a statement: no NUL character, no NaN or infinity, no text beyond the
 /// limit of length.
-pub(crate) fn check(args: Args<'_>) -> Result<()> {
+pub(crate) fn check_args(args: StatementArgs<'_>) -> Result<()> {
     args.iter().try_for_each(|(field, arg)| match arg {
-        Arg::Text(Some(value)) => checks::text(field, value),
-        Arg::Real(Some(value)) => checks::finite(field, *value),
+        Arg::Text(Some(value)) => checks::check_text(field, value),
+        Arg::Real(Some(value)) => checks::check_finite(field, *value),
         Arg::Text(None) | Arg::Integer(_) | Arg::Real(None) => Ok(()),
     })
 }

@@ -5,13 +5,13 @@ use crate::arguments::args;
 use crate::chain::AuditHead;
 use crate::entry::AuditEntry;
 use crate::error::Result;
-use crate::integrity::Fault;
-use crate::page::{List, Page};
+use crate::integrity::IntegrityFault;
+use crate::page::{ListPage, PageRequest};
 use crate::statements::{same, statements};
 use crate::store::Store;
 
 /// Number of entries that are read and checked at a time.
-const ROWS: i64 = 1000;
+const BATCH_SIZE: i64 = 1000;
 
 /// The columns of an entry.
 macro_rules! entries {
@@ -50,78 +50,86 @@ pub enum AuditFilter<'a> {
 
 /// Repository of audit entries.
 #[derive(Debug, Clone, Copy)]
-pub struct Audit<'a>(pub(crate) &'a Store);
+pub struct AuditLog<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the audit log.
-    pub fn audit(&self) -> Audit<'_> {
-        Audit(self)
+    pub fn audit(&self) -> AuditLog<'_> {
+        AuditLog(self)
     }
 }
 
-impl Audit<'_> {
+impl AuditLog<'_> {
     /// Lists entries, the latest first; the cursor is the number of the entry.
     pub async fn list(
         &self,
         filter: AuditFilter<'_>,
-        page: &Page<i64>,
-    ) -> Result<List<AuditEntry, i64>> {
-        let (database, limit) = (self.0.database(), page.fetch()?);
+        page: &PageRequest<i64>,
+    ) -> Result<ListPage<AuditEntry, i64>> {
+        let (database, limit) = (self.0.database(), page.fetch_limit()?);
         // A statement for each filter, so that each uses an index.
         let of = |statement, whom| async move {
-            database.all(statement, args![after: page.after, limit: limit, whom: whom]).await
+            database.fetch_all(statement, args![after: page.after, limit: limit, whom: whom]).await
         };
         let entries = match filter {
-            AuditFilter::All => database.all(LIST, args![after: page.after, limit: limit]).await?,
+            AuditFilter::All => {
+                database.fetch_all(LIST, args![after: page.after, limit: limit]).await?
+            }
             AuditFilter::Actor(actor) => of(LIST_ACTOR, actor).await?,
             AuditFilter::Subject(subject) => of(LIST_SUBJECT, subject).await?,
         };
-        Ok(page.of(entries, |entry: &AuditEntry| entry.number))
+        Ok(page.build_page(entries, |entry: &AuditEntry| entry.number))
     }
 
     /// Returns number and hash of the last entry, as they are stored in a row of their own. A copy
     /// of both that is kept elsewhere shows later if entries up to that number were replaced.
-    pub async fn head(&self) -> Result<AuditHead> {
-        let head = self.0.database().optional(HEAD, &[]).await?;
+    pub async fn chain_head(&self) -> Result<AuditHead> {
+        let head = self.0.database().fetch_optional(HEAD, &[]).await?;
         Ok(head.unwrap_or(AuditHead { number: 0, sha256: String::new() }))
     }
 
     /// Verifies the hash chain: finds entries that were changed, removed, inserted, or cut off at
     /// the end. Entries may be added meanwhile. Returns also the number of entries.
-    pub async fn faults(&self) -> Result<(i64, Vec<Fault>)> {
-        let head = self.head().await?;
+    pub async fn find_faults(&self) -> Result<(i64, Vec<IntegrityFault>)> {
+        let head = self.chain_head().await?;
         let (mut faults, mut last) = (Vec::new(), AuditHead { number: 0, sha256: String::new() });
         loop {
             // The head was read first: entries that are added while this runs lie beyond it and are
             // not judged.
-            let values = args![after: last.number, until: head.number, limit: ROWS];
-            let entries: Vec<AuditEntry> = self.0.database().all(FOLLOWING, values).await?;
+            let values = args![after: last.number, until: head.number, limit: BATCH_SIZE];
+            let entries: Vec<AuditEntry> = self.0.database().fetch_all(FOLLOWING, values).await?;
             if entries.is_empty() {
                 break;
             }
             for entry in entries {
-                faults.extend(wrong(&last, &entry).map(|message| fault(entry.number, message)));
+                faults.extend(
+                    entry_fault(&last, &entry).map(|message| chain_fault(entry.number, message)),
+                );
                 last = AuditHead { number: entry.number, sha256: entry.sha256 };
             }
         }
-        faults.extend(self.end(&head, &last).await?);
+        faults.extend(self.check_end(&head, &last).await?);
         Ok((head.number, faults))
     }
 
     /// Checks that the list ends with the entry that the head names.
-    async fn end(&self, head: &AuditHead, last: &AuditHead) -> Result<Option<Fault>> {
+    async fn check_end(
+        &self,
+        head: &AuditHead,
+        last: &AuditHead,
+    ) -> Result<Option<IntegrityFault>> {
         if last != head {
             let message =
                 format!("the last entry is number {}, not this one as noted", last.number);
-            return Ok(Some(fault(head.number, message)));
+            return Ok(Some(chain_fault(head.number, message)));
         }
         let beyond: Option<AuditEntry> =
-            self.0.database().optional(BEYOND, args![number: head.number]).await?;
+            self.0.database().fetch_optional(BEYOND, args![number: head.number]).await?;
         match beyond {
             // The head has advanced, so the entry was added since the head was read.
-            Some(_) if self.head().await?.number > head.number => Ok(None),
+            Some(_) if self.chain_head().await?.number > head.number => Ok(None),
             Some(entry) => {
-                Ok(Some(fault(entry.number, "comes after the last entry as noted".into())))
+                Ok(Some(chain_fault(entry.number, "comes after the last entry as noted".into())))
             }
             None => Ok(None),
         }
@@ -130,7 +138,7 @@ impl Audit<'_> {
 
 /// Returns the fault of an entry that follows `last`, if there is one: its number, the hash of its
 /// predecessor, or its own hash.
-fn wrong(last: &AuditHead, entry: &AuditEntry) -> Option<String> {
+fn entry_fault(last: &AuditHead, entry: &AuditEntry) -> Option<String> {
     let expected = last.number + 1;
     if entry.number != expected {
         return Some(format!("comes after number {}: {expected} is missing", last.number));
@@ -138,11 +146,15 @@ fn wrong(last: &AuditHead, entry: &AuditEntry) -> Option<String> {
     if entry.previous_sha256 != last.sha256 {
         return Some("does not hold the hash of the entry before it".to_owned());
     }
-    (entry.hash() != entry.sha256).then(|| {
-        format!("what it says has the hash {}, not {} as entered", entry.hash(), entry.sha256)
+    (entry.content_hash() != entry.sha256).then(|| {
+        format!(
+            "what it says has the hash {}, not {} as entered",
+            entry.content_hash(),
+            entry.sha256
+        )
     })
 }
 
-fn fault(number: i64, message: String) -> Fault {
-    Fault::new("audit-chain", format!("audit entry {number}"), message)
+fn chain_fault(number: i64, message: String) -> IntegrityFault {
+    IntegrityFault::new("audit-chain", format!("audit entry {number}"), message)
 }

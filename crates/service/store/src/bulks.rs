@@ -6,11 +6,11 @@ use serde_json::json;
 use crate::aliases::AliasMove;
 use crate::arguments::{Arg, args};
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::job::{Job, JobState, NewJob, job};
 use crate::jobs;
-use crate::page::{List, Page};
+use crate::page::{ListPage, PageRequest};
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
@@ -60,7 +60,7 @@ statements! {
 
 record! {
     /// A bulk refinement of a family.
-    pub struct Bulk {
+    pub struct FamilyRefinement {
         /// Its id.
         pub id: String,
         /// The family.
@@ -136,16 +136,16 @@ pub struct NewOutcome {
 
 /// Repository of bulk refinements.
 #[derive(Debug, Clone, Copy)]
-pub struct Bulks<'a>(pub(crate) &'a Store);
+pub struct BulkRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of bulk refinements.
-    pub fn bulks(&self) -> Bulks<'_> {
-        Bulks(self)
+    pub fn bulks(&self) -> BulkRepository<'_> {
+        BulkRepository(self)
     }
 }
 
-impl Bulks<'_> {
+impl BulkRepository<'_> {
     /// Queues a bulk refinement with its chunks, all or nothing. `chunk` writes the request of a
     /// chunk from the id of the bulk refinement and the ships of the chunk.
     pub async fn create(
@@ -155,60 +155,70 @@ impl Bulks<'_> {
         kind: &str,
         chunks: &[Vec<String>],
         chunk: impl Fn(&str, &[String]) -> String,
-    ) -> Result<Bulk> {
-        checks::json("request", request)?;
+    ) -> Result<FamilyRefinement> {
+        checks::check_json("request", request)?;
         let id = self.0.new_id();
         let ships = i64::try_from(chunks.iter().map(Vec::len).sum::<usize>()).unwrap_or(i64::MAX);
         let mut tx = self.0.begin().await?;
         let values = args![id: &id, family: family, request: request, ships: ships,
             created_us: self.0.now_us()];
-        let bulk: Bulk = tx.one(INSERT, values).await?;
+        let bulk: FamilyRefinement = tx.fetch_one(INSERT, values).await?;
         for (number, ships) in (1..).zip(chunks) {
             let new = NewJob { kind: kind.to_owned(), ship: None, request: chunk(&id, ships) };
-            let job = jobs::insert(self.0, &mut tx, &new).await?;
+            let job = jobs::insert_job(self.0, &mut tx, &new).await?;
             tx.execute(CHUNK, args![bulk: &id, number: number, job: &job.id]).await?;
         }
         let after = json!({ "family": family, "ships": bulk.ships });
-        tx.note(self.0.now_us(), "bulk-refinement.create", subject(&id), None, Some(after));
+        tx.record_audit_event(
+            self.0.now_us(),
+            "bulk-refinement.create",
+            audit_subject(&id),
+            None,
+            Some(after),
+        );
         tx.commit().await?;
         Ok(bulk)
     }
 
     /// A refinement.
-    pub async fn get(&self, id: &str) -> Result<Bulk> {
-        let bulk = self.0.database().optional(GET, args![id: id]).await?;
-        bulk.ok_or_else(|| StoreError::missing("bulk refinement", id))
+    pub async fn get(&self, id: &str) -> Result<FamilyRefinement> {
+        let bulk = self.0.database().fetch_optional(GET, args![id: id]).await?;
+        bulk.ok_or_else(|| StoreError::not_found("bulk refinement", id))
     }
 
     /// Refinements, the latest first.
-    pub async fn list(&self, family: Option<&str>, page: &Page) -> Result<List<Bulk>> {
-        let values = args![family: family, after: &page.after, limit: page.fetch()?];
-        let bulks = self.0.database().all(LIST, values).await?;
-        Ok(page.of(bulks, |bulk: &Bulk| bulk.id.clone()))
+    pub async fn list(
+        &self,
+        family: Option<&str>,
+        page: &PageRequest,
+    ) -> Result<ListPage<FamilyRefinement>> {
+        let values = args![family: family, after: &page.after, limit: page.fetch_limit()?];
+        let bulks = self.0.database().fetch_all(LIST, values).await?;
+        Ok(page.build_page(bulks, |bulk: &FamilyRefinement| bulk.id.clone()))
     }
 
     /// Counts the chunks by state.
-    pub async fn chunks(&self, id: &str) -> Result<Vec<ChunkCount>> {
-        self.0.database().all(CHUNKS, args![bulk: id]).await
+    pub async fn count_chunks(&self, id: &str) -> Result<Vec<ChunkCount>> {
+        self.0.database().fetch_all(CHUNKS, args![bulk: id]).await
     }
 
     /// Returns the jobs of the chunks, optionally of one state only.
-    pub async fn jobs(&self, id: &str, state: Option<JobState>) -> Result<Vec<Job>> {
-        self.0.database().all(JOBS, args![bulk: id, state: state.map(JobState::as_str)]).await
+    pub async fn chunk_jobs(&self, id: &str, state: Option<JobState>) -> Result<Vec<Job>> {
+        self.0.database().fetch_all(JOBS, args![bulk: id, state: state.map(JobState::as_str)]).await
     }
 
     /// Cancels the chunks that wait, and asks the workers of those that run to stop.
     pub async fn request_cancel(&self, id: &str) -> Result<u64> {
         let values = &[("bulk", id.into()), ("finished_us", self.0.now_us().into())];
-        self.all(CANCEL, "bulk-refinement.cancel", id, values).await
+        self.update_chunks(CANCEL, "bulk-refinement.cancel", id, values).await
     }
 
     /// Queues the failed and cancelled chunks again; ships that have an outcome keep it.
-    pub async fn retry(&self, id: &str) -> Result<u64> {
-        self.all(RETRY, "bulk-refinement.retry", id, &[("bulk", id.into())]).await
+    pub async fn retry_chunks(&self, id: &str) -> Result<u64> {
+        self.update_chunks(RETRY, "bulk-refinement.retry", id, &[("bulk", id.into())]).await
     }
 
-    async fn all(
+    async fn update_chunks(
         &self,
         statement: crate::statements::Statement,
         action: &'static str,
@@ -219,31 +229,32 @@ impl Bulks<'_> {
         let changed = tx.execute(statement, values).await?;
         if changed > 0 {
             let after = json!({ "chunks": changed });
-            tx.note(self.0.now_us(), action, subject(id), None, Some(after));
+            tx.record_audit_event(self.0.now_us(), action, audit_subject(id), None, Some(after));
         }
         tx.commit().await?;
         Ok(changed)
     }
 
     /// Lists the outcomes, ordered by ship.
-    pub async fn outcomes(
+    pub async fn list_outcomes(
         &self,
         id: &str,
         outcome: Option<&str>,
-        page: &Page,
-    ) -> Result<List<BulkOutcome>> {
-        let values = args![bulk: id, outcome: outcome, after: &page.after, limit: page.fetch()?];
-        let outcomes = self.0.database().all(OUTCOMES, values).await?;
-        Ok(page.of(outcomes, |outcome: &BulkOutcome| outcome.ship.clone()))
+        page: &PageRequest,
+    ) -> Result<ListPage<BulkOutcome>> {
+        let values =
+            args![bulk: id, outcome: outcome, after: &page.after, limit: page.fetch_limit()?];
+        let outcomes = self.0.database().fetch_all(OUTCOMES, values).await?;
+        Ok(page.build_page(outcomes, |outcome: &BulkOutcome| outcome.ship.clone()))
     }
 
     /// Counts the ships by outcome.
-    pub async fn counts(&self, id: &str) -> Result<Vec<OutcomeCount>> {
-        self.0.database().all(COUNTS, args![bulk: id]).await
+    pub async fn count_outcomes(&self, id: &str) -> Result<Vec<OutcomeCount>> {
+        self.0.database().fetch_all(COUNTS, args![bulk: id]).await
     }
 
     /// Promotes a candidate of this bulk refinement to champion, on the decision of a person.
-    pub async fn promote(
+    pub async fn promote_candidate(
         &self,
         id: &str,
         ship: &str,
@@ -251,7 +262,7 @@ impl Bulks<'_> {
         change: &AliasMove,
     ) -> Result<()> {
         let mut tx = self.0.begin().await?;
-        crate::aliases::shift(self.0, &mut tx, ship, version, change).await?;
+        crate::aliases::move_alias(self.0, &mut tx, ship, version, change).await?;
         // Without a candidate the transaction is dropped, and the move of the alias with it.
         if tx.execute(PROMOTED, args![bulk: id, ship: ship]).await? == 0 {
             return Err(StoreError::conflict(
@@ -266,7 +277,7 @@ impl Bulks<'_> {
     /// Stores the outcomes of a chunk and completes its job, all or nothing: a worker that has lost
     /// the job to another one (its `fence` is older) changes nothing, and no ship gets two
     /// outcomes.
-    pub async fn commit(
+    pub async fn commit_chunk(
         &self,
         bulk: &str,
         job: (&str, i64),
@@ -275,23 +286,28 @@ impl Bulks<'_> {
     ) -> Result<Job> {
         let mut tx = self.0.begin().await?;
         for outcome in outcomes {
-            keep(self.0, &mut tx, bulk, outcome).await?;
+            insert_outcome(self.0, &mut tx, bulk, outcome).await?;
         }
-        let job = work::complete(&mut tx, job.0, job.1, result, self.0.now_us()).await?;
+        let job = work::complete_job(&mut tx, job.0, job.1, result, self.0.now_us()).await?;
         tx.commit().await?;
         Ok(job)
     }
 }
 
 /// Returns the subject of audit entries about a bulk refinement.
-fn subject(id: &str) -> String {
+fn audit_subject(id: &str) -> String {
     format!("bulk-refinement:{id}")
 }
 
-async fn keep(store: &Store, tx: &mut Transaction, bulk: &str, new: &NewOutcome) -> Result<()> {
-    checks::json("document", &new.document)?;
+async fn insert_outcome(
+    store: &Store,
+    tx: &mut AuditedTransaction,
+    bulk: &str,
+    new: &NewOutcome,
+) -> Result<()> {
+    checks::check_json("document", &new.document)?;
     let version: Option<VersionHead> = match &new.version {
-        Some((version, moves)) => Some(versions::insert(store, tx, version, moves).await?),
+        Some((version, moves)) => Some(versions::insert_version(store, tx, version, moves).await?),
         None => None,
     };
     let version_id = version.as_ref().map(|version| version.id.as_str());

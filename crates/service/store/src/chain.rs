@@ -4,7 +4,7 @@
 
 use crate::arguments::args;
 use crate::connections::DatabaseTransaction;
-use crate::entry::Entry;
+use crate::entry::NewAuditEntry;
 use crate::error::Result;
 use crate::record::record;
 use crate::statements::{same, statements};
@@ -29,15 +29,18 @@ record! {
 }
 
 /// Appends the entries of a transaction to the hash chain.
-pub(crate) async fn enter(tx: &mut DatabaseTransaction, entries: Vec<Entry>) -> Result<()> {
+pub(crate) async fn append_entries(
+    tx: &mut DatabaseTransaction,
+    entries: Vec<NewAuditEntry>,
+) -> Result<()> {
     let Ok(count) = i64::try_from(entries.len()) else { return Ok(()) };
     if count == 0 {
         return Ok(());
     }
-    let AuditHead { number, mut sha256 } = tx.one(TAKE, args![count: count]).await?;
+    let AuditHead { number, mut sha256 } = tx.fetch_one(TAKE, args![count: count]).await?;
     // `number` is the last one reserved; the first one of this transaction is `number - count + 1`.
     for (number, entry) in (number - count + 1..).zip(entries) {
-        let entry = entry.numbered(number, sha256);
+        let entry = entry.with_number(number, sha256);
         let values = args![number: number, at_us: entry.at_us, actor: &entry.actor,
             origin: &entry.origin,
             action: &entry.action, subject: &entry.subject, state_before: &entry.state_before,

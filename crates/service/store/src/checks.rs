@@ -14,7 +14,7 @@ const MAX_LINE_CHARS: usize = 255;
 
 /// Checks a name that is part of a URL path: not empty, not too long, no white space, control
 /// character or slash.
-pub(crate) fn name(field: &'static str, value: &str) -> Result<()> {
+pub(crate) fn check_name(field: &'static str, value: &str) -> Result<()> {
     if value.is_empty() {
         return Err(StoreError::invalid(field, "must not be empty"));
     }
@@ -28,8 +28,8 @@ pub(crate) fn name(field: &'static str, value: &str) -> Result<()> {
 }
 
 /// Checks that a text is one JSON document.
-pub(crate) fn json(field: &'static str, value: &str) -> Result<()> {
-    text(field, value)?;
+pub(crate) fn check_json(field: &'static str, value: &str) -> Result<()> {
+    check_text(field, value)?;
     // Checks the syntax without building the document in memory.
     serde_json::from_str::<IgnoredAny>(value)
         .map(drop)
@@ -37,7 +37,7 @@ pub(crate) fn json(field: &'static str, value: &str) -> Result<()> {
 }
 
 /// Checks that a text is a SHA-256 in lower-case hexadecimal.
-pub(crate) fn sha256(field: &'static str, value: &str) -> Result<()> {
+pub(crate) fn check_sha256(field: &'static str, value: &str) -> Result<()> {
     let hexadecimal = |byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
     match value.len() == 64 && value.bytes().all(hexadecimal) {
         true => Ok(()),
@@ -46,7 +46,7 @@ pub(crate) fn sha256(field: &'static str, value: &str) -> Result<()> {
 }
 
 /// Checks a text: no NUL (PostgreSQL cannot store it), and not too long.
-pub(crate) fn text(field: &'static str, value: &str) -> Result<()> {
+pub(crate) fn check_text(field: &'static str, value: &str) -> Result<()> {
     if value.len() > MAX_TEXT_BYTES {
         return Err(StoreError::invalid(field, format!("longer than {MAX_TEXT_BYTES} bytes")));
     }
@@ -57,7 +57,7 @@ pub(crate) fn text(field: &'static str, value: &str) -> Result<()> {
 }
 
 /// Checks a text of one line: not empty, not too long, no control character.
-pub(crate) fn line(field: &'static str, value: &str) -> Result<()> {
+pub(crate) fn check_line(field: &'static str, value: &str) -> Result<()> {
     if value.is_empty() || value.chars().count() > MAX_LINE_CHARS {
         let message = format!("must have 1 to {MAX_LINE_CHARS} characters");
         return Err(StoreError::invalid(field, message));
@@ -69,7 +69,7 @@ pub(crate) fn line(field: &'static str, value: &str) -> Result<()> {
 }
 
 /// Checks that a number is finite.
-pub(crate) fn finite(field: &'static str, value: f64) -> Result<()> {
+pub(crate) fn check_finite(field: &'static str, value: f64) -> Result<()> {
     match value.is_finite() {
         true => Ok(()),
         false => Err(StoreError::invalid(field, format!("must be a finite number, not {value}"))),
@@ -77,8 +77,8 @@ pub(crate) fn finite(field: &'static str, value: f64) -> Result<()> {
 }
 
 /// Checks that a number is finite and not negative.
-pub(crate) fn not_negative(field: &'static str, value: f64) -> Result<()> {
-    finite(field, value)?;
+pub(crate) fn check_not_negative(field: &'static str, value: f64) -> Result<()> {
+    check_finite(field, value)?;
     match value >= 0.0 {
         true => Ok(()),
         false => Err(StoreError::invalid(field, format!("must not be negative, is {value}"))),
@@ -86,7 +86,7 @@ pub(crate) fn not_negative(field: &'static str, value: f64) -> Result<()> {
 }
 
 /// Checks that a count is not negative.
-pub(crate) fn count(field: &'static str, value: i64) -> Result<()> {
+pub(crate) fn check_count(field: &'static str, value: i64) -> Result<()> {
     match value >= 0 {
         true => Ok(()),
         false => Err(StoreError::invalid(field, format!("must not be negative, is {value}"))),

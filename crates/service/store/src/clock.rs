@@ -17,7 +17,7 @@ pub trait Clock: Send + Sync + 'static {
 }
 
 /// Generator of ids that sort by their time of creation.
-pub trait Ids: Send + Sync + 'static {
+pub trait IdGenerator: Send + Sync + 'static {
     /// Returns a new id for a row created at `now_us`, microseconds since 1970.
     fn new_id(&self, now_us: i64) -> String;
 }
@@ -28,7 +28,7 @@ pub struct SystemClock;
 
 impl Clock for SystemClock {
     fn now_us(&self) -> i64 {
-        SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, micros)
+        SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, duration_us)
     }
 }
 
@@ -44,7 +44,7 @@ impl ManualClock {
 
     /// Moves the clock forward.
     pub fn advance(&self, by: Duration) {
-        self.0.fetch_add(micros(by), Ordering::SeqCst);
+        self.0.fetch_add(duration_us(by), Ordering::SeqCst);
     }
 }
 
@@ -58,7 +58,7 @@ impl Clock for ManualClock {
 #[derive(Debug, Default)]
 pub struct UuidIds(Mutex<ContextV7>);
 
-impl Ids for UuidIds {
+impl IdGenerator for UuidIds {
     fn new_id(&self, now_us: i64) -> String {
         let now = Duration::from_micros(u64::try_from(now_us).unwrap_or(0));
         // The context counts within a millisecond, which keeps the order of ids.
@@ -71,7 +71,7 @@ impl Ids for UuidIds {
 #[derive(Debug, Default)]
 pub struct SequentialIds(AtomicU64);
 
-impl Ids for SequentialIds {
+impl IdGenerator for SequentialIds {
     fn new_id(&self, now_us: i64) -> String {
         let mut random = [0; 10];
         // The counter takes the last eight of the ten random bytes; it increases with each id.
@@ -81,6 +81,6 @@ impl Ids for SequentialIds {
     }
 }
 
-pub(crate) fn micros(duration: Duration) -> i64 {
+pub(crate) fn duration_us(duration: Duration) -> i64 {
     i64::try_from(duration.as_micros()).unwrap_or(i64::MAX)
 }

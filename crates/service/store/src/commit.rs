@@ -5,7 +5,7 @@ use crate::aliases::AliasMove;
 use crate::error::Result;
 use crate::job::{Job, NewJob};
 use crate::jobs;
-use crate::objects::Objects;
+use crate::objects::ObjectStorage;
 use crate::reports::{self, NewReport, ReportHead};
 use crate::store::Store;
 use crate::version::{NewVersion, VersionHead};
@@ -14,7 +14,7 @@ use crate::work;
 
 /// Result of a refinement, or of the training of a learned correction, to be stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Refinement {
+pub struct NewRefinement {
     /// The version.
     pub version: NewVersion,
     /// The aliases that move to it.
@@ -27,7 +27,7 @@ pub struct Refinement {
 
 /// Rows of a refinement as they were stored, from which the result of its job is written.
 #[derive(Debug, Clone, Copy)]
-pub struct Kept<'a> {
+pub struct RefinementRows<'a> {
     /// The version, with its number.
     pub version: &'a VersionHead,
     /// The report on it.
@@ -38,7 +38,7 @@ pub struct Kept<'a> {
 
 /// A refinement as it was stored.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Committed {
+pub struct CommittedRefinement {
     /// The version, with its number.
     pub version: VersionHead,
     /// The report on it.
@@ -55,37 +55,38 @@ impl Store {
     /// them meanwhile, nothing is stored.
     pub async fn commit_refinement<F>(
         &self,
-        objects: Option<&Objects>,
+        objects: Option<&ObjectStorage>,
         (job, fence): (&str, i64),
-        refinement: &Refinement,
+        refinement: &NewRefinement,
         result: F,
-    ) -> Result<Committed>
+    ) -> Result<CommittedRefinement>
     where
-        F: FnOnce(&Kept<'_>) -> String,
+        F: FnOnce(&RefinementRows<'_>) -> String,
     {
         let mut tx = self.begin().await?;
         let version =
-            versions::insert(self, &mut tx, &refinement.version, &refinement.moves).await?;
+            versions::insert_version(self, &mut tx, &refinement.version, &refinement.moves).await?;
         // Checked after the row of the version is written: from then on the removal of unreferenced
         // objects waits for this transaction, or has already removed them.
         if let Some(objects) = objects {
-            objects.must_have(refinement.version.weights.iter().cloned()).await?;
+            objects.check_present(refinement.version.weights.iter().cloned()).await?;
         }
         let report = match refinement.report.clone() {
             Some(report) => {
                 let report = NewReport { version_id: Some(version.id.clone()), ..report };
-                Some(reports::insert(self, &mut tx, &report).await?)
+                Some(reports::insert_report(self, &mut tx, &report).await?)
             }
             None => None,
         };
         let next = match &refinement.next {
-            Some(next) => Some(jobs::insert(self, &mut tx, next).await?),
+            Some(next) => Some(jobs::insert_job(self, &mut tx, next).await?),
             None => None,
         };
-        let kept = Kept { version: &version, report: report.as_ref(), next: next.as_ref() };
+        let kept =
+            RefinementRows { version: &version, report: report.as_ref(), next: next.as_ref() };
         let result = result(&kept);
-        let job = work::complete(&mut tx, job, fence, &result, self.now_us()).await?;
+        let job = work::complete_job(&mut tx, job, fence, &result, self.now_us()).await?;
         tx.commit().await?;
-        Ok(Committed { version, report, job })
+        Ok(CommittedRefinement { version, report, job })
     }
 }

@@ -4,8 +4,8 @@
 use serde_json::{Value, json};
 
 use crate::aliases::AliasMove;
-use crate::database::Transaction;
-use crate::diagnoses::{self, Diagnosed, NewDiagnosed};
+use crate::database::AuditedTransaction;
+use crate::diagnoses::{self, DiagnosisRow, NewDiagnosisRow};
 use crate::error::Result;
 use crate::job::Job;
 use crate::reports::{self, NewReport, ReportHead};
@@ -18,14 +18,14 @@ use crate::work;
 
 /// Result of a diagnosis, to be stored.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Diagnosis {
+pub struct NewDiagnosis {
     /// The version with the effects found and the aliases that move to it; none if no effect was
     /// found.
     pub version: Option<(NewVersion, Vec<AliasMove>)>,
     /// The report; its `version_id` becomes that of the resulting version.
     pub report: NewReport,
     /// The findings.
-    pub found: NewDiagnosed,
+    pub found: NewDiagnosisRow,
     /// The diagnosis of the new trials alone, if this one includes earlier trials.
     pub of_new: Option<PartDiagnosis>,
     /// Ratio of the residual of the champion on new trials to that on the trials of its fit, if
@@ -39,7 +39,7 @@ pub struct PartDiagnosis {
     /// The report.
     pub report: NewReport,
     /// The findings.
-    pub found: NewDiagnosed,
+    pub found: NewDiagnosisRow,
 }
 
 /// The verdict of a diagnosis that finds no missing effect.
@@ -53,7 +53,7 @@ pub struct CommittedDiagnosis {
     /// The report.
     pub report: ReportHead,
     /// The findings.
-    pub found: Diagnosed,
+    pub found: DiagnosisRow,
     /// The completed job.
     pub job: Job,
 }
@@ -66,7 +66,7 @@ impl Store {
         &self,
         job: &str,
         fence: i64,
-        diagnosis: &Diagnosis,
+        diagnosis: &NewDiagnosis,
         result: F,
     ) -> Result<CommittedDiagnosis>
     where
@@ -75,63 +75,65 @@ impl Store {
         let mut tx = self.begin().await?;
         // The part first: the diagnosis of all trials gets the later id, and is listed before it.
         let of_new = match &diagnosis.of_new {
-            Some(part) => Some(self.put(&mut tx, part, None).await?),
+            Some(part) => Some(self.insert_part(&mut tx, part, None).await?),
             None => None,
         };
         let version = match &diagnosis.version {
-            Some((version, moves)) => Some(versions::insert(self, &mut tx, version, moves).await?),
+            Some((version, moves)) => {
+                Some(versions::insert_version(self, &mut tx, version, moves).await?)
+            }
             None => None,
         };
         let made_id = version.as_ref().map(|version| version.id.clone());
         let report = NewReport { version_id: made_id.clone(), ..diagnosis.report.clone() };
         let all = PartDiagnosis { report, found: diagnosis.found.clone() };
-        let (report, found) = self.put(&mut tx, &all, made_id.as_deref()).await?;
+        let (report, found) = self.insert_part(&mut tx, &all, made_id.as_deref()).await?;
         // If all trials together lack nothing, webhooks get the diagnosis of the new trials alone.
         let told = match of_new {
             Some((_, of_new)) if found.verdict == COMPLETE => of_new,
             _ => found.clone(),
         };
-        tell(self, &mut tx, diagnosis, &told).await?;
+        notify_webhooks(self, &mut tx, diagnosis, &told).await?;
         // The state of the ship has changed, and with it the facts by which it is found.
-        search_index::mark(self, &mut tx, &diagnosis.report.ship).await?;
+        search_index::queue_ship(self, &mut tx, &diagnosis.report.ship).await?;
         let result = result(version.as_ref(), &report);
-        let job = work::complete(&mut tx, job, fence, &result, self.now_us()).await?;
+        let job = work::complete_job(&mut tx, job, fence, &result, self.now_us()).await?;
         tx.commit().await?;
         Ok(CommittedDiagnosis { version, report, found, job })
     }
 
     /// Inserts a report and its findings.
-    async fn put(
+    async fn insert_part(
         &self,
-        tx: &mut Transaction,
+        tx: &mut AuditedTransaction,
         part: &PartDiagnosis,
         made_id: Option<&str>,
-    ) -> Result<(ReportHead, Diagnosed)> {
-        let report = reports::insert(self, tx, &part.report).await?;
-        let found = diagnoses::insert(self, tx, &part.found, made_id, &report.id).await?;
+    ) -> Result<(ReportHead, DiagnosisRow)> {
+        let report = reports::insert_report(self, tx, &part.report).await?;
+        let found = diagnoses::insert_diagnosis(self, tx, &part.found, made_id, &report.id).await?;
         let after = json!({ "ship": part.report.ship, "verdict": found.verdict });
         let subject = format!("diagnosis:{}", found.id);
-        tx.note(self.now_us(), "diagnosis.create", subject, None, Some(after));
+        tx.record_audit_event(self.now_us(), "diagnosis.create", subject, None, Some(after));
         Ok((report, found))
     }
 }
 
 /// Notifies webhooks of a version that lacks an effect, and of the drift of a champion.
-async fn tell(
+async fn notify_webhooks(
     store: &Store,
-    tx: &mut Transaction,
-    diagnosis: &Diagnosis,
-    found: &Diagnosed,
+    tx: &mut AuditedTransaction,
+    diagnosis: &NewDiagnosis,
+    found: &DiagnosisRow,
 ) -> Result<()> {
     let ship = &diagnosis.report.ship;
     if found.verdict != COMPLETE {
         let effects: Value = serde_json::from_str(&found.effects).unwrap_or_default();
         let about = json!({ "diagnosis": found.id, "verdict": found.verdict, "effects": effects,
             "report": found.report_id });
-        webhooks::tell(store, tx, webhooks::DIAGNOSIS_FAILED, ship, about).await?;
+        webhooks::notify(store, tx, webhooks::DIAGNOSIS_FAILED, ship, about).await?;
     }
     match diagnosis.drift {
-        Some(ratio) => webhooks::tell_drift(store, tx, ratio, ship).await,
+        Some(ratio) => webhooks::notify_drift(store, tx, ratio, ship).await,
         None => Ok(()),
     }
 }

@@ -8,7 +8,7 @@ use sqlx::postgres::{PgConnectOptions, PgPoolOptions};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
 use sqlx::{Connection as _, PgPool, SqlitePool};
 
-use crate::connections::{Pool, RESTED, Writer};
+use crate::connections::{DatabaseWriter, IDLE_BEFORE_PING, ReadPool};
 use crate::database::Database;
 use crate::error::{Result, StoreError};
 use crate::folders;
@@ -16,20 +16,20 @@ use crate::group::WriterGroup;
 use crate::migrate;
 use crate::postgres_pool::PostgresPool;
 
-const BUSY: Duration = Duration::from_secs(10);
+const BUSY_TIMEOUT: Duration = Duration::from_secs(10);
 const SQLITE_READERS: u32 = 4;
 const POSTGRES_CONNECTIONS: u32 = 16;
 /// Maximum wait for a connection, including that for the server.
-const CONNECTION: Duration = Duration::from_secs(6);
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(6);
 /// Maximum wait for the answer of a connection that was idle.
-const ANSWER: Duration = Duration::from_secs(1);
+const PING_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Opens the database at `url` and brings its schema up to date.
-pub(crate) async fn connect(url: &str) -> Result<Database> {
+pub(crate) async fn connect_database(url: &str) -> Result<Database> {
     match url.split_once(':') {
-        Some(("sqlite", _)) if url.contains(":memory:") => memory(url).await,
-        Some(("sqlite", _)) => file(url).await,
-        Some(("postgres" | "postgresql", _)) => postgres(url).await,
+        Some(("sqlite", _)) if url.contains(":memory:") => open_memory(url).await,
+        Some(("sqlite", _)) => open_file(url).await,
+        Some(("postgres" | "postgresql", _)) => open_postgres(url).await,
         _ => Err(StoreError::invalid("database_url", "must begin with sqlite: or postgres:")),
     }
 }
@@ -43,7 +43,7 @@ pub(crate) fn sqlite_file(url: &str) -> Option<PathBuf> {
 
 /// Opens a database in memory, with one connection that lasts as long as the store: the data would
 /// be lost with it.
-async fn memory(url: &str) -> Result<Database> {
+async fn open_memory(url: &str) -> Result<Database> {
     let options = SqliteConnectOptions::from_str(url)?.foreign_keys(true);
     let pool = SqlitePoolOptions::new()
         .max_connections(1)
@@ -51,29 +51,34 @@ async fn memory(url: &str) -> Result<Database> {
         .idle_timeout(None)
         .max_lifetime(None);
     let pool = pool.connect_with(options).await?;
-    migrate::sqlite(&pool).await?;
+    migrate::migrate_sqlite(&pool).await?;
     Ok(Database {
-        read: Pool::Sqlite(pool.clone()),
-        write: Writer::Sqlite(WriterGroup::new(pool)),
+        read: ReadPool::Sqlite(pool.clone()),
+        write: DatabaseWriter::Sqlite(WriterGroup::new(pool)),
         unit: None,
     })
 }
 
-async fn file(url: &str) -> Result<Database> {
-    let options = SqliteConnectOptions::from_str(url)?.foreign_keys(true).busy_timeout(BUSY);
-    options.get_filename().parent().map_or(Ok(()), folders::make).map_err(sqlx::Error::Io)?;
+async fn open_file(url: &str) -> Result<Database> {
+    let options =
+        SqliteConnectOptions::from_str(url)?.foreign_keys(true).busy_timeout(BUSY_TIMEOUT);
+    options
+        .get_filename()
+        .parent()
+        .map_or(Ok(()), folders::create_durably)
+        .map_err(sqlx::Error::Io)?;
     // Write-ahead log with full sync: an acknowledged commit survives a power failure, and readers
     // do not wait for the writer.
     let write = options.clone().create_if_missing(true).synchronous(SqliteSynchronous::Full);
-    let write = writer(write.journal_mode(SqliteJournalMode::Wal)).await?;
-    migrate::sqlite(&write).await?;
+    let write = open_writer(write.journal_mode(SqliteJournalMode::Wal)).await?;
+    migrate::migrate_sqlite(&write).await?;
     // A connection to a file does not go stale.
     let readers =
         SqlitePoolOptions::new().max_connections(SQLITE_READERS).test_before_acquire(false);
     let read = readers.connect_with(options.pragma("query_only", "ON")).await?;
     Ok(Database {
-        read: Pool::Sqlite(read),
-        write: Writer::Sqlite(WriterGroup::new(write)),
+        read: ReadPool::Sqlite(read),
+        write: DatabaseWriter::Sqlite(WriterGroup::new(write)),
         unit: None,
     })
 }
@@ -81,7 +86,7 @@ async fn file(url: &str) -> Result<Database> {
 /// Opens the one connection that writes. Switching to the write-ahead log needs the file
 /// exclusively and ignores the busy timeout, so that two processes which open a new file at once
 /// have to retry.
-async fn writer(options: SqliteConnectOptions) -> Result<SqlitePool> {
+async fn open_writer(options: SqliteConnectOptions) -> Result<SqlitePool> {
     let mut tries = 100;
     loop {
         let pool = SqlitePoolOptions::new()
@@ -101,29 +106,33 @@ fn is_locked(error: &sqlx::Error) -> bool {
     error.as_database_error().is_some_and(|error| error.message().contains("locked"))
 }
 
-async fn postgres(url: &str) -> Result<Database> {
+async fn open_postgres(url: &str) -> Result<Database> {
     let options = PgConnectOptions::from_str(url)?.application_name("sistership");
     let pool: PgPool = postgres_options().connect_with(options.clone()).await?;
-    migrate::postgres(&pool).await?;
+    migrate::migrate_postgres(&pool).await?;
     let pool =
         PostgresPool::new(pool, move || postgres_options().connect_lazy_with(options.clone()));
-    Ok(Database { read: Pool::Postgres(pool.clone()), write: Writer::Postgres(pool), unit: None })
+    Ok(Database {
+        read: ReadPool::Postgres(pool.clone()),
+        write: DatabaseWriter::Postgres(pool),
+        unit: None,
+    })
 }
 
 fn postgres_options() -> PgPoolOptions {
     let pool = PgPoolOptions::new()
         .max_connections(POSTGRES_CONNECTIONS)
-        .acquire_timeout(CONNECTION)
+        .acquire_timeout(CONNECT_TIMEOUT)
         .test_before_acquire(false);
     // A connection that was used a moment ago is valid; a ping each time would cost as much as the
     // query. One that does not answer is replaced.
     pool.before_acquire(|connection, about| {
         Box::pin(async move {
-            if about.idle_for <= RESTED {
+            if about.idle_for <= IDLE_BEFORE_PING {
                 return Ok(true);
             }
             let silent = || sqlx::Error::Io(std::io::ErrorKind::TimedOut.into());
-            let answered = tokio::time::timeout(ANSWER, connection.ping()).await;
+            let answered = tokio::time::timeout(PING_TIMEOUT, connection.ping()).await;
             answered.map_err(|_| silent())?.map(|()| true)
         })
     })
@@ -143,8 +152,8 @@ mod tests {
     async fn a_sqlite_file_is_durable_and_its_readers_only_read() {
         let folder = tempfile::tempdir().unwrap();
         let url = format!("sqlite://{}", folder.path().join("new/store.db").display());
-        let Database { read: Pool::Sqlite(read), write: Writer::Sqlite(write), .. } =
-            connect(&url).await.unwrap()
+        let Database { read: ReadPool::Sqlite(read), write: DatabaseWriter::Sqlite(write), .. } =
+            connect_database(&url).await.unwrap()
         else {
             panic!()
         };

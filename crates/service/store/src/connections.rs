@@ -6,26 +6,26 @@ use std::time::Duration;
 use sqlx::pool::PoolConnection;
 use sqlx::{Postgres, Sqlite, SqlitePool};
 
-use crate::arguments::{Args, bind, check};
+use crate::arguments::{StatementArgs, bind, check_args};
 use crate::error::Result;
 use crate::group::{TransactionPart, WriterGroup};
-use crate::postgres_pool::{Lease, PostgresPool};
-use crate::record::Record;
+use crate::postgres_pool::{PoolLease, PostgresPool};
+use crate::record::DatabaseRecord;
 use crate::statements::Statement;
 
 /// Idle time after which a connection is pinged before use.
-pub(crate) const RESTED: Duration = Duration::from_secs(5);
+pub(crate) const IDLE_BEFORE_PING: Duration = Duration::from_secs(5);
 
 /// The connections that write.
 #[derive(Debug, Clone)]
-pub(crate) enum Writer {
+pub(crate) enum DatabaseWriter {
     Sqlite(WriterGroup),
     Postgres(PostgresPool),
 }
 
 /// A pool of connections that read.
 #[derive(Debug, Clone)]
-pub(crate) enum Pool {
+pub(crate) enum ReadPool {
     Sqlite(SqlitePool),
     Postgres(PostgresPool),
 }
@@ -33,14 +33,14 @@ pub(crate) enum Pool {
 /// A transaction of the database; it is undone unless [committed](Self::commit).
 pub(crate) enum DatabaseTransaction {
     Sqlite(TransactionPart),
-    Postgres(sqlx::Transaction<'static, Postgres>, Lease),
+    Postgres(sqlx::Transaction<'static, Postgres>, PoolLease),
 }
 
 /// A connection for several reads in a row: returning it to the pool after each would cost a round
 /// trip.
-pub(crate) enum Reader {
+pub(crate) enum ReadConnection {
     Sqlite(PoolConnection<Sqlite>),
-    Postgres(PoolConnection<Postgres>, Lease),
+    Postgres(PoolConnection<Postgres>, PoolLease),
 }
 
 // The statement is awaited inside of the macro, as the two connections have different types; on
@@ -62,49 +62,49 @@ macro_rules! within {
     };
 }
 
-impl Pool {
+impl ReadPool {
     /// Returns the row that a reading statement finds, if there is one.
-    pub(crate) async fn optional<T: Record>(
+    pub(crate) async fn fetch_optional<T: DatabaseRecord>(
         &self,
         statement: Statement,
-        args: Args<'_>,
+        args: StatementArgs<'_>,
     ) -> Result<Option<T>> {
         match self {
             Self::Sqlite(pool) => {
                 Ok(bind!(sqlx::query_as(statement.sqlite), args).fetch_optional(pool).await?)
             }
             Self::Postgres(pool) => {
-                let (lease, query) = (pool.lease(), sqlx::query_as(statement.postgres));
+                let (lease, query) = (pool.current_lease(), sqlx::query_as(statement.postgres));
                 lease.within(bind!(query, args).fetch_optional(&lease.pool)).await
             }
         }
     }
 
     /// Returns the rows that a reading statement finds.
-    pub(crate) async fn all<T: Record>(
+    pub(crate) async fn fetch_all<T: DatabaseRecord>(
         &self,
         statement: Statement,
-        args: Args<'_>,
+        args: StatementArgs<'_>,
     ) -> Result<Vec<T>> {
         match self {
             Self::Sqlite(pool) => {
                 Ok(bind!(sqlx::query_as(statement.sqlite), args).fetch_all(pool).await?)
             }
             Self::Postgres(pool) => {
-                let (lease, query) = (pool.lease(), sqlx::query_as(statement.postgres));
+                let (lease, query) = (pool.current_lease(), sqlx::query_as(statement.postgres));
                 lease.within(bind!(query, args).fetch_all(&lease.pool)).await
             }
         }
     }
 
     /// Acquires a connection for several reading statements in a row.
-    pub(crate) async fn reader(&self) -> Result<Reader> {
+    pub(crate) async fn acquire_reader(&self) -> Result<ReadConnection> {
         Ok(match self {
-            Self::Sqlite(pool) => Reader::Sqlite(pool.acquire().await?),
+            Self::Sqlite(pool) => ReadConnection::Sqlite(pool.acquire().await?),
             Self::Postgres(pool) => {
-                let lease = pool.lease();
+                let lease = pool.current_lease();
                 let connection = lease.within(lease.pool.acquire()).await?;
-                Reader::Postgres(connection, lease)
+                ReadConnection::Postgres(connection, lease)
             }
         })
     }
@@ -118,14 +118,14 @@ impl Pool {
     }
 }
 
-impl Writer {
+impl DatabaseWriter {
     /// Begins a transaction. On SQLite the write lock is taken at once, so that what is read stays
     /// true until the commit.
     pub(crate) async fn begin(&self) -> Result<DatabaseTransaction> {
         Ok(match self {
             Self::Sqlite(group) => DatabaseTransaction::Sqlite(group.begin().await?),
             Self::Postgres(pool) => {
-                let lease = pool.lease();
+                let lease = pool.current_lease();
                 let transaction = lease.within(lease.pool.begin()).await?;
                 DatabaseTransaction::Postgres(transaction, lease)
             }
@@ -141,15 +141,15 @@ impl Writer {
     }
 }
 
-impl Reader {
+impl ReadConnection {
     /// Returns the rows that a reading statement finds.
-    pub(crate) async fn all<T: Record>(
+    pub(crate) async fn fetch_all<T: DatabaseRecord>(
         &mut self,
         statement: Statement,
-        args: Args<'_>,
+        args: StatementArgs<'_>,
     ) -> Result<Vec<T>> {
         // A reader is used without `Database`, which checks the arguments of all other reads.
-        check(args)?;
+        check_args(args)?;
         match self {
             Self::Sqlite(one) => {
                 Ok(bind!(sqlx::query_as(statement.sqlite), args).fetch_all(&mut **one).await?)
@@ -162,10 +162,10 @@ impl Reader {
     }
 
     /// Returns the rows of a statement that may read a whole table; there is no deadline.
-    pub(crate) async fn all_of_table<T: Record>(
+    pub(crate) async fn fetch_table<T: DatabaseRecord>(
         &mut self,
         statement: Statement,
-        args: Args<'_>,
+        args: StatementArgs<'_>,
     ) -> Result<Vec<T>> {
         Ok(match self {
             Self::Sqlite(one) => {
@@ -180,35 +180,39 @@ impl Reader {
 
 impl DatabaseTransaction {
     /// Executes a writing statement and returns the number of rows that it changed.
-    pub(crate) async fn execute(&mut self, statement: Statement, args: Args<'_>) -> Result<u64> {
+    pub(crate) async fn execute(
+        &mut self,
+        statement: Statement,
+        args: StatementArgs<'_>,
+    ) -> Result<u64> {
         Ok(within!(self, statement, |to, sql| async move {
             bind!(sqlx::query(sql), args).execute(to).await.map(|done| done.rows_affected())
         }))
     }
 
     /// Returns the row of a statement that always returns one.
-    pub(crate) async fn one<T: Record>(
+    pub(crate) async fn fetch_one<T: DatabaseRecord>(
         &mut self,
         statement: Statement,
-        args: Args<'_>,
+        args: StatementArgs<'_>,
     ) -> Result<T> {
         Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_one(to)))
     }
 
     /// Returns the row that a statement finds or returns, if there is one.
-    pub(crate) async fn optional<T: Record>(
+    pub(crate) async fn fetch_optional<T: DatabaseRecord>(
         &mut self,
         statement: Statement,
-        args: Args<'_>,
+        args: StatementArgs<'_>,
     ) -> Result<Option<T>> {
         Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_optional(to)))
     }
 
     /// Returns the rows that a statement finds or returns.
-    pub(crate) async fn all<T: Record>(
+    pub(crate) async fn fetch_all<T: DatabaseRecord>(
         &mut self,
         statement: Statement,
-        args: Args<'_>,
+        args: StatementArgs<'_>,
     ) -> Result<Vec<T>> {
         Ok(within!(self, statement, |to, sql| bind!(sqlx::query_as(sql), args).fetch_all(to)))
     }

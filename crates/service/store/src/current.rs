@@ -8,9 +8,9 @@ use tokio::sync::oneshot;
 
 use crate::arguments::{Arg, args};
 use crate::checks;
-use crate::connections::Reader;
+use crate::connections::ReadConnection;
 use crate::error::Result;
-use crate::questions::{AT_ONCE, CurrentVersion, Question};
+use crate::questions::{AliasLookup, BATCH_SIZE, CurrentVersion};
 use crate::statements::{same, statements};
 use crate::store::Store;
 
@@ -37,43 +37,51 @@ statements! {
 }
 
 /// A task that looks up requests as long as some wait.
-struct QuestionRound(Store);
+struct LookupRound(Store);
 
 impl Store {
     /// Returns the version that an alias of a ship points to; none if the ship or the alias does
     /// not exist.
-    pub(crate) async fn current(&self, ship: &str, alias: &str) -> Result<Option<CurrentVersion>> {
-        checks::text("ship", ship)?;
-        checks::text("alias", alias)?;
+    pub(crate) async fn current_version(
+        &self,
+        ship: &str,
+        alias: &str,
+    ) -> Result<Option<CurrentVersion>> {
+        checks::check_text("ship", ship)?;
+        checks::check_text("alias", alias)?;
         // Within a unit of work the lookup must see what the unit has written.
         if self.database().unit.is_some() {
-            return self.database().optional(CURRENT, args![alias: alias, ship: ship]).await;
+            return self.database().fetch_optional(CURRENT, args![alias: alias, ship: ship]).await;
         }
         let (answer, answered) = oneshot::channel();
-        if self.questions().enter(Question {
+        if self.lookup_queue().add_lookup(AliasLookup {
             ship: ship.to_owned(),
             alias: alias.to_owned(),
             answer,
         }) {
-            tokio::spawn(QuestionRound(self.clone()).run());
+            tokio::spawn(LookupRound(self.clone()).run());
         }
         match answered.await {
             Ok(found) => Ok(found),
             // The shared statement failed: each of its requests is repeated alone and gets its own
             // error.
-            Err(_) => self.database().optional(CURRENT, args![alias: alias, ship: ship]).await,
+            Err(_) => {
+                self.database().fetch_optional(CURRENT, args![alias: alias, ship: ship]).await
+            }
         }
     }
 }
 
-impl QuestionRound {
+impl LookupRound {
     async fn run(self) {
-        let mut reader = self.0.questions().kept();
+        let mut reader = self.0.lookup_queue().take_connection();
         loop {
-            let questions = self.0.questions().take();
-            let Some(first) = questions.first() else { return self.0.questions().keep(reader) };
-            match self.ask(&mut reader, &first.alias, &questions).await {
-                Ok(found) => tell(questions, &found),
+            let questions = self.0.lookup_queue().take_batch();
+            let Some(first) = questions.first() else {
+                return self.0.lookup_queue().keep_connection(reader);
+            };
+            match self.fetch_answers(&mut reader, &first.alias, &questions).await {
+                Ok(found) => send_answers(questions, &found),
                 // The next round uses another connection; dropping the requests makes each repeat
                 // alone.
                 Err(_) => reader = None,
@@ -81,38 +89,38 @@ impl QuestionRound {
         }
     }
 
-    async fn ask(
+    async fn fetch_answers(
         &self,
-        reader: &mut Option<Reader>,
+        reader: &mut Option<ReadConnection>,
         alias: &str,
-        questions: &[Question],
+        questions: &[AliasLookup],
     ) -> Result<Vec<CurrentVersion>> {
         // Unused places stay NULL.
-        let mut values = [("ship", Arg::Text(None)); AT_ONCE + 1];
+        let mut values = [("ship", Arg::Text(None)); BATCH_SIZE + 1];
         values[0] = ("alias", Arg::from(alias));
         for (place, question) in values[1..].iter_mut().zip(questions) {
             place.1 = Arg::from(&question.ship);
         }
         let reader = match reader {
             Some(reader) => reader,
-            None => reader.insert(self.0.database().reader().await?),
+            None => reader.insert(self.0.database().acquire_reader().await?),
         };
         match questions.len() {
-            1 => reader.all(CURRENT, &values[..2]).await,
-            _ => reader.all(CURRENT_OF, &values).await,
+            1 => reader.fetch_all(CURRENT, &values[..2]).await,
+            _ => reader.fetch_all(CURRENT_OF, &values).await,
         }
     }
 }
 
-impl Drop for QuestionRound {
+impl Drop for LookupRound {
     /// Ends the round, also after a panic, so that no request waits for it.
     fn drop(&mut self) {
-        self.0.questions().ended();
+        self.0.lookup_queue().end_round();
     }
 }
 
-fn tell(questions: Vec<Question>, found: &[CurrentVersion]) {
-    for Question { ship, answer, .. } in questions {
+fn send_answers(questions: Vec<AliasLookup>, found: &[CurrentVersion]) {
+    for AliasLookup { ship, answer, .. } in questions {
         // An error means that the request was dropped and needs no answer.
         let _ = answer.send(found.iter().find(|current| current.model == ship).cloned());
     }

@@ -3,32 +3,32 @@
 
 use serde_json::Value;
 
-use crate::arguments::{Args, check};
+use crate::arguments::{StatementArgs, check_args};
 use crate::chain;
-use crate::connections::{DatabaseTransaction, Pool, Reader, Writer};
-use crate::entry::Entry;
+use crate::connections::{DatabaseTransaction, DatabaseWriter, ReadConnection, ReadPool};
+use crate::entry::NewAuditEntry;
 use crate::error::Result;
-use crate::record::Record;
+use crate::record::DatabaseRecord;
 use crate::statements::Statement;
-use crate::unit::{Unit, UnitStep};
+use crate::unit::{UnitStep, UnitTransaction};
 
 /// Connections of one database, for reading and for writing; on SQLite a single connection writes.
 #[derive(Debug, Clone)]
 pub(crate) struct Database {
-    pub(crate) read: Pool,
-    pub(crate) write: Writer,
+    pub(crate) read: ReadPool,
+    pub(crate) write: DatabaseWriter,
     /// The unit of work that this handle belongs to, if it belongs to one.
-    pub(crate) unit: Option<Unit>,
+    pub(crate) unit: Option<UnitTransaction>,
 }
 
 /// A transaction that may write; it is undone unless [committed](Self::commit).
-pub(crate) struct Transaction {
-    part: Part,
+pub(crate) struct AuditedTransaction {
+    part: TransactionKind,
     /// Audit entries, appended at the commit.
-    entries: Vec<Entry>,
+    entries: Vec<NewAuditEntry>,
 }
 
-enum Part {
+enum TransactionKind {
     /// A separate transaction.
     Alone(DatabaseTransaction),
     /// A step of a unit of work, committed together with the unit.
@@ -37,50 +37,50 @@ enum Part {
 
 impl Database {
     /// Begins a transaction, or a step of the unit of work of this handle.
-    pub(crate) async fn begin(&self) -> Result<Transaction> {
+    pub(crate) async fn begin(&self) -> Result<AuditedTransaction> {
         let part = match &self.unit {
-            Some(unit) => Part::Step(unit.step(&self.write).await?),
-            None => Part::Alone(self.write.begin().await?),
+            Some(unit) => TransactionKind::Step(unit.begin_step(&self.write).await?),
+            None => TransactionKind::Alone(self.write.begin().await?),
         };
-        Ok(Transaction { part, entries: Vec::new() })
+        Ok(AuditedTransaction { part, entries: Vec::new() })
     }
 
     /// Returns the row that a reading statement finds, if there is one; within a unit of work it
     /// sees the unit's own writes.
-    pub(crate) async fn optional<T: Record>(
+    pub(crate) async fn fetch_optional<T: DatabaseRecord>(
         &self,
         statement: Statement,
-        args: Args<'_>,
+        args: StatementArgs<'_>,
     ) -> Result<Option<T>> {
-        check(args)?;
+        check_args(args)?;
         // A unit that has not written yet reads from the pool, and begins no transaction.
         if let Some(unit) = &self.unit
-            && let Some(mut open) = unit.open().await?
+            && let Some(mut open) = unit.open_transaction().await?
         {
-            return open.transaction()?.optional(statement, args).await;
+            return open.database_transaction()?.fetch_optional(statement, args).await;
         }
-        self.read.optional(statement, args).await
+        self.read.fetch_optional(statement, args).await
     }
 
     /// Returns the rows that a reading statement finds; within a unit of work it sees the unit's
     /// own writes.
-    pub(crate) async fn all<T: Record>(
+    pub(crate) async fn fetch_all<T: DatabaseRecord>(
         &self,
         statement: Statement,
-        args: Args<'_>,
+        args: StatementArgs<'_>,
     ) -> Result<Vec<T>> {
-        check(args)?;
+        check_args(args)?;
         if let Some(unit) = &self.unit
-            && let Some(mut open) = unit.open().await?
+            && let Some(mut open) = unit.open_transaction().await?
         {
-            return open.transaction()?.all(statement, args).await;
+            return open.database_transaction()?.fetch_all(statement, args).await;
         }
-        self.read.all(statement, args).await
+        self.read.fetch_all(statement, args).await
     }
 
     /// Acquires a connection for several reading statements in a row.
-    pub(crate) async fn reader(&self) -> Result<Reader> {
-        self.read.reader().await
+    pub(crate) async fn acquire_reader(&self) -> Result<ReadConnection> {
+        self.read.acquire_reader().await
     }
 
     /// Closes all connections.
@@ -90,53 +90,57 @@ impl Database {
     }
 }
 
-impl Transaction {
-    fn transaction(&mut self) -> Result<&mut DatabaseTransaction> {
+impl AuditedTransaction {
+    fn database_transaction(&mut self) -> Result<&mut DatabaseTransaction> {
         match &mut self.part {
-            Part::Alone(transaction) => Ok(transaction),
-            Part::Step(step) => step.transaction(),
+            TransactionKind::Alone(transaction) => Ok(transaction),
+            TransactionKind::Step(step) => step.database_transaction(),
         }
     }
 
     /// Executes a writing statement and returns the number of rows that it changed.
-    pub(crate) async fn execute(&mut self, statement: Statement, args: Args<'_>) -> Result<u64> {
-        check(args)?;
-        self.transaction()?.execute(statement, args).await
+    pub(crate) async fn execute(
+        &mut self,
+        statement: Statement,
+        args: StatementArgs<'_>,
+    ) -> Result<u64> {
+        check_args(args)?;
+        self.database_transaction()?.execute(statement, args).await
     }
 
     /// Returns the row that a statement finds or returns, if there is one.
-    pub(crate) async fn optional<T: Record>(
+    pub(crate) async fn fetch_optional<T: DatabaseRecord>(
         &mut self,
         statement: Statement,
-        args: Args<'_>,
+        args: StatementArgs<'_>,
     ) -> Result<Option<T>> {
-        check(args)?;
-        self.transaction()?.optional(statement, args).await
+        check_args(args)?;
+        self.database_transaction()?.fetch_optional(statement, args).await
     }
 
     /// Returns the row of a statement that always returns one.
-    pub(crate) async fn one<T: Record>(
+    pub(crate) async fn fetch_one<T: DatabaseRecord>(
         &mut self,
         statement: Statement,
-        args: Args<'_>,
+        args: StatementArgs<'_>,
     ) -> Result<T> {
-        check(args)?;
-        self.transaction()?.one(statement, args).await
+        check_args(args)?;
+        self.database_transaction()?.fetch_one(statement, args).await
     }
 
     /// Returns the rows that a statement finds or returns.
-    pub(crate) async fn all<T: Record>(
+    pub(crate) async fn fetch_all<T: DatabaseRecord>(
         &mut self,
         statement: Statement,
-        args: Args<'_>,
+        args: StatementArgs<'_>,
     ) -> Result<Vec<T>> {
-        check(args)?;
-        self.transaction()?.all(statement, args).await
+        check_args(args)?;
+        self.database_transaction()?.fetch_all(statement, args).await
     }
 
     /// Records in the audit, at the commit, that the present author does `action` to `subject`,
     /// with the state `before` and `after`.
-    pub(crate) fn note(
+    pub(crate) fn record_audit_event(
         &mut self,
         at_us: i64,
         action: &'static str,
@@ -144,18 +148,18 @@ impl Transaction {
         before: Option<Value>,
         after: Option<Value>,
     ) {
-        self.entries.push(Entry::new(at_us, action, subject, before, after));
+        self.entries.push(NewAuditEntry::new(at_us, action, subject, before, after));
     }
 
     /// Commits the transaction; a step of a unit of work is committed with the unit.
     pub(crate) async fn commit(self) -> Result<()> {
         match self.part {
-            Part::Alone(mut transaction) => {
+            TransactionKind::Alone(mut transaction) => {
                 // The audit comes last: its row of the last entry stays locked until the commit.
-                chain::enter(&mut transaction, self.entries).await?;
+                chain::append_entries(&mut transaction, self.entries).await?;
                 transaction.commit().await
             }
-            Part::Step(step) => step.keep(self.entries).await,
+            TransactionKind::Step(step) => step.commit_step(self.entries).await,
         }
     }
 }

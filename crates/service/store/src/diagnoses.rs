@@ -3,9 +3,9 @@
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::Result;
-use crate::page::{List, Page};
+use crate::page::{ListPage, PageRequest};
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
@@ -26,7 +26,7 @@ statements! {
 
 record! {
     /// A diagnosis of a version.
-    pub struct Diagnosed {
+    pub struct DiagnosisRow {
         /// Its id.
         pub id: String,
         /// The id of the version that was diagnosed.
@@ -54,7 +54,7 @@ record! {
 /// Findings of a diagnosis, to be stored; its report and the resulting version are known at the
 /// commit.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct NewDiagnosed {
+pub struct NewDiagnosisRow {
     /// The id of the version that was diagnosed.
     pub version_id: String,
     /// `complete`, `effects` or `unexplained`.
@@ -71,50 +71,57 @@ pub struct NewDiagnosed {
 
 /// Repository of diagnoses.
 #[derive(Debug, Clone, Copy)]
-pub struct Diagnoses<'a>(pub(crate) &'a Store);
+pub struct DiagnosisRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of diagnoses.
-    pub fn diagnoses(&self) -> Diagnoses<'_> {
-        Diagnoses(self)
+    pub fn diagnoses(&self) -> DiagnosisRepository<'_> {
+        DiagnosisRepository(self)
     }
 }
 
-impl Diagnoses<'_> {
+impl DiagnosisRepository<'_> {
     /// Lists all diagnoses in the order of their creation.
-    pub async fn all(&self, page: &Page) -> Result<List<Diagnosed>> {
-        let diagnoses =
-            self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
-        Ok(page.of(diagnoses, |diagnosis: &Diagnosed| diagnosis.id.clone()))
+    pub async fn list_all(&self, page: &PageRequest) -> Result<ListPage<DiagnosisRow>> {
+        let diagnoses = self
+            .0
+            .database()
+            .fetch_all(ALL, args![after: &page.after, limit: page.fetch_limit()?])
+            .await?;
+        Ok(page.build_page(diagnoses, |diagnosis: &DiagnosisRow| diagnosis.id.clone()))
     }
 
     /// Lists the diagnoses that concern a version, the latest first: those of the version, and the
     /// one from which it resulted.
-    pub async fn by_version(&self, version_id: &str, page: &Page) -> Result<List<Diagnosed>> {
-        let values = args![version_id: version_id, after: &page.after, limit: page.fetch()?];
-        let diagnoses = self.0.database().all(BY_VERSION, values).await?;
-        Ok(page.of(diagnoses, |diagnosis: &Diagnosed| diagnosis.id.clone()))
+    pub async fn by_version(
+        &self,
+        version_id: &str,
+        page: &PageRequest,
+    ) -> Result<ListPage<DiagnosisRow>> {
+        let values = args![version_id: version_id, after: &page.after, limit: page.fetch_limit()?];
+        let diagnoses = self.0.database().fetch_all(BY_VERSION, values).await?;
+        Ok(page.build_page(diagnoses, |diagnosis: &DiagnosisRow| diagnosis.id.clone()))
     }
 }
 
 /// Inserts a diagnosis within a transaction.
-pub(crate) async fn insert(
+pub(crate) async fn insert_diagnosis(
     store: &Store,
-    tx: &mut Transaction,
-    new: &NewDiagnosed,
+    tx: &mut AuditedTransaction,
+    new: &NewDiagnosisRow,
     made_id: Option<&str>,
     report_id: &str,
-) -> Result<Diagnosed> {
-    checks::name("verdict", &new.verdict)?;
-    checks::json("effects", &new.effects)?;
-    checks::json("trials", &new.trials)?;
-    checks::json("unexplained", &new.unexplained)?;
-    new.drift.as_deref().map_or(Ok(()), |drift| checks::json("drift", drift))?;
+) -> Result<DiagnosisRow> {
+    checks::check_name("verdict", &new.verdict)?;
+    checks::check_json("effects", &new.effects)?;
+    checks::check_json("trials", &new.trials)?;
+    checks::check_json("unexplained", &new.unexplained)?;
+    new.drift.as_deref().map_or(Ok(()), |drift| checks::check_json("drift", drift))?;
     version::check_id(tx, "version_id", &new.version_id).await?;
     let id = store.new_id();
     let values = args![id: &id, version_id: &new.version_id, made_id: made_id,
         report_id: report_id, verdict: &new.verdict,
         effects: &new.effects, trials: &new.trials, unexplained: &new.unexplained,
         drift: &new.drift, created_us: store.now_us()];
-    tx.one(INSERT, values).await
+    tx.fetch_one(INSERT, values).await
 }

@@ -3,7 +3,7 @@
 use crate::arguments::args;
 use crate::error::{Result, StoreError};
 use crate::objects::sha256_hex;
-use crate::page::{List, Page};
+use crate::page::{ListPage, PageRequest};
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
@@ -34,7 +34,7 @@ pub struct EffectLibraries<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of libraries of effects (insert-only).
-    pub fn effects(&self) -> EffectLibraries<'_> {
+    pub fn effect_libraries(&self) -> EffectLibraries<'_> {
         EffectLibraries(self)
     }
 }
@@ -42,7 +42,7 @@ impl Store {
 impl EffectLibraries<'_> {
     /// Inserts a library unless it exists, and returns its hash. The existing one is found by a
     /// read, so that repeated calls write nothing.
-    pub async fn keep(&self, document: &str) -> Result<String> {
+    pub async fn insert_absent(&self, document: &str) -> Result<String> {
         let sha256 = sha256_hex(document.as_bytes());
         if self.find(&sha256).await?.is_none() {
             let mut tx = self.0.begin().await?;
@@ -59,17 +59,20 @@ impl EffectLibraries<'_> {
 
     /// The library of this hash.
     pub async fn get(&self, sha256: &str) -> Result<EffectLibrary> {
-        self.find(sha256).await?.ok_or_else(|| StoreError::missing("library of effects", sha256))
+        self.find(sha256).await?.ok_or_else(|| StoreError::not_found("library of effects", sha256))
     }
 
     async fn find(&self, sha256: &str) -> Result<Option<EffectLibrary>> {
-        self.0.database().optional(GET, args![sha256: sha256]).await
+        self.0.database().fetch_optional(GET, args![sha256: sha256]).await
     }
 
     /// All libraries by hash.
-    pub async fn list(&self, page: &Page) -> Result<List<EffectLibrary>> {
-        let libraries =
-            self.0.database().all(LIST, args![after: &page.after, limit: page.fetch()?]).await?;
-        Ok(page.of(libraries, |library: &EffectLibrary| library.sha256.clone()))
+    pub async fn list(&self, page: &PageRequest) -> Result<ListPage<EffectLibrary>> {
+        let libraries = self
+            .0
+            .database()
+            .fetch_all(LIST, args![after: &page.after, limit: page.fetch_limit()?])
+            .await?;
+        Ok(page.build_page(libraries, |library: &EffectLibrary| library.sha256.clone()))
     }
 }

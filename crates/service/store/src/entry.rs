@@ -8,7 +8,7 @@ use crate::record::record;
 
 /// An audit entry that is appended when its transaction commits.
 #[derive(Debug, Clone)]
-pub(crate) struct Entry {
+pub(crate) struct NewAuditEntry {
     pub(crate) at_us: i64,
     pub(crate) actor: Actor,
     pub(crate) action: &'static str,
@@ -43,7 +43,7 @@ record! {
     }
 }
 
-impl Entry {
+impl NewAuditEntry {
     /// Creates an entry for an action of the present author.
     pub(crate) fn new(
         at_us: i64,
@@ -58,7 +58,7 @@ impl Entry {
     }
 
     /// Returns the entry with its number, the hash of its predecessor, and its own hash.
-    pub(crate) fn numbered(self, number: i64, previous_sha256: String) -> AuditEntry {
+    pub(crate) fn with_number(self, number: i64, previous_sha256: String) -> AuditEntry {
         let mut entry = AuditEntry {
             number,
             at_us: self.at_us,
@@ -72,7 +72,7 @@ impl Entry {
             sha256: String::new(),
         };
         // The hash covers all other fields, so that it is computed last.
-        entry.sha256 = entry.hash();
+        entry.sha256 = entry.content_hash();
         entry
     }
 }
@@ -80,7 +80,7 @@ impl Entry {
 impl AuditEntry {
     /// Returns the SHA-256 of all other fields, as a JSON list in their order: the list is
     /// unambiguous, a mere concatenation would not be.
-    pub fn hash(&self) -> String {
+    pub fn content_hash(&self) -> String {
         let fields = serde_json::json!([
             self.number,
             self.at_us,
@@ -103,9 +103,9 @@ mod tests {
     #[test]
     fn every_field_is_in_the_hash() {
         let after = Some(serde_json::json!({ "version": 2 }));
-        let entry = Entry::new(7, "alias.move", "alias:a/b".into(), None, after);
-        let entry = entry.numbered(3, "x".into());
-        assert_eq!(entry.sha256, entry.hash());
+        let entry = NewAuditEntry::new(7, "alias.move", "alias:a/b".into(), None, after);
+        let entry = entry.with_number(3, "x".into());
+        assert_eq!(entry.sha256, entry.content_hash());
         let changes: [fn(&mut AuditEntry); 9] = [
             |entry| entry.number += 1,
             |entry| entry.at_us += 1,
@@ -120,7 +120,7 @@ mod tests {
         for change in changes {
             let mut changed = entry.clone();
             change(&mut changed);
-            assert_ne!(changed.hash(), entry.sha256, "{changed:?}");
+            assert_ne!(changed.content_hash(), entry.sha256, "{changed:?}");
         }
     }
 }

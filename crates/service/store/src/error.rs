@@ -36,7 +36,7 @@ pub enum StoreError {
         message: String,
     },
     /// The caller has seen an older state than the present one (412).
-    #[error("{kind} `{id}` is at {}, not where the request expects it", at(*current))]
+    #[error("{kind} `{id}` is at {}, not where the request expects it", revision_text(*current))]
     PreconditionFailed {
         /// Kind of the item.
         kind: &'static str,
@@ -69,7 +69,7 @@ pub enum StoreError {
     Objects(#[from] ObjectsError),
 }
 
-fn at(current: Option<i64>) -> String {
+fn revision_text(current: Option<i64>) -> String {
     current.map_or_else(
         || "no revision (it does not exist)".to_owned(),
         |revision| format!("revision {revision}"),
@@ -89,16 +89,16 @@ impl StoreError {
     }
 
     /// Returns true if the object store failed in a way that may pass, so that a retry is useful.
-    pub fn is_passing(&self) -> bool {
+    pub fn is_transient(&self) -> bool {
         matches!(self, Self::Objects(error) if error.is_passing())
     }
 
     /// Returns the error of data that could not be stored for lack of space.
-    pub fn no_room() -> Self {
+    pub fn out_of_space() -> Self {
         Self::Objects(ObjectsError::Folder(ErrorKind::StorageFull.into()))
     }
 
-    pub(crate) fn missing(kind: &'static str, id: impl Into<String>) -> Self {
+    pub(crate) fn not_found(kind: &'static str, id: impl Into<String>) -> Self {
         Self::NotFound { kind, id: id.into() }
     }
 
@@ -110,7 +110,11 @@ impl StoreError {
         Self::Conflict { kind, id: id.into(), message: message.into() }
     }
 
-    pub(crate) fn stale(kind: &'static str, id: impl Into<String>, current: Option<i64>) -> Self {
+    pub(crate) fn precondition_failed(
+        kind: &'static str,
+        id: impl Into<String>,
+        current: Option<i64>,
+    ) -> Self {
         Self::PreconditionFailed { kind, id: id.into(), current }
     }
 
@@ -140,7 +144,7 @@ pub(crate) fn is_full(error: &sqlx::Error) -> bool {
         // A failed migration wraps the error of the database or of the system that caused it.
         sqlx::Error::Migrate(error) => {
             io_errors(&**error).any(is_out_of_space)
-                || sources(&**error)
+                || error_chain(&**error)
                     .any(|error| error.downcast_ref::<sqlx::Error>().is_some_and(is_full))
         }
         other => io_errors(other).any(is_out_of_space),
@@ -157,14 +161,14 @@ pub fn is_out_of_space(error: &io::Error) -> bool {
 }
 
 /// Iterates over an error and its sources.
-fn sources<'a>(
+fn error_chain<'a>(
     error: &'a (dyn Error + 'static),
 ) -> impl Iterator<Item = &'a (dyn Error + 'static)> {
     std::iter::successors(Some(error), |error: &&'a (dyn Error + 'static)| (*error).source())
 }
 
 fn io_errors<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a io::Error> {
-    sources(error).filter_map(|error| error.downcast_ref())
+    error_chain(error).filter_map(|error| error.downcast_ref())
 }
 
 #[cfg(test)]
@@ -193,6 +197,6 @@ mod tests {
                 "{kind}"
             );
         }
-        assert!(!StoreError::missing("ship", "kcs").is_out_of_space());
+        assert!(!StoreError::not_found("ship", "kcs").is_out_of_space());
     }
 }

@@ -4,11 +4,11 @@ use serde_json::json;
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::objects::sha256_hex;
-use crate::page::{List, Page};
-use crate::record::{Counted, record};
+use crate::page::{ListPage, PageRequest};
+use crate::record::{RowCount, record};
 use crate::search::FactRange;
 use crate::statements::{same, statements};
 use crate::store::Store;
@@ -103,68 +103,83 @@ record! {
 
 /// Repository of families.
 #[derive(Debug, Clone, Copy)]
-pub struct Families<'a>(pub(crate) &'a Store);
+pub struct FamilyRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of families.
-    pub fn families(&self) -> Families<'_> {
-        Families(self)
+    pub fn families(&self) -> FamilyRepository<'_> {
+        FamilyRepository(self)
     }
 }
 
-impl Families<'_> {
+impl FamilyRepository<'_> {
     /// Creates a family on the version `foundation`.
     pub async fn create(&self, name: &str, title: &str, foundation: &str) -> Result<Family> {
-        checks::name("name", name)?;
+        checks::check_name("name", name)?;
         let mut tx = self.0.begin().await?;
         version::check_id(&mut tx, "foundation", foundation).await?;
         let values =
             args![name: name, title: title, foundation: foundation, created_us: self.0.now_us()];
-        let family = tx.optional(INSERT, values).await?;
+        let family = tx.fetch_optional(INSERT, values).await?;
         let family = family.ok_or_else(|| {
             StoreError::conflict("family", name, "there is one of this name already")
         })?;
         let after = json!({ "foundation": foundation });
-        tx.note(self.0.now_us(), "family.create", subject(name), None, Some(after));
+        tx.record_audit_event(
+            self.0.now_us(),
+            "family.create",
+            audit_subject(name),
+            None,
+            Some(after),
+        );
         tx.commit().await?;
         Ok(family)
     }
 
     /// A family.
     pub async fn get(&self, name: &str) -> Result<Family> {
-        let family = self.0.database().optional(GET, args![name: name]).await?;
-        family.ok_or_else(|| StoreError::missing("family", name))
+        let family = self.0.database().fetch_optional(GET, args![name: name]).await?;
+        family.ok_or_else(|| StoreError::not_found("family", name))
     }
 
     /// The families by name.
-    pub async fn list(&self, page: &Page) -> Result<List<Family>> {
-        let families =
-            self.0.database().all(LIST, args![after: &page.after, limit: page.fetch()?]).await?;
-        Ok(page.of(families, |family: &Family| family.name.clone()))
+    pub async fn list(&self, page: &PageRequest) -> Result<ListPage<Family>> {
+        let families = self
+            .0
+            .database()
+            .fetch_all(LIST, args![after: &page.after, limit: page.fetch_limit()?])
+            .await?;
+        Ok(page.build_page(families, |family: &Family| family.name.clone()))
     }
 
     /// Sets another foundation of a family.
-    pub async fn found(&self, name: &str, foundation: &str) -> Result<Family> {
+    pub async fn set_foundation(&self, name: &str, foundation: &str) -> Result<Family> {
         let mut tx = self.0.begin().await?;
         version::check_id(&mut tx, "foundation", foundation).await?;
-        let before: Option<Family> = tx.optional(GET, args![name: name]).await?;
-        let family = tx.optional(FOUND, args![name: name, foundation: foundation]).await?;
-        let family = family.ok_or_else(|| StoreError::missing("family", name))?;
+        let before: Option<Family> = tx.fetch_optional(GET, args![name: name]).await?;
+        let family = tx.fetch_optional(FOUND, args![name: name, foundation: foundation]).await?;
+        let family = family.ok_or_else(|| StoreError::not_found("family", name))?;
         let before = before.map(|family| json!({ "foundation": family.foundation }));
         let after = json!({ "foundation": foundation });
-        tx.note(self.0.now_us(), "family.found", subject(name), before, Some(after));
+        tx.record_audit_event(
+            self.0.now_us(),
+            "family.found",
+            audit_subject(name),
+            before,
+            Some(after),
+        );
         tx.commit().await?;
         Ok(family)
     }
 
     /// Adds ships, all or none; existing members are skipped. Returns the number of new members.
-    pub async fn add(&self, family: &str, ships: &[String]) -> Result<u64> {
+    pub async fn add_members(&self, family: &str, ships: &[String]) -> Result<u64> {
         let mut tx = self.0.begin().await?;
-        exists(&mut tx, family).await?;
+        check_exists(&mut tx, family).await?;
         let mut added = 0;
         for ship in ships {
             // Checked here and not by the foreign key: a deleted ship still has a row.
-            let Counted { rows } = tx.one(SHIP, args![name: ship]).await?;
+            let RowCount { rows } = tx.fetch_one(SHIP, args![name: ship]).await?;
             if rows == 0 {
                 return Err(StoreError::invalid("ships", format!("there is no ship `{ship}`")));
             }
@@ -174,47 +189,63 @@ impl Families<'_> {
         }
         if added > 0 {
             let after = json!({ "ships": ships });
-            tx.note(self.0.now_us(), "family.add", subject(family), None, Some(after));
+            tx.record_audit_event(
+                self.0.now_us(),
+                "family.add",
+                audit_subject(family),
+                None,
+                Some(after),
+            );
         }
         tx.commit().await?;
         Ok(added)
     }
 
     /// Removes a ship from a family; returns true if it was a member.
-    pub async fn remove(&self, family: &str, ship: &str) -> Result<bool> {
+    pub async fn remove_member(&self, family: &str, ship: &str) -> Result<bool> {
         let mut tx = self.0.begin().await?;
         let removed = tx.execute(REMOVE, args![family: family, ship: ship]).await?;
         if removed > 0 {
             let before = json!({ "ships": [ship] });
-            tx.note(self.0.now_us(), "family.remove", subject(family), Some(before), None);
+            tx.record_audit_event(
+                self.0.now_us(),
+                "family.remove",
+                audit_subject(family),
+                Some(before),
+                None,
+            );
         }
         tx.commit().await?;
         Ok(removed > 0)
     }
 
     /// Counts the members of a family.
-    pub async fn count(&self, family: &str) -> Result<i64> {
-        let counted: Option<Counted> =
-            self.0.database().optional(COUNT, args![family: family]).await?;
+    pub async fn count_members(&self, family: &str) -> Result<i64> {
+        let counted: Option<RowCount> =
+            self.0.database().fetch_optional(COUNT, args![family: family]).await?;
         Ok(counted.map_or(0, |counted| counted.rows))
     }
 
     /// The families that a ship is a member of, by name.
-    pub async fn of_ship(&self, ship: &str, page: &Page) -> Result<List<Family>> {
-        let all = args![ship: ship, after: &page.after, limit: page.fetch()?];
-        let found = self.0.database().all(OF_SHIP, all).await?;
-        Ok(page.of(found, |family: &Family| family.name.clone()))
+    pub async fn list_by_ship(&self, ship: &str, page: &PageRequest) -> Result<ListPage<Family>> {
+        let all = args![ship: ship, after: &page.after, limit: page.fetch_limit()?];
+        let found = self.0.database().fetch_all(OF_SHIP, all).await?;
+        Ok(page.build_page(found, |family: &Family| family.name.clone()))
     }
 
     /// The members by name.
-    pub async fn members(&self, family: &str, page: &Page) -> Result<List<FamilyMember>> {
-        let values = args![family: family, after: &page.after, limit: page.fetch()?];
-        let members = self.0.database().all(MEMBERS, values).await?;
-        Ok(page.of(members, |member: &FamilyMember| member.ship.clone()))
+    pub async fn list_members(
+        &self,
+        family: &str,
+        page: &PageRequest,
+    ) -> Result<ListPage<FamilyMember>> {
+        let values = args![family: family, after: &page.after, limit: page.fetch_limit()?];
+        let members = self.0.database().fetch_all(MEMBERS, values).await?;
+        Ok(page.build_page(members, |member: &FamilyMember| member.ship.clone()))
     }
 
     /// Members that have a champion and a fact in a range, by name.
-    pub async fn within(
+    pub async fn members_in_range(
         &self,
         family: &str,
         range: &FactRange,
@@ -222,61 +253,64 @@ impl Families<'_> {
     ) -> Result<Vec<FamilyMember>> {
         let values = args![family: family, fact: &range.fact, min: range.min, max: range.max,
             limit: limit];
-        self.0.database().all(WITHIN, values).await
+        self.0.database().fetch_all(WITHIN, values).await
     }
 
     /// Stores a prior as the next revision of the family.
-    pub async fn teach(&self, family: &str, document: &str) -> Result<FamilyPrior> {
+    pub async fn insert_prior(&self, family: &str, document: &str) -> Result<FamilyPrior> {
         let mut tx = self.0.begin().await?;
-        let prior = teach(self.0, &mut tx, family, document).await?;
+        let prior = insert_prior_row(self.0, &mut tx, family, document).await?;
         tx.commit().await?;
         Ok(prior)
     }
 
     /// Returns a prior of a family: of a revision, or the latest one.
-    pub async fn prior(&self, family: &str, revision: Option<i64>) -> Result<FamilyPrior> {
+    pub async fn get_prior(&self, family: &str, revision: Option<i64>) -> Result<FamilyPrior> {
         let prior = match revision {
             Some(revision) => {
-                self.0.database().optional(PRIOR, args![family: family, revision: revision]).await?
+                self.0
+                    .database()
+                    .fetch_optional(PRIOR, args![family: family, revision: revision])
+                    .await?
             }
-            None => self.0.database().optional(LAST_PRIOR, args![family: family]).await?,
+            None => self.0.database().fetch_optional(LAST_PRIOR, args![family: family]).await?,
         };
-        prior.ok_or_else(|| StoreError::missing("family prior", family))
+        prior.ok_or_else(|| StoreError::not_found("family prior", family))
     }
 }
 
 /// Stores a prior within a transaction.
-pub(crate) async fn teach(
+pub(crate) async fn insert_prior_row(
     store: &Store,
-    tx: &mut Transaction,
+    tx: &mut AuditedTransaction,
     family: &str,
     document: &str,
 ) -> Result<FamilyPrior> {
-    checks::json("document", document)?;
-    exists(tx, family).await?;
+    checks::check_json("document", document)?;
+    check_exists(tx, family).await?;
     let sha256 = sha256_hex(document.as_bytes());
     let values =
         args![family: family, document: document, sha256: &sha256, created_us: store.now_us()];
-    let prior: FamilyPrior = tx.one(TEACH, values).await?;
+    let prior: FamilyPrior = tx.fetch_one(TEACH, values).await?;
     let after = json!({ "revision": prior.revision, "sha256": sha256 });
-    tx.note(store.now_us(), "family.prior", subject(family), None, Some(after));
+    tx.record_audit_event(store.now_us(), "family.prior", audit_subject(family), None, Some(after));
     Ok(prior)
 }
 
 /// Returns the subject of audit entries about a family.
-fn subject(name: &str) -> String {
+fn audit_subject(name: &str) -> String {
     format!("family:{name}")
 }
 
-async fn exists(tx: &mut Transaction, family: &str) -> Result<()> {
-    let family_row: Option<Family> = tx.optional(GET, args![name: family]).await?;
-    family_row.map(drop).ok_or_else(|| StoreError::missing("family", family))
+async fn check_exists(tx: &mut AuditedTransaction, family: &str) -> Result<()> {
+    let family_row: Option<Family> = tx.fetch_optional(GET, args![name: family]).await?;
+    family_row.map(drop).ok_or_else(|| StoreError::not_found("family", family))
 }
 
-impl Families<'_> {
+impl FamilyRepository<'_> {
     /// Stores a prior and completes the job that learned it, all or nothing. `result` writes the
     /// job's result, JSON.
-    pub async fn commit(
+    pub async fn commit_prior(
         &self,
         family: &str,
         document: &str,
@@ -284,8 +318,8 @@ impl Families<'_> {
         result: impl FnOnce(&FamilyPrior) -> String,
     ) -> Result<FamilyPrior> {
         let mut tx = self.0.begin().await?;
-        let prior = teach(self.0, &mut tx, family, document).await?;
-        crate::work::complete(&mut tx, job.0, job.1, &result(&prior), self.0.now_us()).await?;
+        let prior = insert_prior_row(self.0, &mut tx, family, document).await?;
+        crate::work::complete_job(&mut tx, job.0, job.1, &result(&prior), self.0.now_us()).await?;
         tx.commit().await?;
         Ok(prior)
     }

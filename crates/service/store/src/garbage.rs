@@ -4,11 +4,11 @@
 use futures::stream::{self, StreamExt as _, TryStreamExt as _};
 
 use crate::arguments::args;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::Result;
-use crate::object_list::AT_ONCE;
-use crate::objects::Objects;
-use crate::record::Counted;
+use crate::object_list::MAX_CONCURRENT;
+use crate::objects::ObjectStorage;
+use crate::record::RowCount;
 use crate::statements::{pair, same, statements};
 use crate::store::Store;
 
@@ -22,27 +22,27 @@ statements! {
 
 impl Store {
     /// Returns the keys that no trial, deleted or not, and no version refers to.
-    pub async fn unreferred(&self, keys: &[String]) -> Result<Vec<String>> {
+    pub async fn unreferenced_keys(&self, keys: &[String]) -> Result<Vec<String>> {
         let mut tx = self.begin().await?;
-        unreferred(&mut tx, keys).await
+        find_unreferenced(&mut tx, keys).await
     }
 
     /// Removes the objects that no trial and no version refers to, and returns their keys. No row
     /// is inserted meanwhile, and [`crate::Trials::insert_all_and_enqueue`] and
     /// [`Store::commit_refinement`] check for their objects after they have waited for this: in
     /// either order no trial loses its samples, and no learned correction its weights.
-    pub async fn remove_unreferred(
+    pub async fn remove_unreferenced(
         &self,
-        objects: &Objects,
+        objects: &ObjectStorage,
         keys: &[String],
     ) -> Result<Vec<String>> {
         let mut tx = self.begin().await?;
         tx.execute(LOCK, &[]).await?;
-        let removed = unreferred(&mut tx, keys).await?;
-        let removal = |key: &String| objects.remove(key.clone());
+        let removed = find_unreferenced(&mut tx, keys).await?;
+        let removal = |key: &String| objects.remove_object(key.clone());
         // Removed before the commit, while the lock still excludes new references.
         stream::iter(removed.iter().map(removal).collect::<Vec<_>>())
-            .buffer_unordered(AT_ONCE)
+            .buffer_unordered(MAX_CONCURRENT)
             .try_collect::<()>()
             .await?;
         tx.commit().await?;
@@ -50,11 +50,11 @@ impl Store {
     }
 }
 
-async fn unreferred(tx: &mut Transaction, keys: &[String]) -> Result<Vec<String>> {
+async fn find_unreferenced(tx: &mut AuditedTransaction, keys: &[String]) -> Result<Vec<String>> {
     let mut found = Vec::new();
     for key in keys {
         // One statement for each key: both columns have an index.
-        let referred: Counted = tx.one(REFERRED, args![object_key: key]).await?;
+        let referred: RowCount = tx.fetch_one(REFERRED, args![object_key: key]).await?;
         if referred.rows == 0 {
             found.push(key.clone());
         }

@@ -4,9 +4,9 @@ use serde_json::{Value, json};
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
-use crate::record::{Counted, record};
+use crate::record::{RowCount, record};
 use crate::statements::{same, statements};
 use crate::store::Store;
 
@@ -39,43 +39,53 @@ record! {
 
 /// Repository of granted roles.
 #[derive(Debug, Clone, Copy)]
-pub struct Grants<'a>(pub(crate) &'a Store);
+pub struct GrantRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of granted roles.
-    pub fn grants(&self) -> Grants<'_> {
-        Grants(self)
+    pub fn grants(&self) -> GrantRepository<'_> {
+        GrantRepository(self)
     }
 }
 
-impl Grants<'_> {
+impl GrantRepository<'_> {
     /// The roles of a user (`user:NAME`) or a service key (`key:PREFIX`).
-    pub async fn of(&self, principal: &str) -> Result<Vec<GrantRow>> {
-        self.0.database().all(OF, args![principal: principal]).await
+    pub async fn list_by_principal(&self, principal: &str) -> Result<Vec<GrantRow>> {
+        self.0.database().fetch_all(OF, args![principal: principal]).await
     }
 
     /// Replaces all roles of a user or service key.
-    pub async fn replace(&self, principal: &str, roles: &[GrantRow]) -> Result<()> {
+    pub async fn replace_roles(&self, principal: &str, roles: &[GrantRow]) -> Result<()> {
         let mut tx = self.0.begin().await?;
-        let holders: Counted = tx.one(HOLDERS, args![principal: principal]).await?;
+        let holders: RowCount = tx.fetch_one(HOLDERS, args![principal: principal]).await?;
         if holders.rows == 0 {
-            return Err(StoreError::missing("user or key", principal));
+            return Err(StoreError::not_found("user or key", principal));
         }
-        let before: Vec<GrantRow> = tx.all(OF, args![principal: principal]).await?;
+        let before: Vec<GrantRow> = tx.fetch_all(OF, args![principal: principal]).await?;
         // Replaced as a whole, in one transaction: no request sees a part of the roles.
         tx.execute(CLEAR, args![principal: principal]).await?;
-        put(&mut tx, principal, roles).await?;
+        insert_roles(&mut tx, principal, roles).await?;
         let (before, after) =
-            (json!({ "roles": words(&before) }), json!({ "roles": words(roles) }));
-        tx.note(self.0.now_us(), "roles.set", principal.to_owned(), Some(before), Some(after));
+            (json!({ "roles": role_names(&before) }), json!({ "roles": role_names(roles) }));
+        tx.record_audit_event(
+            self.0.now_us(),
+            "roles.set",
+            principal.to_owned(),
+            Some(before),
+            Some(after),
+        );
         tx.commit().await
     }
 }
 
 /// Grants roles within a transaction; the ships and families must exist.
-pub(crate) async fn put(tx: &mut Transaction, principal: &str, roles: &[GrantRow]) -> Result<()> {
+pub(crate) async fn insert_roles(
+    tx: &mut AuditedTransaction,
+    principal: &str,
+    roles: &[GrantRow],
+) -> Result<()> {
     for GrantRow { scope_kind, scope_name, role } in roles {
-        exists(tx, scope_kind, scope_name).await?;
+        check_scope(tx, scope_kind, scope_name).await?;
         let values =
             args![principal: principal, scope_kind: scope_kind, scope_name: scope_name, role: role];
         tx.execute(PUT, values).await?;
@@ -83,15 +93,15 @@ pub(crate) async fn put(tx: &mut Transaction, principal: &str, roles: &[GrantRow
     Ok(())
 }
 
-async fn exists(tx: &mut Transaction, kind: &str, name: &str) -> Result<()> {
+async fn check_scope(tx: &mut AuditedTransaction, kind: &str, name: &str) -> Result<()> {
     let statement = match kind {
         "ship" => SHIP,
         "family" => FAMILY,
         // The scope of the whole server has no name.
         _ => return Ok(()),
     };
-    checks::name("roles", name)?;
-    let found: Counted = tx.one(statement, args![name: name]).await?;
+    checks::check_name("roles", name)?;
+    let found: RowCount = tx.fetch_one(statement, args![name: name]).await?;
     match found.rows {
         0 => Err(StoreError::invalid("roles", format!("there is no {kind} `{name}`"))),
         _ => Ok(()),
@@ -99,7 +109,7 @@ async fn exists(tx: &mut Transaction, kind: &str, name: &str) -> Result<()> {
 }
 
 /// Returns roles in the form of the audit: `role` or `role@ship:NAME`.
-pub(crate) fn words(roles: &[GrantRow]) -> Value {
+pub(crate) fn role_names(roles: &[GrantRow]) -> Value {
     let word = |row: &GrantRow| match row.scope_kind.as_str() {
         "server" => row.role.clone(),
         kind => format!("{}@{kind}:{}", row.role, row.scope_name),

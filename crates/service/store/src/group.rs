@@ -67,7 +67,7 @@ impl WriterGroup {
     /// and in others.
     pub(crate) async fn begin(&self) -> sqlx::Result<TransactionPart> {
         let Self { pool, shared } = self.clone();
-        uninterrupted(async move {
+        run_uninterrupted(async move {
             // The guard is owned and moves with the turn; the transaction is out of its slot while
             // the turn lasts.
             let mut lock = shared.lock_owned().await;
@@ -77,7 +77,7 @@ impl WriterGroup {
             };
             match shared.run("SAVEPOINT part").await {
                 Ok(()) => Ok(TransactionPart(Some(WriterTurn { lock, shared }))),
-                Err(error) => Err(shared.give_up(error)),
+                Err(error) => Err(shared.fail_transaction(error)),
             }
         })
         .await
@@ -94,14 +94,14 @@ impl TransactionPart {
     /// Commits the part, together with the parts of other writers.
     pub(crate) async fn commit(mut self) -> sqlx::Result<()> {
         let turn = self.0.take().ok_or_else(|| not_kept("it has ended"))?;
-        uninterrupted(turn.commit()).await
+        run_uninterrupted(turn.commit()).await
     }
 }
 
 impl Drop for TransactionPart {
     fn drop(&mut self) {
         if let (Some(turn), Ok(runtime)) = (self.0.take(), Handle::try_current()) {
-            runtime.spawn(turn.undo());
+            runtime.spawn(turn.rollback_part());
         }
     }
 }
@@ -109,7 +109,7 @@ impl Drop for TransactionPart {
 impl WriterTurn {
     async fn commit(mut self) -> sqlx::Result<()> {
         if let Err(error) = self.shared.run("RELEASE part").await {
-            return Err(self.shared.give_up(error));
+            return Err(self.shared.fail_transaction(error));
         }
         self.shared.awaited = true;
         let outcome = Arc::clone(&self.shared.outcome);
@@ -122,18 +122,18 @@ impl WriterTurn {
         if outcome.get().is_none()
             && let Some(shared) = lock.take()
         {
-            shared.end().await;
+            shared.commit_shared().await;
         }
         drop(lock);
         match outcome.get() {
             Some(Ok(())) => Ok(()),
-            Some(Err(reason)) => Err(reason.told()),
+            Some(Err(reason)) => Err(reason.to_error()),
             None => Err(not_kept("it was given up")),
         }
     }
 
     /// Rolls back this part; the parts of others stay, and they commit them in their second turns.
-    async fn undo(mut self) {
+    async fn rollback_part(mut self) {
         let undone = match self.shared.run("ROLLBACK TO part").await {
             // Others wait for the commit of this transaction; only the own savepoint is undone.
             Ok(()) if self.shared.awaited => self.shared.run("RELEASE part").await,
@@ -141,7 +141,7 @@ impl WriterTurn {
             Err(error) => Err(error),
         };
         match undone {
-            Err(error) => drop(self.shared.give_up(error)),
+            Err(error) => drop(self.shared.fail_transaction(error)),
             Ok(()) if self.shared.awaited => drop(self.hand_over()),
             Ok(()) => {}
         }
@@ -164,7 +164,7 @@ impl SharedTransaction {
         };
         match begun.run("BEGIN IMMEDIATE").await {
             Ok(()) => Ok(begun),
-            Err(error) => Err(begun.give_up(error)),
+            Err(error) => Err(begun.fail_transaction(error)),
         }
     }
 
@@ -172,16 +172,16 @@ impl SharedTransaction {
         sqlx::query(sql).execute(&mut *self.connection).await.map(drop)
     }
 
-    async fn end(mut self) {
+    async fn commit_shared(mut self) {
         match self.run("COMMIT").await {
             Ok(()) => drop(self.outcome.set(Ok(()))),
-            Err(error) => drop(self.give_up(error)),
+            Err(error) => drop(self.fail_transaction(error)),
         }
     }
 
     /// Fails the transaction for all of its parts, and closes the connection, as its state is not
     /// known.
-    fn give_up(self, error: sqlx::Error) -> sqlx::Error {
+    fn fail_transaction(self, error: sqlx::Error) -> sqlx::Error {
         let text = error.to_string();
         // With a full disk, SQLite rolls back the whole transaction by itself, and the savepoint is
         // gone.
@@ -193,7 +193,7 @@ impl SharedTransaction {
 }
 
 impl CommitFailure {
-    fn told(&self) -> sqlx::Error {
+    fn to_error(&self) -> sqlx::Error {
         let error = not_kept(&self.text);
         match self.full {
             true => sqlx::Error::Io(io::Error::new(io::ErrorKind::StorageFull, error)),
@@ -208,7 +208,7 @@ fn not_kept(reason: &str) -> sqlx::Error {
 
 /// Runs work to its end even if the caller is cancelled: a future that is dropped between two
 /// statements would leave half a transaction.
-async fn uninterrupted<T: Send + 'static>(
+async fn run_uninterrupted<T: Send + 'static>(
     work: impl Future<Output = sqlx::Result<T>> + Send + 'static,
 ) -> sqlx::Result<T> {
     match tokio::spawn(work).await {

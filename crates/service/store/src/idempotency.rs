@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use crate::arguments::args;
 use crate::checks;
-use crate::clock::micros;
-use crate::database::Transaction;
+use crate::clock::duration_us;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::record::record;
 use crate::statements::{same, statements};
@@ -50,7 +50,7 @@ record! {
 
 /// The right to execute a request, until another process takes it over.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Ticket {
+pub struct RequestTicket {
     scope: String,
     key: String,
     began_us: i64,
@@ -58,10 +58,10 @@ pub struct Ticket {
 
 /// Decision on a request that carries a key.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Begun {
+pub enum RequestClaim {
     /// Execute it in a [unit of work](crate::UnitOfWork::keep) that stores the answer, or
     /// [abandon](Idempotency::abandon) it.
-    New(Ticket),
+    New(RequestTicket),
     /// Another process executes it at present.
     InProgress,
     /// It was executed; return the stored answer.
@@ -77,26 +77,31 @@ pub enum Begun {
 
 /// Repository of idempotency keys.
 #[derive(Debug, Clone, Copy)]
-pub struct Idempotency<'a>(pub(crate) &'a Store);
+pub struct IdempotencyRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of idempotency keys.
-    pub fn idempotency(&self) -> Idempotency<'_> {
-        Idempotency(self)
+    pub fn idempotency(&self) -> IdempotencyRepository<'_> {
+        IdempotencyRepository(self)
     }
 }
 
-impl Idempotency<'_> {
+impl IdempotencyRepository<'_> {
     /// Begins a request. `scope` is its HTTP method and path.
-    pub async fn begin(&self, scope: &str, key: &str, request_sha256: &str) -> Result<Begun> {
-        checks::sha256("request_sha256", request_sha256)?;
-        checks::name("key", key)?;
+    pub async fn begin_request(
+        &self,
+        scope: &str,
+        key: &str,
+        request_sha256: &str,
+    ) -> Result<RequestClaim> {
+        checks::check_sha256("request_sha256", request_sha256)?;
+        checks::check_name("key", key)?;
         let now = self.0.now_us();
         let mut tx = self.0.begin().await?;
         let values = args![scope: scope, key: key, request_sha256: request_sha256, created_us: now];
         let begun = match tx.execute(INSERT, values).await? {
-            0 => again(&mut tx, scope, key, request_sha256, now).await?,
-            _ => Begun::New(ticket(scope, key, now)),
+            0 => resolve_existing(&mut tx, scope, key, request_sha256, now).await?,
+            _ => RequestClaim::New(new_ticket(scope, key, now)),
         };
         tx.commit().await?;
         Ok(begun)
@@ -107,8 +112,8 @@ impl Idempotency<'_> {
     ///
     /// # Errors
     /// Returns a conflict if another process has taken it over.
-    pub async fn prolong(&self, ticket: &Ticket) -> Result<()> {
-        let Ticket { scope, key, began_us } = ticket;
+    pub async fn prolong_ticket(&self, ticket: &RequestTicket) -> Result<()> {
+        let RequestTicket { scope, key, began_us } = ticket;
         let values =
             args![scope: scope, key: key, created_us: *began_us, alive_us: self.0.now_us()];
         let mut tx = self.0.begin().await?;
@@ -118,31 +123,31 @@ impl Idempotency<'_> {
     }
 
     /// Removes the key of a request that failed, so that it can be tried again.
-    pub async fn abandon(&self, ticket: &Ticket) -> Result<()> {
-        let Ticket { scope, key, began_us } = ticket;
+    pub async fn abandon_ticket(&self, ticket: &RequestTicket) -> Result<()> {
+        let RequestTicket { scope, key, began_us } = ticket;
         let mut tx = self.0.begin().await?;
         tx.execute(ABANDON, args![scope: scope, key: key, created_us: *began_us]).await?;
         tx.commit().await
     }
 
     /// Removes the keys that are older than [`KEEP_KEYS`] and returns their number.
-    pub async fn purge(&self) -> Result<u64> {
+    pub async fn purge_expired(&self) -> Result<u64> {
         let mut tx = self.0.begin().await?;
         let purged =
-            tx.execute(PURGE, args![created_us: self.0.now_us() - micros(KEEP_KEYS)]).await?;
+            tx.execute(PURGE, args![created_us: self.0.now_us() - duration_us(KEEP_KEYS)]).await?;
         tx.commit().await?;
         Ok(purged)
     }
 }
 
 /// Stores the answer to a request for replay, within the transaction of its work.
-pub(crate) async fn answered(
-    tx: &mut Transaction,
-    ticket: &Ticket,
+pub(crate) async fn store_answer(
+    tx: &mut AuditedTransaction,
+    ticket: &RequestTicket,
     status: i64,
     body: &str,
 ) -> Result<()> {
-    let Ticket { scope, key, began_us } = ticket;
+    let RequestTicket { scope, key, began_us } = ticket;
     let values =
         // The start identifies the execution: after a takeover no row matches, and the work is
         // undone.
@@ -162,35 +167,39 @@ fn taken_over(key: &str) -> StoreError {
 }
 
 /// Returns the decision for a key that exists already.
-async fn again(
-    tx: &mut Transaction,
+async fn resolve_existing(
+    tx: &mut AuditedTransaction,
     scope: &str,
     key: &str,
     request_sha256: &str,
     now: i64,
-) -> Result<Begun> {
-    let entry: Option<KeyEntry> = tx.optional(GET, args![scope: scope, key: key]).await?;
+) -> Result<RequestClaim> {
+    let entry: Option<KeyEntry> = tx.fetch_optional(GET, args![scope: scope, key: key]).await?;
     Ok(match entry {
         // It was abandoned between the two statements; the caller tries again.
-        None => Begun::InProgress,
+        None => RequestClaim::InProgress,
         // The same key for another request is an error of the caller, not a retry.
-        Some(entry) if entry.request_sha256 != request_sha256 => Begun::Mismatch,
+        Some(entry) if entry.request_sha256 != request_sha256 => RequestClaim::Mismatch,
         Some(KeyEntry { status: Some(status), response, .. }) => {
-            Begun::Replay { status, body: response.unwrap_or_default() }
+            RequestClaim::Replay { status, body: response.unwrap_or_default() }
         }
         Some(_) => take_over(tx, scope, key, now).await?,
     })
 }
 
-async fn take_over(tx: &mut Transaction, scope: &str, key: &str, now: i64) -> Result<Begun> {
-    let values =
-        args![scope: scope, key: key, created_us: now, before_us: now - micros(TAKE_OVER_AFTER)];
+async fn take_over(
+    tx: &mut AuditedTransaction,
+    scope: &str,
+    key: &str,
+    now: i64,
+) -> Result<RequestClaim> {
+    let values = args![scope: scope, key: key, created_us: now, before_us: now - duration_us(TAKE_OVER_AFTER)];
     Ok(match tx.execute(TAKE_OVER, values).await? {
-        0 => Begun::InProgress,
-        _ => Begun::New(ticket(scope, key, now)),
+        0 => RequestClaim::InProgress,
+        _ => RequestClaim::New(new_ticket(scope, key, now)),
     })
 }
 
-fn ticket(scope: &str, key: &str, began_us: i64) -> Ticket {
-    Ticket { scope: scope.to_owned(), key: key.to_owned(), began_us }
+fn new_ticket(scope: &str, key: &str, began_us: i64) -> RequestTicket {
+    RequestTicket { scope: scope.to_owned(), key: key.to_owned(), began_us }
 }

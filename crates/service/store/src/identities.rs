@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::grants::{self, GrantRow};
 use crate::record::record;
@@ -32,7 +32,7 @@ statements! {
 
 record! {
     /// An identity at a provider, and the user that it belongs to.
-    pub struct Identity {
+    pub struct IdentityRow {
         /// Issuer URL of the provider.
         pub issuer: String,
         /// Subject, unique within the issuer.
@@ -59,69 +59,75 @@ pub struct SignIn<'a> {
 
 /// Repository of identities.
 #[derive(Debug, Clone, Copy)]
-pub struct Identities<'a>(pub(crate) &'a Store);
+pub struct IdentityRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of identities at OpenID providers.
-    pub fn identities(&self) -> Identities<'_> {
-        Identities(self)
+    pub fn identities(&self) -> IdentityRepository<'_> {
+        IdentityRepository(self)
     }
 }
 
 impl SignIn<'_> {
     /// Returns the sign-in in the form of the audit.
-    fn told(&self) -> Value {
+    fn audit_state(&self) -> Value {
         json!({ "issuer": self.issuer, "subject": self.subject })
     }
 }
 
-impl Identities<'_> {
+impl IdentityRepository<'_> {
     /// Finds an identity, if it belongs to a user here.
-    pub async fn find(&self, issuer: &str, subject: &str) -> Result<Option<Identity>> {
-        self.0.database().optional(GET, args![issuer: issuer, subject: subject]).await
+    pub async fn find(&self, issuer: &str, subject: &str) -> Result<Option<IdentityRow>> {
+        self.0.database().fetch_optional(GET, args![issuer: issuer, subject: subject]).await
     }
 
     /// Returns the identities of a user.
-    pub async fn of(&self, user: &str) -> Result<Vec<Identity>> {
-        self.0.database().all(OF, args![user_name: user]).await
+    pub async fn list_by_user(&self, user: &str) -> Result<Vec<IdentityRow>> {
+        self.0.database().fetch_all(OF, args![user_name: user]).await
     }
 
     /// Replaces the identities of a user, pairs of issuer and subject; ends the user's sessions if
     /// one is removed.
-    pub async fn replace(&self, user: &str, those: &[(String, String)]) -> Result<()> {
+    pub async fn replace_identities(&self, user: &str, those: &[(String, String)]) -> Result<()> {
         let mut tx = self.0.begin().await?;
-        users::there(&mut tx, user).await?;
+        users::require_user(&mut tx, user).await?;
         // Read within the transaction, for the audit and for the comparison below.
-        let before: Vec<Identity> = tx.all(OF, args![user_name: user]).await?;
+        let before: Vec<IdentityRow> = tx.fetch_all(OF, args![user_name: user]).await?;
         tx.execute(CLEAR, args![user_name: user]).await?;
         for (issuer, subject) in those {
-            self.put(&mut tx, user, issuer, subject).await?;
+            self.insert_identity(&mut tx, user, issuer, subject).await?;
         }
-        let pair = |one: &Identity| (one.issuer.clone(), one.subject.clone());
+        let pair = |one: &IdentityRow| (one.issuer.clone(), one.subject.clone());
         let before: Vec<(String, String)> = before.iter().map(pair).collect();
         // A session may have begun by the identity that goes.
         if before.iter().any(|one| !those.contains(one)) {
             users::sign_out(&mut tx, user).await?;
         }
         let (before, after) = (json!({ "identities": before }), json!({ "identities": those }));
-        let subject = User::principal(user);
-        tx.note(self.0.now_us(), "user.identities", subject, Some(before), Some(after));
+        let subject = User::principal_name(user);
+        tx.record_audit_event(
+            self.0.now_us(),
+            "user.identities",
+            subject,
+            Some(before),
+            Some(after),
+        );
         tx.commit().await
     }
 
     /// Links the identity of a sign-in to a user, in addition to existing ones.
-    pub async fn add(&self, user: &str, sign_in: SignIn<'_>) -> Result<()> {
+    pub async fn link_identity(&self, user: &str, sign_in: SignIn<'_>) -> Result<()> {
         let mut tx = self.0.begin().await?;
-        self.spend(&mut tx, sign_in).await?;
-        users::there(&mut tx, user).await?;
-        self.put(&mut tx, user, sign_in.issuer, sign_in.subject).await?;
-        let (now, subject) = (self.0.now_us(), User::principal(user));
-        tx.note(now, "user.identity", subject, None, Some(sign_in.told()));
+        self.mark_used(&mut tx, sign_in).await?;
+        users::require_user(&mut tx, user).await?;
+        self.insert_identity(&mut tx, user, sign_in.issuer, sign_in.subject).await?;
+        let (now, subject) = (self.0.now_us(), User::principal_name(user));
+        tx.record_audit_event(now, "user.identity", subject, None, Some(sign_in.audit_state()));
         tx.commit().await
     }
 
     /// Creates a user with the identity of a sign-in and without a password.
-    pub async fn create(
+    pub async fn create_user(
         &self,
         name: &str,
         title: &str,
@@ -129,14 +135,15 @@ impl Identities<'_> {
         sign_in: SignIn<'_>,
     ) -> Result<()> {
         let mut tx = self.0.begin().await?;
-        users::insert(&mut tx, name, title, None, self.0.now_us()).await?;
-        let principal = User::principal(name);
-        grants::put(&mut tx, &principal, roles).await?;
+        users::insert_user(&mut tx, name, title, None, self.0.now_us()).await?;
+        let principal = User::principal_name(name);
+        grants::insert_roles(&mut tx, &principal, roles).await?;
         // User, roles and identity in one transaction: no user without a way to sign in remains.
-        self.put(&mut tx, name, sign_in.issuer, sign_in.subject).await?;
-        let identity = sign_in.told();
-        let after = json!({ "title": title, "roles": grants::words(roles), "identity": identity });
-        tx.note(self.0.now_us(), "user.create", principal, None, Some(after));
+        self.insert_identity(&mut tx, name, sign_in.issuer, sign_in.subject).await?;
+        let identity = sign_in.audit_state();
+        let after =
+            json!({ "title": title, "roles": grants::role_names(roles), "identity": identity });
+        tx.record_audit_event(self.0.now_us(), "user.create", principal, None, Some(after));
         tx.commit().await
     }
 
@@ -149,35 +156,41 @@ impl Identities<'_> {
         sign_in: SignIn<'_>,
     ) -> Result<()> {
         let mut tx = self.0.begin().await?;
-        self.spend(&mut tx, sign_in).await?;
+        self.mark_used(&mut tx, sign_in).await?;
         let now = self.0.now_us();
-        sessions::insert(&mut tx, sha256, user, now, expires_us).await?;
-        tx.note(now, "session.begin", User::principal(user), None, Some(sign_in.told()));
+        sessions::insert_session(&mut tx, sha256, user, now, expires_us).await?;
+        tx.record_audit_event(
+            now,
+            "session.begin",
+            User::principal_name(user),
+            None,
+            Some(sign_in.audit_state()),
+        );
         tx.commit().await
     }
 
     /// Records in the audit that a sign-in was refused, and why.
-    pub async fn refuse(&self, sign_in: SignIn<'_>, why: &str) -> Result<()> {
+    pub async fn record_refusal(&self, sign_in: SignIn<'_>, why: &str) -> Result<()> {
         let mut tx = self.0.begin().await?;
-        self.spend(&mut tx, sign_in).await?;
+        self.mark_used(&mut tx, sign_in).await?;
         let after = json!({ "issuer": sign_in.issuer, "subject": sign_in.subject, "why": why });
         let subject = format!("identity:{}", sign_in.subject);
-        tx.note(self.0.now_us(), "session.refuse", subject, None, Some(after));
+        tx.record_audit_event(self.0.now_us(), "session.refuse", subject, None, Some(after));
         tx.commit().await
     }
 
-    async fn put(
+    async fn insert_identity(
         &self,
-        tx: &mut Transaction,
+        tx: &mut AuditedTransaction,
         user: &str,
         issuer: &str,
         subject: &str,
     ) -> Result<()> {
-        checks::line("issuer", issuer)?;
-        checks::line("subject", subject)?;
+        checks::check_line("issuer", issuer)?;
+        checks::check_line("subject", subject)?;
         let values =
             args![issuer: issuer, subject: subject, user_name: user, created_us: self.0.now_us()];
-        let put: Option<Identity> = tx.optional(PUT, values).await?;
+        let put: Option<IdentityRow> = tx.fetch_optional(PUT, values).await?;
         match put {
             Some(_) => Ok(()),
             None => Err(StoreError::conflict("identity", subject, "is another user's already")),
@@ -185,8 +198,8 @@ impl Identities<'_> {
     }
 
     /// Marks a sign-in as used; a second use is refused.
-    async fn spend(&self, tx: &mut Transaction, sign_in: SignIn<'_>) -> Result<()> {
-        checks::sha256("sha256", sign_in.sha256)?;
+    async fn mark_used(&self, tx: &mut AuditedTransaction, sign_in: SignIn<'_>) -> Result<()> {
+        checks::check_sha256("sha256", sign_in.sha256)?;
         // Expired sign-ins are refused by their age; their marks are no longer needed.
         tx.execute(PURGE, args![expires_us: self.0.now_us()]).await?;
         let values = args![sha256: sign_in.sha256, expires_us: sign_in.expires_us];

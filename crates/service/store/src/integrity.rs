@@ -188,7 +188,7 @@ const CHECKS: &[(&str, Statement)] = &[
 
 record! {
     /// A fault as a check returns it.
-    pub struct Found {
+    pub struct FaultRow {
         /// Kind and name of the row.
         pub place: String,
         /// Description of the fault.
@@ -198,7 +198,7 @@ record! {
 
 /// A violation of the integrity of a store.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Fault {
+pub struct IntegrityFault {
     /// Name of the check that found it.
     pub check: &'static str,
     /// Place of the fault: the kind of row and its name or id.
@@ -207,7 +207,7 @@ pub struct Fault {
     pub message: String,
 }
 
-impl Fault {
+impl IntegrityFault {
     /// Creates a fault that `check` has found at `place`.
     pub fn new(check: &'static str, place: impl Into<String>, message: impl Into<String>) -> Self {
         Self { check, place: place.into(), message: message.into() }
@@ -216,12 +216,14 @@ impl Fault {
 
 impl Store {
     /// Checks the database and every reference between its rows; returns all faults.
-    pub async fn row_faults(&self) -> Result<Vec<Fault>> {
-        let (mut faults, mut reader) = (Vec::new(), self.database().reader().await?);
+    pub async fn row_faults(&self) -> Result<Vec<IntegrityFault>> {
+        let (mut faults, mut reader) = (Vec::new(), self.database().acquire_reader().await?);
         for (check, statement) in CHECKS {
-            let found: Vec<Found> = reader.all_of_table(*statement, &[]).await?;
+            let found: Vec<FaultRow> = reader.fetch_table(*statement, &[]).await?;
             faults.extend(
-                found.into_iter().map(|found| Fault::new(check, found.place, found.message)),
+                found
+                    .into_iter()
+                    .map(|found| IntegrityFault::new(check, found.place, found.message)),
             );
         }
         Ok(faults)

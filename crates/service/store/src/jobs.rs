@@ -3,12 +3,12 @@
 use serde_json::json;
 
 use crate::actor::Actor;
-use crate::arguments::{Args, args};
+use crate::arguments::{StatementArgs, args};
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::job::{Job, JobCount, JobFilter, JobState, NewJob, job};
-use crate::page::{List, Page};
+use crate::page::{ListPage, PageRequest};
 use crate::statements::{Statement, same, statements};
 use crate::store::Store;
 
@@ -39,62 +39,64 @@ statements! {
 
 /// Repository of jobs.
 #[derive(Debug, Clone, Copy)]
-pub struct Jobs<'a>(pub(crate) &'a Store);
+pub struct JobRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of jobs.
-    pub fn jobs(&self) -> Jobs<'_> {
-        Jobs(self)
+    pub fn jobs(&self) -> JobRepository<'_> {
+        JobRepository(self)
     }
 }
 
-impl Jobs<'_> {
+impl JobRepository<'_> {
     /// Queues a job.
     pub async fn enqueue(&self, new: &NewJob) -> Result<Job> {
         let mut tx = self.0.begin().await?;
-        let job = insert(self.0, &mut tx, new).await?;
+        let job = insert_job(self.0, &mut tx, new).await?;
         tx.commit().await?;
         Ok(job)
     }
 
     /// Returns the job of an id.
     pub async fn get(&self, id: &str) -> Result<Job> {
-        let job = self.0.database().optional(GET, args![id: id]).await?;
-        job.ok_or_else(|| StoreError::missing("job", id))
+        let job = self.0.database().fetch_optional(GET, args![id: id]).await?;
+        job.ok_or_else(|| StoreError::not_found("job", id))
     }
 
     /// Lists jobs, the latest first.
-    pub async fn list(&self, filter: &JobFilter, page: &Page) -> Result<List<Job>> {
+    pub async fn list(&self, filter: &JobFilter, page: &PageRequest) -> Result<ListPage<Job>> {
         let state = filter.state.map(JobState::as_str);
-        let (database, limit) = (self.0.database(), page.fetch()?);
+        let (database, limit) = (self.0.database(), page.fetch_limit()?);
         // Separate statements, so that each has an index of its own order.
         let jobs = match (&filter.ship, state) {
-            (None, None) => database.all(LIST, args![after: &page.after, limit: limit]).await?,
+            (None, None) => {
+                database.fetch_all(LIST, args![after: &page.after, limit: limit]).await?
+            }
             (None, Some(state)) => {
                 database
-                    .all(LIST_STATE, args![after: &page.after, limit: limit, state: state])
+                    .fetch_all(LIST_STATE, args![after: &page.after, limit: limit, state: state])
                     .await?
             }
             (Some(ship), state) => {
                 database
-                    .all(
+                    .fetch_all(
                         LIST_SHIP,
                         args![after: &page.after, limit: limit, ship: ship, state: state],
                     )
                     .await?
             }
         };
-        Ok(page.of(jobs, |job: &Job| job.id.clone()))
+        Ok(page.build_page(jobs, |job: &Job| job.id.clone()))
     }
 
     /// Counts the jobs by kind and state.
-    pub async fn counts(&self) -> Result<Vec<JobCount>> {
-        self.0.database().all(COUNTS, &[]).await
+    pub async fn count_by_state(&self) -> Result<Vec<JobCount>> {
+        self.0.database().fetch_all(COUNTS, &[]).await
     }
 
     /// Cancels a job that waits, or asks the worker of a running one to stop.
     pub async fn request_cancel(&self, id: &str) -> Result<Job> {
-        self.unless(
+        self.change_state(
             (CANCEL, "job.cancel"),
             id,
             args![id: id, finished_us: self.0.now_us()],
@@ -105,7 +107,7 @@ impl Jobs<'_> {
 
     /// Puts a job that failed or was cancelled back in the queue.
     pub async fn retry(&self, id: &str) -> Result<Job> {
-        self.unless(
+        self.change_state(
             (RETRY, "job.retry"),
             id,
             args![id: id],
@@ -116,47 +118,51 @@ impl Jobs<'_> {
 
     /// Applies a change that is allowed in some states only; `rule` says which ones in the
     /// conflict.
-    async fn unless(
+    async fn change_state(
         &self,
         (statement, action): (Statement, &'static str),
         id: &str,
-        values: Args<'_>,
+        values: StatementArgs<'_>,
         rule: &str,
     ) -> Result<Job> {
         let mut tx = self.0.begin().await?;
-        let Some(job) = tx.optional::<Job>(statement, values).await? else {
+        let Some(job) = tx.fetch_optional::<Job>(statement, values).await? else {
             // No row matched: the job does not exist, or its state forbids the change.
-            let state = find(&mut tx, id).await?.state;
+            let state = find_job(&mut tx, id).await?.state;
             return Err(StoreError::conflict("job", id, format!("is {state}; {rule}")));
         };
         let after =
             json!({ "state": job.state.as_str(), "cancel_requested": job.cancel_requested });
-        tx.note(self.0.now_us(), action, subject(id), None, Some(after));
+        tx.record_audit_event(self.0.now_us(), action, audit_subject(id), None, Some(after));
         tx.commit().await?;
         Ok(job)
     }
 }
 
 /// Returns the subject of audit entries about a job.
-fn subject(id: &str) -> String {
+fn audit_subject(id: &str) -> String {
     format!("job:{id}")
 }
 
 /// Queues a job within a transaction.
-pub(crate) async fn insert(store: &Store, tx: &mut Transaction, new: &NewJob) -> Result<Job> {
-    checks::name("kind", &new.kind)?;
-    checks::json("request", &new.request)?;
+pub(crate) async fn insert_job(
+    store: &Store,
+    tx: &mut AuditedTransaction,
+    new: &NewJob,
+) -> Result<Job> {
+    checks::check_name("kind", &new.kind)?;
+    checks::check_json("request", &new.request)?;
     let (id, now, author) = (store.new_id(), store.now_us(), Actor::current().name);
     let values = args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request,
         created_us: now, author: &author];
-    let job = tx.one(INSERT, values).await?;
+    let job = tx.fetch_one(INSERT, values).await?;
     let after = json!({ "kind": new.kind, "ship": new.ship });
-    tx.note(now, "job.create", subject(&id), None, Some(after));
+    tx.record_audit_event(now, "job.create", audit_subject(&id), None, Some(after));
     Ok(job)
 }
 
 /// Returns a job as the transaction sees it.
-pub(crate) async fn find(tx: &mut Transaction, id: &str) -> Result<Job> {
-    let job = tx.optional(GET, args![id: id]).await?;
-    job.ok_or_else(|| StoreError::missing("job", id))
+pub(crate) async fn find_job(tx: &mut AuditedTransaction, id: &str) -> Result<Job> {
+    let job = tx.fetch_optional(GET, args![id: id]).await?;
+    job.ok_or_else(|| StoreError::not_found("job", id))
 }

@@ -6,7 +6,7 @@ use crate::arguments::args;
 use crate::checks;
 use crate::error::{Result, StoreError};
 use crate::grants::{self, GrantRow};
-use crate::page::{List, Page};
+use crate::page::{ListPage, PageRequest};
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
@@ -87,7 +87,7 @@ impl Store {
 
 impl KeyRow {
     /// Returns the principal of a key in [`crate::Grants`] and in the audit.
-    pub fn principal(prefix: &str) -> String {
+    pub fn principal_name(prefix: &str) -> String {
         format!("key:{prefix}")
     }
 
@@ -100,63 +100,70 @@ impl KeyRow {
 impl ServiceKeys<'_> {
     /// Stores a key with its roles.
     pub async fn create(&self, new: &NewKey, roles: &[GrantRow]) -> Result<KeyRow> {
-        checks::sha256("sha256", &new.sha256)?;
+        checks::check_sha256("sha256", &new.sha256)?;
         let NewKey { prefix, title, user, sha256, expires_us } = new;
         let mut tx = self.0.begin().await?;
         if let Some(name) = user {
             // A disabled user counts as absent here.
-            let found: Option<crate::users::User> = tx.optional(USER, args![name: name]).await?;
+            let found: Option<crate::users::User> =
+                tx.fetch_optional(USER, args![name: name]).await?;
             found
                 .ok_or_else(|| StoreError::invalid("user", format!("there is no user `{name}`")))?;
         }
         let values = args![prefix: prefix, title: title, user_name: user, sha256: sha256,
             created_us: self.0.now_us(), expires_us: *expires_us];
-        let key = tx.one(INSERT, values).await?;
-        let principal = KeyRow::principal(prefix);
-        grants::put(&mut tx, &principal, roles).await?;
+        let key = tx.fetch_one(INSERT, values).await?;
+        let principal = KeyRow::principal_name(prefix);
+        grants::insert_roles(&mut tx, &principal, roles).await?;
         let after = json!({ "title": title, "user": user, "expires_us": expires_us,
-            "roles": grants::words(roles) });
-        tx.note(self.0.now_us(), "key.create", principal, None, Some(after));
+            "roles": grants::role_names(roles) });
+        tx.record_audit_event(self.0.now_us(), "key.create", principal, None, Some(after));
         tx.commit().await?;
         Ok(key)
     }
 
     /// Returns a key.
     pub async fn get(&self, prefix: &str) -> Result<KeyRow> {
-        self.find(prefix).await?.ok_or_else(|| StoreError::missing("key", prefix))
+        self.find(prefix).await?.ok_or_else(|| StoreError::not_found("key", prefix))
     }
 
     /// Finds a key by its prefix.
     pub async fn find(&self, prefix: &str) -> Result<Option<KeyRow>> {
-        self.0.database().optional(GET, args![prefix: prefix]).await
+        self.0.database().fetch_optional(GET, args![prefix: prefix]).await
     }
 
     /// Lists the keys by prefix, including revoked and expired ones.
-    pub async fn list(&self, page: &Page) -> Result<List<KeyRow>> {
-        let values = args![after: &page.after, limit: page.fetch()?];
-        let keys = self.0.database().all(LIST, values).await?;
-        Ok(page.of(keys, |key: &KeyRow| key.prefix.clone()))
+    pub async fn list(&self, page: &PageRequest) -> Result<ListPage<KeyRow>> {
+        let values = args![after: &page.after, limit: page.fetch_limit()?];
+        let keys = self.0.database().fetch_all(LIST, values).await?;
+        Ok(page.build_page(keys, |key: &KeyRow| key.prefix.clone()))
     }
 
     /// Revokes a key permanently.
     pub async fn revoke(&self, prefix: &str) -> Result<KeyRow> {
         let mut tx = self.0.begin().await?;
         let values = args![prefix: prefix, revoked_us: self.0.now_us()];
-        let Some(key) = tx.optional(REVOKE, values).await? else {
-            return Err(match tx.optional::<KeyRow>(GET, args![prefix: prefix]).await? {
+        let Some(key) = tx.fetch_optional(REVOKE, values).await? else {
+            return Err(match tx.fetch_optional::<KeyRow>(GET, args![prefix: prefix]).await? {
                 // The update matches active keys only; the read shows why it matched none.
                 Some(_) => StoreError::conflict("key", prefix, "is revoked already"),
-                None => StoreError::missing("key", prefix),
+                None => StoreError::not_found("key", prefix),
             });
         };
         let after = json!({ "revoked": true });
-        tx.note(self.0.now_us(), "key.revoke", KeyRow::principal(prefix), None, Some(after));
+        tx.record_audit_event(
+            self.0.now_us(),
+            "key.revoke",
+            KeyRow::principal_name(prefix),
+            None,
+            Some(after),
+        );
         tx.commit().await?;
         Ok(key)
     }
 
     /// Records that a key is being used.
-    pub async fn used(&self, prefix: &str) -> Result<()> {
+    pub async fn record_use(&self, prefix: &str) -> Result<()> {
         let mut tx = self.0.begin().await?;
         tx.execute(USED, args![prefix: prefix, last_used_us: self.0.now_us()]).await?;
         tx.commit().await

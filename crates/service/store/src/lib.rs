@@ -74,56 +74,61 @@ mod webhooks;
 mod work;
 
 pub use actor::Actor;
-pub use aliases::{Alias, AliasChange, AliasMove, Aliases, Expect};
-pub use audit::{Audit, AuditFilter};
+pub use aliases::{Alias, AliasChange, AliasMove, AliasRepository, ExpectedRevision};
+pub use audit::{AuditFilter, AuditLog};
 pub use backup::{BackupManifest, DatabaseKind, FileHead, TableHead};
-pub use bulks::{Bulk, BulkOutcome, Bulks, ChunkCount, NewOutcome, OutcomeCount};
+pub use bulks::{
+    BulkOutcome, BulkRepository, ChunkCount, FamilyRefinement, NewOutcome, OutcomeCount,
+};
 pub use chain::AuditHead;
 pub use checks::{MAX_NAME_CHARS, MAX_TEXT_BYTES};
-pub use clock::{Clock, Ids, ManualClock, SequentialIds, SystemClock, UuidIds};
-pub use commit::{Committed, Kept, Refinement};
-pub use commit_diagnosis::{CommittedDiagnosis, Diagnosis, PartDiagnosis};
-pub use diagnoses::{Diagnosed, Diagnoses, NewDiagnosed};
+pub use clock::{Clock, IdGenerator, ManualClock, SequentialIds, SystemClock, UuidIds};
+pub use commit::{CommittedRefinement, NewRefinement, RefinementRows};
+pub use commit_diagnosis::{CommittedDiagnosis, NewDiagnosis, PartDiagnosis};
+pub use diagnoses::{DiagnosisRepository, DiagnosisRow, NewDiagnosisRow};
 pub use effects::{EffectLibraries, EffectLibrary};
 pub use entry::AuditEntry;
 pub use error::{Result, StoreError, is_out_of_space};
-pub use families::{Families, Family, FamilyMember, FamilyPrior};
-pub use grants::{GrantRow, Grants};
-pub use idempotency::{Begun, Idempotency, KEEP_KEYS, PROLONG_EVERY, TAKE_OVER_AFTER, Ticket};
-pub use identities::{Identities, Identity, SignIn};
-pub use integrity::Fault;
+pub use families::{Family, FamilyMember, FamilyPrior, FamilyRepository};
+pub use grants::{GrantRepository, GrantRow};
+pub use idempotency::{
+    IdempotencyRepository, KEEP_KEYS, PROLONG_EVERY, RequestClaim, RequestTicket, TAKE_OVER_AFTER,
+};
+pub use identities::{IdentityRepository, IdentityRow, SignIn};
+pub use integrity::IntegrityFault;
 pub use job::{Job, JobCount, JobFilter, JobState, NewJob};
-pub use jobs::Jobs;
+pub use jobs::JobRepository;
 pub use keys::{KeyRow, NewKey, ServiceKeys};
-pub use laws::{Law, Laws};
-pub use notes::{MAX_NOTE_CHARS, Note};
+pub use laws::{Law, LawRepository};
+pub use notes::{MAX_NOTE_CHARS, ShipNote};
 pub use object_list::{ObjectHead, ObjectName};
-pub use objects::{Objects, sha256_hex};
+pub use objects::{ObjectStorage, sha256_hex};
 pub use objects_error::ObjectsError;
 pub use objects_place::{ObjectsPlace, S3Place, provide_cryptography};
-pub use page::{List, MAX_LIMIT, Page};
+pub use page::{ListPage, MAX_LIMIT, PageRequest};
 pub use questions::CurrentVersion;
-pub use reports::{NewReport, Report, ReportHead, Reports};
+pub use reports::{NewReport, Report, ReportHead, ReportRepository};
 pub use search::{
     FactRange, FoundShip, MAX_RANGES, ShipKey, ShipSearch, ShipVectors, VectorsState,
 };
-pub use search_index::{SearchIndex, ShipFact, ShipFacts, Waiting};
-pub use sessions::{Session, Sessions};
+pub use search_index::{SearchIndex, ShipFact, ShipFacts, StaleShip};
+pub use sessions::{Session, SessionRepository};
 pub use settings::StoreSettings;
-pub use ships::{NewShip, Ship, ShipRevision, Ships};
-pub use staged::Staged;
-pub use standings::ShipStanding;
+pub use ships::{NewShip, Ship, ShipRepository, ShipRevision};
+pub use staged::StagedObject;
+pub use standings::ShipOverview;
 pub use statistics::TrialStatistics;
 pub use store::Store;
 pub use tags::MAX_TAGS;
-pub use trials::{Inserted, NewTrial, Trial, Trials};
+pub use trials::{InsertOutcome, NewTrial, Trial, TrialRepository};
 #[cfg(feature = "testing")]
-pub use unit::Moment;
+pub use unit::CrashPoint;
 pub use unit_of_work::UnitOfWork;
-pub use users::{User, Users};
+pub use users::{User, UserRepository};
 pub use version::{NewVersion, Version, VersionHead};
-pub use versions::Versions;
+pub use versions::VersionRepository;
 pub use webhooks::{
-    CHAMPION_MOVED, DIAGNOSIS_FAILED, DRIFT, Delivery, EVENTS, NewWebhook, Webhook, Webhooks,
+    CHAMPION_MOVED, DIAGNOSIS_FAILED, DRIFT, Delivery, EVENTS, NewWebhook, Webhook,
+    WebhookRepository,
 };
-pub use work::{Claimed, MAX_LOST_WORKERS};
+pub use work::{JobClaim, MAX_LOST_WORKERS};

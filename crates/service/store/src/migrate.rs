@@ -42,7 +42,7 @@ const POSTGRES: &[MigrationSource] = &[
     (14, "weighed", include_str!("../../../../migrations/postgres/0014_weighed.sql")),
 ];
 
-fn migrator(sources: &'static [MigrationSource]) -> Migrator {
+fn build_migrator(sources: &'static [MigrationSource]) -> Migrator {
     let migration = |&(version, name, sql): &MigrationSource| {
         // The last argument: each migration runs within a transaction.
         Migration::new(version, name.into(), MigrationType::Simple, sql.into_sql_str(), false)
@@ -52,20 +52,20 @@ fn migrator(sources: &'static [MigrationSource]) -> Migrator {
 
 /// Migrates an SQLite database in one immediate transaction: its write lock keeps other processes
 /// out, as sqlx has no other lock for SQLite.
-pub(crate) async fn sqlite(pool: &SqlitePool) -> Result<()> {
+pub(crate) async fn migrate_sqlite(pool: &SqlitePool) -> Result<()> {
     let mut tx = pool.begin_with("BEGIN IMMEDIATE").await?;
-    migrator(SQLITE).run_direct(None, &mut *tx, false).await.map_err(sqlx::Error::from)?;
+    build_migrator(SQLITE).run_direct(None, &mut *tx, false).await.map_err(sqlx::Error::from)?;
     Ok(tx.commit().await?)
 }
 
 /// Migrates a PostgreSQL database under the advisory lock of sqlx.
-pub(crate) async fn postgres(pool: &PgPool) -> Result<()> {
-    Ok(migrator(POSTGRES).run(pool).await.map_err(sqlx::Error::from)?)
+pub(crate) async fn migrate_postgres(pool: &PgPool) -> Result<()> {
+    Ok(build_migrator(POSTGRES).run(pool).await.map_err(sqlx::Error::from)?)
 }
 
 /// Creates the schema of an earlier migration, within a transaction of the caller.
 pub(crate) async fn postgres_up_to(version: i64, connection: &mut PgConnection) -> Result<()> {
-    Ok(migrator(POSTGRES)
+    Ok(build_migrator(POSTGRES)
         .run_direct(Some(version), connection, false)
         .await
         .map_err(sqlx::Error::from)?)
@@ -77,14 +77,14 @@ pub(crate) async fn sqlite_up_to(
     version: i64,
     connection: &mut sqlx::SqliteConnection,
 ) -> Result<()> {
-    Ok(migrator(SQLITE)
+    Ok(build_migrator(SQLITE)
         .run_direct(Some(version), connection, false)
         .await
         .map_err(sqlx::Error::from)?)
 }
 
 /// Returns the number of the newest migration.
-pub(crate) fn newest() -> i64 {
+pub(crate) fn newest_version() -> i64 {
     SQLITE.iter().map(|(version, ..)| *version).max().unwrap_or(0)
 }
 

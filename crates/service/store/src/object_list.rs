@@ -7,11 +7,11 @@ use object_store::{ObjectMeta, ObjectStore as _};
 
 use crate::checks;
 use crate::error::{Result, StoreError};
-use crate::objects::{FOLDER, Objects};
+use crate::objects::{FOLDER, ObjectStorage};
 use crate::objects_error::ObjectsError;
 
 /// Number of concurrent requests to the object store.
-pub(crate) const AT_ONCE: usize = 32;
+pub(crate) const MAX_CONCURRENT: usize = 32;
 
 /// Name of an object.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -33,39 +33,46 @@ pub struct ObjectHead {
     pub modified_us: i64,
 }
 
-impl Objects {
+impl ObjectStorage {
     /// Streams all objects, in no order.
     pub fn list(&self) -> BoxStream<'_, Result<ObjectHead>> {
         let all = self.store.list(Some(&ObjectPath::from(FOLDER)));
-        all.map(|meta| Ok(head(&meta.map_err(ObjectsError::from)?))).boxed()
+        all.map(|meta| Ok(object_head(&meta.map_err(ObjectsError::from)?))).boxed()
     }
 
     /// Checks that objects of all the keys exist.
     ///
     /// # Errors
     /// Returns an error that names a missing one.
-    pub(crate) async fn must_have(&self, keys: impl Iterator<Item = String> + Send) -> Result<()> {
+    pub(crate) async fn check_present(
+        &self,
+        keys: impl Iterator<Item = String> + Send,
+    ) -> Result<()> {
         let there = |key: String| async move {
-            if self.exists(&key).await? { Ok(()) } else { Err(StoreError::missing("object", key)) }
+            if self.exists(&key).await? {
+                Ok(())
+            } else {
+                Err(StoreError::not_found("object", key))
+            }
         };
         stream::iter(keys.collect::<Vec<_>>())
             .map(there)
-            .buffer_unordered(AT_ONCE)
+            .buffer_unordered(MAX_CONCURRENT)
             .try_collect()
             .await
     }
 }
 
-fn head(meta: &ObjectMeta) -> ObjectHead {
+fn object_head(meta: &ObjectMeta) -> ObjectHead {
     let path = meta.location.as_ref();
     ObjectHead {
-        name: name(path),
+        name: object_name(path),
         bytes: meta.size,
         modified_us: meta.last_modified.timestamp_micros(),
     }
 }
 
-fn name(path: &str) -> ObjectName {
+fn object_name(path: &str) -> ObjectName {
     let key = path
         .strip_prefix(FOLDER)
         .and_then(|rest| rest.strip_prefix('/'))
@@ -73,7 +80,8 @@ fn name(path: &str) -> ObjectName {
     match key.filter(|key| {
         // The slash must come after the first two digits, otherwise two paths could mean the same
         // key.
-        checks::sha256("key", key).is_ok() && path.as_bytes().get(FOLDER.len() + 3) == Some(&b'/')
+        checks::check_sha256("key", key).is_ok()
+            && path.as_bytes().get(FOLDER.len() + 3) == Some(&b'/')
     }) {
         Some(key) => ObjectName::Key(key),
         None => ObjectName::Stranger(path.to_owned()),
@@ -87,14 +95,14 @@ mod tests {
     #[test]
     fn only_hashes_in_their_folders_are_keys() {
         let key = "ab".to_owned() + &"0".repeat(62);
-        assert_eq!(name(&format!("objects/ab/{}", &key[2..])), ObjectName::Key(key.clone()));
+        assert_eq!(object_name(&format!("objects/ab/{}", &key[2..])), ObjectName::Key(key.clone()));
         for other in [
             format!("objects/abc/{}", &key[3..]),
             format!("objects/{key}"),
             "objects/ab/x".into(),
             "other".into(),
         ] {
-            assert_eq!(name(&other), ObjectName::Stranger(other.clone()));
+            assert_eq!(object_name(&other), ObjectName::Stranger(other.clone()));
         }
     }
 }

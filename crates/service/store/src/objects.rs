@@ -24,59 +24,59 @@ use crate::objects_error::ObjectsError;
 
 /// A content-addressed object store. A clone is another handle on the same store.
 #[derive(Debug, Clone)]
-pub struct Objects {
+pub struct ObjectStorage {
     pub(crate) store: Arc<dyn ObjectStore>,
     /// Root folder of a local store; none for a bucket.
     pub(crate) folder: Option<PathBuf>,
 }
 
-impl Objects {
+impl ObjectStorage {
     /// Opens a store below the folder `root`, which is created if absent.
-    pub fn local(root: &Path) -> Result<Self> {
-        folders::make(root).map_err(ObjectsError::from)?;
+    pub fn open_folder(root: &Path) -> Result<Self> {
+        folders::create_durably(root).map_err(ObjectsError::from)?;
         let store = LocalFileSystem::new_with_prefix(root).map_err(ObjectsError::from)?;
         Ok(Self { store: Arc::new(store.with_fsync(true)), folder: Some(root.to_path_buf()) })
     }
 
     /// Creates a store in memory.
-    pub fn memory() -> Self {
-        Self::over(Arc::new(InMemory::new()))
+    pub fn in_memory() -> Self {
+        Self::from_store(Arc::new(InMemory::new()))
     }
 
     /// Wraps any store.
-    pub fn over(store: Arc<dyn ObjectStore>) -> Self {
+    pub fn from_store(store: Arc<dyn ObjectStore>) -> Self {
         Self { store, folder: None }
     }
 
     /// Writes the marker that [`health`](Self::health) looks for, unless it exists: a folder that
     /// is no longer mounted does not have it.
-    pub async fn mark(&self) -> Result<()> {
-        if self.store.head(&ObjectPath::from(MARK)).await.is_ok() {
+    pub async fn write_marker(&self) -> Result<()> {
+        if self.store.head(&ObjectPath::from(MARKER)).await.is_ok() {
             return Ok(());
         }
         let about = PutPayload::from_static(
             b"The objects of a Sistership store, named by the SHA-256 of their bytes.\n",
         );
-        self.store.put(&ObjectPath::from(MARK), about).await.map_err(ObjectsError::from)?;
+        self.store.put(&ObjectPath::from(MARKER), about).await.map_err(ObjectsError::from)?;
         Ok(())
     }
 
     /// Checks that the store answers in time and is the one that was [marked](Self::mark).
-    pub async fn health(&self) -> Result<()> {
-        let mark = ObjectPath::from(MARK);
-        let looked = tokio::time::timeout(PATIENCE, self.store.head(&mark)).await;
-        looked.map_err(ObjectsError::from)?.map(drop).map_err(|error| failure(MARK, error))
+    pub async fn check_health(&self) -> Result<()> {
+        let mark = ObjectPath::from(MARKER);
+        let looked = tokio::time::timeout(MARKER_TIMEOUT, self.store.head(&mark)).await;
+        looked.map_err(ObjectsError::from)?.map(drop).map_err(|error| object_error(MARKER, error))
     }
 
     /// Stores bytes and returns their key once they are durable. They are written even if the key
     /// exists: another writer may not have made them durable yet, and a damaged object is replaced.
     pub async fn put(&self, bytes: Bytes) -> Result<String> {
-        let key = hash(bytes.clone()).await?;
+        let key = hash_bytes(bytes.clone()).await?;
         // Held until the write ends, so that no process takes its partial file for a leftover.
-        let _held = self.putting().await?;
-        let (at, size) = (path(&key)?, bytes.len());
+        let _held = self.lock_shared().await?;
+        let (at, size) = (object_path(&key)?, bytes.len());
         let put = self.store.put(&at, PutPayload::from(bytes));
-        tokio::time::timeout(patience(size), put)
+        tokio::time::timeout(transfer_timeout(size), put)
             .await
             .map_err(ObjectsError::from)?
             .map_err(ObjectsError::from)?;
@@ -85,14 +85,14 @@ impl Objects {
 
     /// Returns the bytes of a key, verified by their hash.
     pub async fn get(&self, key: &str) -> Result<Bytes> {
-        let at = path(key)?;
+        let at = object_path(key)?;
         // Two deadlines: for the head of the answer, then for the bytes by their number.
-        let found = tokio::time::timeout(ANSWER, self.store.get(&at)).await;
-        let found = found.map_err(ObjectsError::from)?.map_err(|error| failure(key, error))?;
+        let found = tokio::time::timeout(ANSWER_TIMEOUT, self.store.get(&at)).await;
+        let found = found.map_err(ObjectsError::from)?.map_err(|error| object_error(key, error))?;
         let size = usize::try_from(found.meta.size).unwrap_or(usize::MAX);
-        let bytes = tokio::time::timeout(patience(size), found.bytes()).await;
-        let bytes = bytes.map_err(ObjectsError::from)?.map_err(|error| failure(key, error))?;
-        let actual = hash(bytes.clone()).await?;
+        let bytes = tokio::time::timeout(transfer_timeout(size), found.bytes()).await;
+        let bytes = bytes.map_err(ObjectsError::from)?.map_err(|error| object_error(key, error))?;
+        let actual = hash_bytes(bytes.clone()).await?;
         match actual == key {
             true => Ok(bytes),
             false => Err(ObjectsError::Damaged { key: key.to_owned(), actual }.into()),
@@ -104,16 +104,17 @@ impl Objects {
     ///
     /// # Errors
     /// Returns an error if there is no such object, or the store fails.
-    pub async fn stream(&self, key: &str) -> Result<(u64, BoxStream<'static, Result<Bytes>>)> {
-        let found = self.store.get(&path(key)?).await.map_err(|error| failure(key, error))?;
+    pub async fn get_stream(&self, key: &str) -> Result<(u64, BoxStream<'static, Result<Bytes>>)> {
+        let found =
+            self.store.get(&object_path(key)?).await.map_err(|error| object_error(key, error))?;
         let (size, key) = (found.meta.size, key.to_owned());
-        Ok((size, found.into_stream().map_err(move |error| failure(&key, error)).boxed()))
+        Ok((size, found.into_stream().map_err(move |error| object_error(&key, error)).boxed()))
     }
 
     /// Removes the object of a key, if it exists. The caller must be sure that no row refers to it,
     /// see [`crate::Store::remove_unreferred`].
-    pub(crate) async fn remove(&self, key: String) -> Result<()> {
-        match self.store.delete(&path(&key)?).await {
+    pub(crate) async fn remove_object(&self, key: String) -> Result<()> {
+        match self.store.delete(&object_path(&key)?).await {
             // Idempotent: another process may have removed it.
             Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
             Err(error) => Err(ObjectsError::from(error).into()),
@@ -121,13 +122,18 @@ impl Objects {
     }
 
     /// Returns the size of the object of a key, bytes.
-    pub async fn size(&self, key: &str) -> Result<u64> {
-        Ok(self.store.head(&path(key)?).await.map_err(|error| failure(key, error))?.size)
+    pub async fn object_size(&self, key: &str) -> Result<u64> {
+        Ok(self
+            .store
+            .head(&object_path(key)?)
+            .await
+            .map_err(|error| object_error(key, error))?
+            .size)
     }
 
     /// Returns true if there is an object of this key.
     pub async fn exists(&self, key: &str) -> Result<bool> {
-        match self.store.head(&path(key)?).await {
+        match self.store.head(&object_path(key)?).await {
             Ok(_) => Ok(true),
             Err(object_store::Error::NotFound { .. }) => Ok(false),
             Err(error) => Err(ObjectsError::from(error).into()),
@@ -141,38 +147,38 @@ pub fn sha256_hex(bytes: &[u8]) -> String {
 }
 
 /// Returns the hash, computed on a thread for blocking work.
-async fn hash(bytes: Bytes) -> Result<String, ObjectsError> {
+async fn hash_bytes(bytes: Bytes) -> Result<String, ObjectsError> {
     Ok(tokio::task::spawn_blocking(move || sha256_hex(&bytes)).await?)
 }
 
 /// Maximum time for the check of the marker: a readiness probe waits for it.
-const PATIENCE: Duration = Duration::from_millis(800);
+const MARKER_TIMEOUT: Duration = Duration::from_millis(800);
 /// Maximum time for the answer of the store, including retries.
-const ANSWER: Duration = Duration::from_secs(20);
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(20);
 /// Minimum rate of transfer of an object, bytes per second, below any link in use.
 const LEAST_RATE: f64 = 128e3;
 
 /// Returns the maximum time for an object of a size.
-fn patience(size: usize) -> Duration {
-    ANSWER + Duration::from_secs_f64(size as f64 / LEAST_RATE)
+fn transfer_timeout(size: usize) -> Duration {
+    ANSWER_TIMEOUT + Duration::from_secs_f64(size as f64 / LEAST_RATE)
 }
 
 /// Name of the marker of a store, next to its objects.
-const MARK: &str = "about.txt";
+const MARKER: &str = "about.txt";
 /// The folder of all objects.
 pub(crate) const FOLDER: &str = "objects";
 
 /// `objects/ab/cdef...`
-fn path(key: &str) -> Result<ObjectPath> {
-    checks::sha256("key", key)?;
+fn object_path(key: &str) -> Result<ObjectPath> {
+    checks::check_sha256("key", key)?;
     // 256 folders by the first byte keep each of them small.
     let (folder, file) = key.split_at(2);
     Ok(ObjectPath::from_iter([FOLDER, folder, file]))
 }
 
-fn failure(key: &str, error: object_store::Error) -> StoreError {
+fn object_error(key: &str, error: object_store::Error) -> StoreError {
     match error {
-        object_store::Error::NotFound { .. } => StoreError::missing("object", key),
+        object_store::Error::NotFound { .. } => StoreError::not_found("object", key),
         error => ObjectsError::from(error).into(),
     }
 }

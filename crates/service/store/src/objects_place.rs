@@ -10,7 +10,7 @@ use object_store::prefix::PrefixStore;
 use object_store::{BackoffConfig, ClientOptions, ObjectStore, RetryConfig};
 
 use crate::error::{Result, StoreError};
-use crate::objects::Objects;
+use crate::objects::ObjectStorage;
 use crate::objects_error::ObjectsError;
 
 /// Default region: private servers have none.
@@ -51,7 +51,7 @@ impl ObjectsPlace {
     ///
     /// # Errors
     /// Returns an error that states the expected form.
-    pub fn s3(url: &str, endpoint: Option<String>, region: Option<String>) -> Result<Self> {
+    pub fn parse_s3(url: &str, endpoint: Option<String>, region: Option<String>) -> Result<Self> {
         let wrong =
             || StoreError::invalid("objects_url", "write s3://BUCKET or s3://BUCKET/PREFIX");
         let rest = url.strip_prefix("s3://").ok_or_else(wrong)?;
@@ -82,7 +82,7 @@ impl ObjectsPlace {
     }
 
     /// Returns the folder of a local store; none for a bucket.
-    pub fn folder(&self) -> Option<&Path> {
+    pub fn folder_path(&self) -> Option<&Path> {
         match self {
             Self::Folder(folder) => Some(folder),
             Self::S3(_) => None,
@@ -99,24 +99,24 @@ impl fmt::Display for ObjectsPlace {
     }
 }
 
-impl Objects {
+impl ObjectStorage {
     /// Opens the object store at a location.
     ///
     /// # Errors
     /// Returns an error if the folder cannot be created, or the settings of the bucket are not
     /// valid.
-    pub fn at(place: &ObjectsPlace) -> Result<Self> {
+    pub fn open_at(place: &ObjectsPlace) -> Result<Self> {
         match place {
-            ObjectsPlace::Folder(folder) => Self::local(folder),
-            ObjectsPlace::S3(place) => {
-                Ok(Self::over(bucket(builder(place), place).map_err(ObjectsError::from)?))
-            }
+            ObjectsPlace::Folder(folder) => Self::open_folder(folder),
+            ObjectsPlace::S3(place) => Ok(Self::from_store(
+                bucket_store(bucket_builder(place), place).map_err(ObjectsError::from)?,
+            )),
         }
     }
 }
 
 /// Returns the client of a bucket; credentials come from the environment.
-pub(crate) fn builder(place: &S3Place) -> AmazonS3Builder {
+pub(crate) fn bucket_builder(place: &S3Place) -> AmazonS3Builder {
     let plain = place.endpoint.as_ref().is_some_and(|url| url.starts_with("http://"));
     let client = ClientOptions::new()
         .with_connect_timeout(CONNECT)
@@ -148,7 +148,7 @@ pub fn provide_cryptography() {
 }
 
 /// Returns the store of a bucket, below its prefix.
-pub(crate) fn bucket(
+pub(crate) fn bucket_store(
     builder: AmazonS3Builder,
     place: &S3Place,
 ) -> object_store::Result<Arc<dyn ObjectStore>> {
@@ -167,7 +167,7 @@ mod tests {
 
     #[test]
     fn a_bucket_is_read_or_refused() {
-        let read = |url: &str| ObjectsPlace::s3(url, None, None);
+        let read = |url: &str| ObjectsPlace::parse_s3(url, None, None);
         let ObjectsPlace::S3(place) = read("s3://samples/fleet/a/").unwrap() else { panic!() };
         assert_eq!((place.bucket.as_str(), place.prefix.as_str()), ("samples", "fleet/a"));
         assert_eq!(read("s3://samples").unwrap().to_string(), "s3://samples/");
@@ -185,7 +185,7 @@ mod tests {
                 "{wrong}"
             );
         }
-        let endpoint = ObjectsPlace::s3("s3://samples", Some("localhost:9000".into()), None);
+        let endpoint = ObjectsPlace::parse_s3("s3://samples", Some("localhost:9000".into()), None);
         assert!(matches!(endpoint, Err(StoreError::Invalid { field: "objects_endpoint", .. })));
     }
 }

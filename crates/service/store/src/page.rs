@@ -8,21 +8,21 @@ pub const MAX_LIMIT: i64 = 1000;
 
 /// Request for one page of a list.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Page<K = String> {
+pub struct PageRequest<K = String> {
     /// Last key of the previous page; none for the first page.
     pub after: Option<K>,
     /// Maximum number of items to return, from 1 to [`MAX_LIMIT`].
     pub limit: i64,
 }
 
-impl<K> Page<K> {
+impl<K> PageRequest<K> {
     /// Requests the first page.
-    pub fn first(limit: i64) -> Self {
+    pub fn first_page(limit: i64) -> Self {
         Self { after: None, limit }
     }
 
     /// Requests the page after `key`.
-    pub fn after(key: impl Into<K>, limit: i64) -> Self {
+    pub fn after_key(key: impl Into<K>, limit: i64) -> Self {
         Self { after: Some(key.into()), limit }
     }
 
@@ -30,13 +30,13 @@ impl<K> Page<K> {
     ///
     /// # Errors
     /// Returns an error that names the limit.
-    pub fn check(&self) -> Result<()> {
-        self.fetch().map(drop)
+    pub fn check_limit(&self) -> Result<()> {
+        self.fetch_limit().map(drop)
     }
 
     /// Returns the number of rows to read: one more than requested, which shows if there is a next
     /// page.
-    pub(crate) fn fetch(&self) -> Result<i64> {
+    pub(crate) fn fetch_limit(&self) -> Result<i64> {
         match (1..=MAX_LIMIT).contains(&self.limit) {
             true => Ok(self.limit + 1),
             false => Err(StoreError::invalid(
@@ -48,18 +48,18 @@ impl<K> Page<K> {
 
     /// Returns the page made of the rows after [`Page::after`]; a row beyond the limit is cut off
     /// and shows that there is a next page.
-    pub fn of<T>(&self, mut items: Vec<T>, key: impl Fn(&T) -> K) -> List<T, K> {
+    pub fn build_page<T>(&self, mut items: Vec<T>, key: impl Fn(&T) -> K) -> ListPage<T, K> {
         let limit = usize::try_from(self.limit).unwrap_or(0);
         let more = items.len() > limit;
         items.truncate(limit);
         let next = if more { items.last().map(key) } else { None };
-        List { items, next }
+        ListPage { items, next }
     }
 }
 
 /// One page of a list.
 #[derive(Debug, Clone, PartialEq)]
-pub struct List<T, K = String> {
+pub struct ListPage<T, K = String> {
     /// The rows, in the list's order.
     pub items: Vec<T>,
     /// Value of [`Page::after`] for the next page; none on the last one.

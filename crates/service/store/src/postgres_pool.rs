@@ -17,22 +17,22 @@ const DEADLINE: Duration = Duration::from_secs(8);
 
 /// Replaceable pool of connections to PostgreSQL.
 #[derive(Clone)]
-pub(crate) struct PostgresPool(Arc<Shared>);
+pub(crate) struct PostgresPool(Arc<SharedPool>);
 
-struct Shared {
+struct SharedPool {
     fresh: Box<dyn Fn() -> PgPool + Send + Sync>,
-    current: RwLock<Current>,
+    current: RwLock<PoolGeneration>,
 }
 
 #[derive(Clone)]
-struct Current {
+struct PoolGeneration {
     generation: u64,
     pool: PgPool,
 }
 
 /// The present pool, for one piece of work.
 #[derive(Clone)]
-pub(crate) struct Lease {
+pub(crate) struct PoolLease {
     shared: PostgresPool,
     generation: u64,
     /// The pool of this generation.
@@ -48,23 +48,23 @@ impl std::fmt::Debug for PostgresPool {
 impl PostgresPool {
     /// Creates the pool; `pool` is the first one, and `fresh` makes each replacement.
     pub(crate) fn new(pool: PgPool, fresh: impl Fn() -> PgPool + Send + Sync + 'static) -> Self {
-        let current = RwLock::new(Current { generation: 0, pool });
-        Self(Arc::new(Shared { fresh: Box::new(fresh), current }))
+        let current = RwLock::new(PoolGeneration { generation: 0, pool });
+        Self(Arc::new(SharedPool { fresh: Box::new(fresh), current }))
     }
 
     /// Returns the present pool.
-    pub(crate) fn lease(&self) -> Lease {
+    pub(crate) fn current_lease(&self) -> PoolLease {
         let current = self.0.current.read().unwrap_or_else(PoisonError::into_inner).clone();
-        Lease { shared: self.clone(), generation: current.generation, pool: current.pool }
+        PoolLease { shared: self.clone(), generation: current.generation, pool: current.pool }
     }
 
     /// Closes all connections of the present pool.
     pub(crate) async fn close(&self) {
-        self.lease().pool.close().await;
+        self.current_lease().pool.close().await;
     }
 }
 
-impl Lease {
+impl PoolLease {
     /// Runs work within the deadline, after which this pool is replaced. The work is boxed: inline
     /// in the future of each caller it would need much of a thread's stack.
     pub(crate) fn within<'a, T: Send + 'a>(
@@ -77,7 +77,7 @@ impl Lease {
             match tokio::time::timeout(DEADLINE, work).await {
                 Ok(done) => Ok(done?),
                 Err(_) => {
-                    self.give_up();
+                    self.replace_pool();
                     let silent =
                         "the database did not answer in time; connections to it are new now";
                     let kind = std::io::ErrorKind::TimedOut;
@@ -89,7 +89,7 @@ impl Lease {
     }
 
     /// Replaces this pool, unless another caller has done so.
-    fn give_up(&self) {
+    fn replace_pool(&self) {
         let shared = &self.shared.0;
         let mut current = shared.current.write().unwrap_or_else(PoisonError::into_inner);
         // Many statements may time out at once; only the first of them replaces the pool.
@@ -97,7 +97,7 @@ impl Lease {
             return;
         }
         let old = current.pool.clone();
-        *current = Current { generation: self.generation + 1, pool: (shared.fresh)() };
+        *current = PoolGeneration { generation: self.generation + 1, pool: (shared.fresh)() };
         // Closing ends the waits for a connection at once; silent connections end when they time
         // out.
         tokio::spawn(async move { old.close().await });

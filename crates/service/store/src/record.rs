@@ -5,12 +5,12 @@ use sqlx::postgres::PgRow;
 use sqlx::sqlite::SqliteRow;
 
 /// A struct that a row of either database can be read into.
-pub(crate) trait Record:
+pub(crate) trait DatabaseRecord:
     for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> + Send + Unpin
 {
 }
 
-impl<T> Record for T where
+impl<T> DatabaseRecord for T where
     T: for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> + Send + Unpin
 {
 }
@@ -78,7 +78,7 @@ pub(crate) use record;
 
 record! {
     /// A number of rows.
-    pub struct Counted {
+    pub struct RowCount {
         /// Number of rows.
         pub rows: i64,
     }

@@ -2,9 +2,9 @@
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
-use crate::page::{List, Page};
+use crate::page::{ListPage, PageRequest};
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
@@ -64,47 +64,51 @@ pub struct NewReport {
 
 /// Repository of reports.
 #[derive(Debug, Clone, Copy)]
-pub struct Reports<'a>(pub(crate) &'a Store);
+pub struct ReportRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of reports.
-    pub fn reports(&self) -> Reports<'_> {
-        Reports(self)
+    pub fn reports(&self) -> ReportRepository<'_> {
+        ReportRepository(self)
     }
 }
 
-impl Reports<'_> {
+impl ReportRepository<'_> {
     /// Inserts a report.
     pub async fn insert(&self, new: &NewReport) -> Result<ReportHead> {
         let mut tx = self.0.begin().await?;
-        let report = insert(self.0, &mut tx, new).await?;
+        let report = insert_report(self.0, &mut tx, new).await?;
         tx.commit().await?;
         Ok(report)
     }
 
     /// Returns the report of an id.
     pub async fn get(&self, id: &str) -> Result<Report> {
-        let report = self.0.database().optional(GET, args![id: id]).await?;
-        report.ok_or_else(|| StoreError::missing("report", id))
+        let report = self.0.database().fetch_optional(GET, args![id: id]).await?;
+        report.ok_or_else(|| StoreError::not_found("report", id))
     }
 
     /// Lists the reports on a version, the latest first.
-    pub async fn by_version(&self, version_id: &str, page: &Page) -> Result<List<ReportHead>> {
-        let values = args![version_id: version_id, after: &page.after, limit: page.fetch()?];
-        let reports = self.0.database().all(BY_VERSION, values).await?;
-        Ok(page.of(reports, |report: &ReportHead| report.id.clone()))
+    pub async fn by_version(
+        &self,
+        version_id: &str,
+        page: &PageRequest,
+    ) -> Result<ListPage<ReportHead>> {
+        let values = args![version_id: version_id, after: &page.after, limit: page.fetch_limit()?];
+        let reports = self.0.database().fetch_all(BY_VERSION, values).await?;
+        Ok(page.build_page(reports, |report: &ReportHead| report.id.clone()))
     }
 }
 
 /// Inserts a report within a transaction.
-pub(crate) async fn insert(
+pub(crate) async fn insert_report(
     store: &Store,
-    tx: &mut Transaction,
+    tx: &mut AuditedTransaction,
     new: &NewReport,
 ) -> Result<ReportHead> {
-    checks::name("ship", &new.ship)?;
-    checks::name("kind", &new.kind)?;
-    checks::json("document", &new.document)?;
+    checks::check_name("ship", &new.ship)?;
+    checks::check_name("kind", &new.kind)?;
+    checks::check_json("document", &new.document)?;
     if let Some(version) = &new.version_id {
         version::check_id(tx, "version_id", version).await?;
     }
@@ -112,5 +116,5 @@ pub(crate) async fn insert(
     let values = args![id: &id, version_id: &new.version_id, ship: &new.ship, kind: &new.kind,
         document: &new.document,
         html: &new.html, created_us: store.now_us()];
-    tx.one(INSERT, values).await
+    tx.fetch_one(INSERT, values).await
 }

@@ -17,9 +17,9 @@ impl Store {
     ///
     /// # Errors
     /// Returns an error if there is no space, or the folder cannot be written.
-    pub fn reserve(&self) -> Result<()> {
+    pub fn reserve_space(&self) -> Result<()> {
         let Some(reserve) = self.reserve_file() else { return Ok(()) };
-        Ok(reserve::keep(reserve).map_err(ObjectsError::from)?)
+        Ok(reserve::create_reserve(reserve).map_err(ObjectsError::from)?)
     }
 
     /// Writes and removes a row that has no other use, to test for free space.

@@ -5,12 +5,12 @@
 //! fulfil the conditions. If only few ships meet one of the other conditions, those are selected
 //! first and sorted.
 
-use crate::arguments::{Arg, Args, args, names_list};
+use crate::arguments::{Arg, StatementArgs, args, names_list};
 use crate::checks;
 use crate::error::{Result, StoreError};
-use crate::page::{List, Page};
-use crate::record::{Counted, record};
-use crate::ships::Ships;
+use crate::page::{ListPage, PageRequest};
+use crate::record::{RowCount, record};
+use crate::ships::ShipRepository;
 use crate::statements::{Statement, pair, same, statements};
 
 /// Maximum number of ranges of one search.
@@ -145,7 +145,7 @@ record! {
 
 record! {
     /// A category that has ships with vectors.
-    pub struct Category {
+    pub struct CategoryRow {
         /// Its name.
         pub category: String,
     }
@@ -187,7 +187,7 @@ enum FurtherCondition<'a> {
 
 impl FurtherCondition<'_> {
     /// Returns the statement that starts with the ships that meet the condition.
-    fn statement(self) -> Statement {
+    fn selective_statement(self) -> Statement {
         match self {
             Self::Tag(_) => OF_TAG,
             Self::Category(_) => OF_CATEGORY,
@@ -197,7 +197,7 @@ impl FurtherCondition<'_> {
 }
 
 impl ShipSearch {
-    fn beside(&self) -> impl Iterator<Item = FurtherCondition<'_>> {
+    fn further_conditions(&self) -> impl Iterator<Item = FurtherCondition<'_>> {
         let ranges = self.ranges.iter().skip(1).map(FurtherCondition::Range);
         self.tag
             .as_deref()
@@ -209,7 +209,7 @@ impl ShipSearch {
 
     /// Returns the statement whose index has the order of the results: of the first range, if there
     /// is one, else of the names.
-    fn statement(&self) -> Statement {
+    fn ordered_statement(&self) -> Statement {
         match self {
             Self { ranges, .. } if !ranges.is_empty() => BY_VALUE,
             Self { tag: Some(_), .. } => BY_TAG,
@@ -218,7 +218,7 @@ impl ShipSearch {
         }
     }
 
-    fn check(&self) -> Result<()> {
+    fn check_ranges(&self) -> Result<()> {
         if self.ranges.len() > MAX_RANGES {
             return Err(StoreError::invalid(
                 "ranges",
@@ -226,14 +226,14 @@ impl ShipSearch {
             ));
         }
         for range in &self.ranges {
-            checks::finite("min", range.min)?;
-            checks::finite("max", range.max)?;
+            checks::check_finite("min", range.min)?;
+            checks::check_finite("max", range.max)?;
         }
         Ok(())
     }
 
     /// Returns the arguments of the conditions, followed by `others`.
-    fn values<'a>(&'a self, others: Args<'a>) -> Vec<(&'static str, Arg<'a>)> {
+    fn statement_values<'a>(&'a self, others: StatementArgs<'a>) -> Vec<(&'static str, Arg<'a>)> {
         let mut values: Vec<(&'static str, Arg<'a>)> =
             args![category: &self.category, tag: &self.tag].to_vec();
         // Absent ranges: the fact is NULL, and the limits are not used.
@@ -249,45 +249,57 @@ impl ShipSearch {
     }
 }
 
-impl Ships<'_> {
+impl ShipRepository<'_> {
     /// Returns the ships that meet the conditions, ordered by the fact of the first range, if there
     /// is one, else by name.
-    pub async fn search(
+    pub async fn search_ships(
         &self,
         search: &ShipSearch,
-        page: &Page<ShipKey>,
-    ) -> Result<List<FoundShip, ShipKey>> {
-        search.check()?;
+        page: &PageRequest<ShipKey>,
+    ) -> Result<ListPage<FoundShip, ShipKey>> {
+        search.check_ranges()?;
         // The default cursor, an empty name, sorts before every ship.
         let (value, name) = page.after.clone().unwrap_or_default();
-        let (limit, database) = (page.fetch()?, self.0.database());
+        let (limit, database) = (page.fetch_limit()?, self.0.database());
         let found = match search.ranges.first() {
             Some(first) => {
                 // The pair (value, name) of the last row continues the order within equal values.
                 let from = value.unwrap_or(first.min);
-                let few = self.few(search).await?;
+                let few = self.selective_condition(search).await?;
                 let others = args![after: &name, limit: limit, from: from];
-                let mut values = search.values(others);
+                let mut values = search.statement_values(others);
                 if let Some(FurtherCondition::Range(FactRange { fact, min, max })) = few {
                     values.extend_from_slice(args![fact: fact, min: *min, max: *max]);
                 }
                 database
-                    .all(few.map_or(search.statement(), FurtherCondition::statement), &values)
+                    .fetch_all(
+                        few.map_or(
+                            search.ordered_statement(),
+                            FurtherCondition::selective_statement,
+                        ),
+                        &values,
+                    )
                     .await?
             }
             None => {
                 database
-                    .all(search.statement(), &search.values(args![after: &name, limit: limit]))
+                    .fetch_all(
+                        search.ordered_statement(),
+                        &search.statement_values(args![after: &name, limit: limit]),
+                    )
                     .await?
             }
         };
-        Ok(page.of(found, |ship: &FoundShip| (ship.value, ship.name.clone())))
+        Ok(page.build_page(found, |ship: &FoundShip| (ship.value, ship.name.clone())))
     }
 
     /// Returns the first condition that few ships meet, if there is one.
-    async fn few<'a>(&self, search: &'a ShipSearch) -> Result<Option<FurtherCondition<'a>>> {
-        for condition in search.beside() {
-            if self.more(condition).await?.is_none() {
+    async fn selective_condition<'a>(
+        &self,
+        search: &'a ShipSearch,
+    ) -> Result<Option<FurtherCondition<'a>>> {
+        for condition in search.further_conditions() {
+            if self.check_selectivity(condition).await?.is_none() {
                 return Ok(Some(condition));
             }
         }
@@ -295,31 +307,34 @@ impl Ships<'_> {
     }
 
     /// Returns a row if the condition is not selective: more than a fixed number of ships meet it.
-    async fn more(&self, condition: FurtherCondition<'_>) -> Result<Option<Counted>> {
+    async fn check_selectivity(&self, condition: FurtherCondition<'_>) -> Result<Option<RowCount>> {
         let database = self.0.database();
         match condition {
             FurtherCondition::Tag(tag) => {
-                database.optional(MORE_OF_TAG, args![tag: tag, few: FEW]).await
+                database.fetch_optional(MORE_OF_TAG, args![tag: tag, few: FEW]).await
             }
             FurtherCondition::Category(category) => {
-                database.optional(MORE_OF_CATEGORY, args![category: category, few: FEW]).await
+                database.fetch_optional(MORE_OF_CATEGORY, args![category: category, few: FEW]).await
             }
             FurtherCondition::Range(FactRange { fact, min, max }) => {
                 database
-                    .optional(MORE_OF_RANGE, args![fact: fact, min: *min, max: *max, few: FEW])
+                    .fetch_optional(
+                        MORE_OF_RANGE,
+                        args![fact: fact, min: *min, max: *max, few: FEW],
+                    )
                     .await
             }
         }
     }
 
     /// Returns the ships of these names, in no order; names without a ship are skipped.
-    pub async fn named(&self, names: &[String]) -> Result<Vec<FoundShip>> {
-        self.0.database().all(NAMED, args![names: &names_list(names)]).await
+    pub async fn find_by_names(&self, names: &[String]) -> Result<Vec<FoundShip>> {
+        self.0.database().fetch_all(NAMED, args![names: &names_list(names)]).await
     }
 
     /// Returns the fingerprint of the vectors of a category, without reading them.
     pub async fn vectors_state(&self, category: &str) -> Result<VectorsState> {
-        let state = self.0.database().optional(STATE, args![category: category]).await?;
+        let state = self.0.database().fetch_optional(STATE, args![category: category]).await?;
         Ok(state.unwrap_or(VectorsState { ships: 0, stamps: 0 }))
     }
 
@@ -329,21 +344,21 @@ impl Ships<'_> {
         let mut all: Vec<String> = Vec::new();
         loop {
             let last = all.last().map_or("", String::as_str);
-            let next = self.0.database().optional(NEXT_CATEGORY, args![last: last]).await?;
-            let Some(Category { category }) = next else { return Ok(all) };
+            let next = self.0.database().fetch_optional(NEXT_CATEGORY, args![last: last]).await?;
+            let Some(CategoryRow { category }) = next else { return Ok(all) };
             all.push(category);
         }
     }
 
     /// Returns the vectors of all ships of a category that meet the conditions, in no order.
-    pub async fn vectors(&self, search: &ShipSearch) -> Result<Vec<ShipVectors>> {
-        search.check()?;
+    pub async fn similarity_vectors(&self, search: &ShipSearch) -> Result<Vec<ShipVectors>> {
+        search.check_ranges()?;
         if search.category.is_none() {
             return Err(StoreError::invalid(
                 "category",
                 "is needed: ships are compared within one",
             ));
         }
-        self.0.database().all(VECTORS, &search.values(&[])).await
+        self.0.database().fetch_all(VECTORS, &search.statement_values(&[])).await
     }
 }

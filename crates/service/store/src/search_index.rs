@@ -7,7 +7,7 @@ use sha2::{Digest as _, Sha256};
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::Result;
 use crate::record::record;
 use crate::statements::{same, statements};
@@ -33,7 +33,7 @@ statements! {
 
 record! {
     /// A ship whose facts are out of date.
-    pub struct Waiting {
+    pub struct StaleShip {
         /// The ship.
         pub ship: String,
         /// Mark of the change, different for each change.
@@ -55,7 +55,7 @@ record! {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShipFacts {
     /// The queued change that they answer.
-    pub waiting: Waiting,
+    pub waiting: StaleShip,
     /// Its category.
     pub category: String,
     /// Facts by name, each name once.
@@ -66,7 +66,7 @@ pub struct ShipFacts {
 
 impl ShipFacts {
     /// Creates the entry of a ship without facts, or of a deleted one.
-    pub fn none(waiting: Waiting) -> Self {
+    pub fn without_facts(waiting: StaleShip) -> Self {
         Self { waiting, category: String::new(), facts: Vec::new(), vectors: "{}".to_owned() }
     }
 }
@@ -85,27 +85,27 @@ impl Store {
 impl SearchIndex<'_> {
     /// Returns up to `limit` ships that have changed since their facts were written, by name, after
     /// the name `after`.
-    pub async fn waiting(&self, after: &str, limit: i64) -> Result<Vec<Waiting>> {
-        self.0.database().all(WAITING, args![after: after, limit: limit]).await
+    pub async fn list_stale(&self, after: &str, limit: i64) -> Result<Vec<StaleShip>> {
+        self.0.database().fetch_all(WAITING, args![after: after, limit: limit]).await
     }
 
     /// Returns the facts of a ship as they were last written, by name.
-    pub async fn facts(&self, ship: &str) -> Result<Vec<ShipFact>> {
-        self.0.database().all(FACTS, args![ship: ship]).await
+    pub async fn ship_facts(&self, ship: &str) -> Result<Vec<ShipFact>> {
+        self.0.database().fetch_all(FACTS, args![ship: ship]).await
     }
 
     /// Writes the facts of ships in one transaction, and returns the number of ships. A ship that
     /// has changed again meanwhile is skipped and stays in the queue.
-    pub async fn write(&self, all: &[ShipFacts]) -> Result<usize> {
+    pub async fn write_facts(&self, all: &[ShipFacts]) -> Result<usize> {
         let mut tx = self.0.begin().await?;
         let mut written = 0;
         for ship in all {
-            checks::json("vectors", &ship.vectors)?;
+            checks::check_json("vectors", &ship.vectors)?;
             // No row: the ship has changed again, or was indexed by another process.
             let taken =
                 tx.execute(TAKE, args![ship: &ship.waiting.ship, mark: &ship.waiting.mark]).await?;
             if taken > 0 {
-                write(&mut tx, ship).await?;
+                write_ship(&mut tx, ship).await?;
                 written += 1;
             }
         }
@@ -114,14 +114,14 @@ impl SearchIndex<'_> {
     }
 }
 
-async fn write(tx: &mut Transaction, facts: &ShipFacts) -> Result<()> {
+async fn write_ship(tx: &mut AuditedTransaction, facts: &ShipFacts) -> Result<()> {
     let ship = &facts.waiting.ship;
     // All facts are replaced: those that no longer apply must not be found.
     tx.execute(FORGET, args![ship: ship]).await?;
     for (fact, value) in &facts.facts {
         tx.execute(FACT, args![ship: ship, fact: fact, value: *value]).await?;
     }
-    let stamp = stamp(ship, &facts.vectors);
+    let stamp = vector_stamp(ship, &facts.vectors);
     tx.execute(
         VECTORS,
         args![ship: ship, category: &facts.category, vectors: &facts.vectors, stamp: stamp],
@@ -132,23 +132,27 @@ async fn write(tx: &mut Transaction, facts: &ShipFacts) -> Result<()> {
 
 /// Returns a hash of the vectors, of 32 bits, so that the stamps of 2^31 ships can be summed in 64
 /// bits.
-fn stamp(ship: &str, vectors: &str) -> i64 {
+fn vector_stamp(ship: &str, vectors: &str) -> i64 {
     let hash = Sha256::digest(format!("{ship}\n{vectors}"));
     i64::from(u32::from_be_bytes([hash[0], hash[1], hash[2], hash[3]]))
 }
 
 /// Queues a ship within a transaction, if it exists.
-pub(crate) async fn mark(store: &Store, tx: &mut Transaction, ship: &str) -> Result<()> {
+pub(crate) async fn queue_ship(
+    store: &Store,
+    tx: &mut AuditedTransaction,
+    ship: &str,
+) -> Result<()> {
     let mark = store.new_id();
     tx.execute(MARK, args![ship: ship, mark: &mark]).await.map(drop)
 }
 
 /// Queues a ship if the moved alias determines facts of it.
-pub(crate) async fn mark_moved(
+pub(crate) async fn queue_moved(
     store: &Store,
-    tx: &mut Transaction,
+    tx: &mut AuditedTransaction,
     model: &str,
     alias: &str,
 ) -> Result<()> {
-    if alias == ALIAS { mark(store, tx, model).await } else { Ok(()) }
+    if alias == ALIAS { queue_ship(store, tx, model).await } else { Ok(()) }
 }

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use crate::actor::Actor;
 use crate::arguments::args;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::record::record;
 use crate::statements::{same, statements};
@@ -45,21 +45,27 @@ impl Store {
 
 impl StoreSettings<'_> {
     /// Returns true if only another person than its author may promote a version to champion.
-    pub async fn second_person(&self) -> Result<bool> {
+    pub async fn requires_second_person(&self) -> Result<bool> {
         let found: Option<SettingValue> =
-            self.0.database().optional(GET, args![name: SECOND_PERSON]).await?;
+            self.0.database().fetch_optional(GET, args![name: SECOND_PERSON]).await?;
         Ok(is_on(found))
     }
 
     /// Switches the approval by a second person on or off.
     pub async fn set_second_person(&self, on: bool) -> Result<()> {
         let mut tx = self.0.begin().await?;
-        let before = is_on(tx.optional(GET, args![name: SECOND_PERSON]).await?);
+        let before = is_on(tx.fetch_optional(GET, args![name: SECOND_PERSON]).await?);
         let value = if on { "on" } else { "off" };
         let values = args![name: SECOND_PERSON, value: value, changed_us: self.0.now_us()];
         tx.execute(PUT, values).await?;
         let (before, after) = (json!({ SECOND_PERSON: before }), json!({ SECOND_PERSON: on }));
-        tx.note(self.0.now_us(), "settings.set", "settings".to_owned(), Some(before), Some(after));
+        tx.record_audit_event(
+            self.0.now_us(),
+            "settings.set",
+            "settings".to_owned(),
+            Some(before),
+            Some(after),
+        );
         tx.commit().await
     }
 }
@@ -71,7 +77,7 @@ fn is_on(found: Option<SettingValue>) -> bool {
 /// Checks a promotion: where a second person is required, authors cannot promote their own versions
 /// to champion.
 pub(crate) async fn check_promotion(
-    tx: &mut Transaction,
+    tx: &mut AuditedTransaction,
     model: &str,
     alias: &str,
     number: i64,
@@ -81,11 +87,11 @@ pub(crate) async fn check_promotion(
     if alias != CHAMPION || actor.is_program() {
         return Ok(());
     }
-    if !is_on(tx.optional(GET, args![name: SECOND_PERSON]).await?) {
+    if !is_on(tx.fetch_optional(GET, args![name: SECOND_PERSON]).await?) {
         return Ok(());
     }
     let author: Option<SettingValue> =
-        tx.optional(AUTHOR, args![model: model, number: number]).await?;
+        tx.fetch_optional(AUTHOR, args![model: model, number: number]).await?;
     match author.is_some_and(|author| author.value == actor.name) {
         false => Ok(()),
         true => Err(StoreError::Forbidden {

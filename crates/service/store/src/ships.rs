@@ -4,10 +4,10 @@ use serde_json::{Value, json};
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::objects::sha256_hex;
-use crate::page::{List, Page};
+use crate::page::{ListPage, PageRequest};
 use crate::record::record;
 use crate::search_index;
 use crate::statements::{same, statements};
@@ -99,65 +99,71 @@ pub struct NewShip {
 }
 
 impl NewShip {
-    fn check(&self) -> Result<()> {
-        checks::name("name", &self.name)?;
-        checks::name("category", &self.category)?;
-        checks::json("document", &self.document)
+    fn check_fields(&self) -> Result<()> {
+        checks::check_name("name", &self.name)?;
+        checks::check_name("category", &self.category)?;
+        checks::check_json("document", &self.document)
     }
 }
 
 /// Repository of ships.
 #[derive(Debug, Clone, Copy)]
-pub struct Ships<'a>(pub(crate) &'a Store);
+pub struct ShipRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of ships and their history.
-    pub fn ships(&self) -> Ships<'_> {
-        Ships(self)
+    pub fn ships(&self) -> ShipRepository<'_> {
+        ShipRepository(self)
     }
 }
 
-impl Ships<'_> {
+impl ShipRepository<'_> {
     /// Creates a ship at revision 1; a name that was ever used is a conflict.
     pub async fn create(&self, new: &NewShip) -> Result<Ship> {
-        new.check()?;
+        new.check_fields()?;
         let NewShip { name, title, category, document } = new;
         let values = args![name: name, title: title, category: category, document: document,
             created_us: self.0.now_us()];
         let mut tx = self.0.begin().await?;
-        let Some(ship) = tx.optional(INSERT, values).await? else {
+        let Some(ship) = tx.fetch_optional(INSERT, values).await? else {
             // The name exists; the read shows if the ship was deleted.
-            return Err(taken(name, find(&mut tx, name).await));
+            return Err(name_conflict(name, find_ship(&mut tx, name).await));
         };
         tx.execute(REMEMBER, args![name: name]).await?;
-        tx.note(self.0.now_us(), "ship.create", subject(name), None, Some(state(&ship)));
-        search_index::mark(self.0, &mut tx, name).await?;
+        tx.record_audit_event(
+            self.0.now_us(),
+            "ship.create",
+            audit_subject(name),
+            None,
+            Some(audit_state(&ship)),
+        );
+        search_index::queue_ship(self.0, &mut tx, name).await?;
         tx.commit().await?;
         Ok(ship)
     }
 
     /// Returns the ship of a name.
     pub async fn get(&self, name: &str) -> Result<Ship> {
-        let ship: Option<Ship> = self.0.database().optional(GET, args![name: name]).await?;
-        present(name, ship)
+        let ship: Option<Ship> = self.0.database().fetch_optional(GET, args![name: name]).await?;
+        require_present(name, ship)
     }
 
     /// Replaces the content of a ship, if it is still at `revision`.
     pub async fn update(&self, new: &NewShip, revision: i64) -> Result<Ship> {
-        new.check()?;
+        new.check_fields()?;
         let NewShip { name, title, category, document } = new;
         let mut tx = self.0.begin().await?;
         let values = args![name: name, revision: revision, title: title, category: category,
             document: document,
             updated_us: self.0.now_us()];
-        let before: Option<Ship> = tx.optional(GET, args![name: name]).await?;
-        let Some(ship) = tx.optional(UPDATE, values).await? else {
-            return Err(stale(&mut tx, name).await);
+        let before: Option<Ship> = tx.fetch_optional(GET, args![name: name]).await?;
+        let Some(ship) = tx.fetch_optional(UPDATE, values).await? else {
+            return Err(update_conflict(&mut tx, name).await);
         };
         tx.execute(REMEMBER, args![name: name]).await?;
-        let (before, after) = (before.as_ref().map(state), Some(state(&ship)));
-        tx.note(self.0.now_us(), "ship.update", subject(name), before, after);
-        search_index::mark(self.0, &mut tx, name).await?;
+        let (before, after) = (before.as_ref().map(audit_state), Some(audit_state(&ship)));
+        tx.record_audit_event(self.0.now_us(), "ship.update", audit_subject(name), before, after);
+        search_index::queue_ship(self.0, &mut tx, name).await?;
         tx.commit().await?;
         Ok(ship)
     }
@@ -167,11 +173,17 @@ impl Ships<'_> {
     pub async fn delete(&self, name: &str, revision: Option<i64>) -> Result<Ship> {
         let mut tx = self.0.begin().await?;
         let values = args![name: name, revision: revision, deleted_us: self.0.now_us()];
-        let Some(ship) = tx.optional(DELETE, values).await? else {
-            return Err(stale(&mut tx, name).await);
+        let Some(ship) = tx.fetch_optional(DELETE, values).await? else {
+            return Err(update_conflict(&mut tx, name).await);
         };
-        search_index::mark(self.0, &mut tx, name).await?;
-        tx.note(self.0.now_us(), "ship.delete", subject(name), Some(state(&ship)), None);
+        search_index::queue_ship(self.0, &mut tx, name).await?;
+        tx.record_audit_event(
+            self.0.now_us(),
+            "ship.delete",
+            audit_subject(name),
+            Some(audit_state(&ship)),
+            None,
+        );
         tx.commit().await?;
         Ok(ship)
     }
@@ -179,58 +191,71 @@ impl Ships<'_> {
     /// Restores a deleted ship unchanged.
     pub async fn undelete(&self, name: &str) -> Result<Ship> {
         let mut tx = self.0.begin().await?;
-        let ship: Option<Ship> = tx.optional(UNDELETE, args![name: name]).await?;
-        search_index::mark(self.0, &mut tx, name).await?;
+        let ship: Option<Ship> = tx.fetch_optional(UNDELETE, args![name: name]).await?;
+        search_index::queue_ship(self.0, &mut tx, name).await?;
         if let Some(ship) = &ship {
-            tx.note(self.0.now_us(), "ship.undelete", subject(name), None, Some(state(ship)));
+            tx.record_audit_event(
+                self.0.now_us(),
+                "ship.undelete",
+                audit_subject(name),
+                None,
+                Some(audit_state(ship)),
+            );
         }
         tx.commit().await?;
-        ship.ok_or_else(|| StoreError::missing("ship", name))
+        ship.ok_or_else(|| StoreError::not_found("ship", name))
     }
 
     /// Lists all ships by name, or those of one category.
-    pub async fn list(&self, category: Option<&str>, page: &Page) -> Result<List<Ship>> {
-        let (database, limit) = (self.0.database(), page.fetch()?);
+    pub async fn list(&self, category: Option<&str>, page: &PageRequest) -> Result<ListPage<Ship>> {
+        let (database, limit) = (self.0.database(), page.fetch_limit()?);
         let ships = match category {
-            None => database.all(LIST, args![after: &page.after, limit: limit]).await?,
+            None => database.fetch_all(LIST, args![after: &page.after, limit: limit]).await?,
             Some(category) => {
                 database
-                    .all(LIST_CATEGORY, args![after: &page.after, limit: limit, category: category])
+                    .fetch_all(
+                        LIST_CATEGORY,
+                        args![after: &page.after, limit: limit, category: category],
+                    )
                     .await?
             }
         };
-        Ok(page.of(ships, |ship: &Ship| ship.name.clone()))
+        Ok(page.build_page(ships, |ship: &Ship| ship.name.clone()))
     }
 
     /// Lists the revisions of a ship, the latest first.
-    pub async fn revisions(&self, name: &str, page: &Page<i64>) -> Result<List<ShipRevision, i64>> {
-        let values = args![name: name, after: page.after, limit: page.fetch()?];
-        let revisions = self.0.database().all(REVISIONS, values).await?;
-        Ok(page.of(revisions, |revision: &ShipRevision| revision.revision))
+    pub async fn list_revisions(
+        &self,
+        name: &str,
+        page: &PageRequest<i64>,
+    ) -> Result<ListPage<ShipRevision, i64>> {
+        let values = args![name: name, after: page.after, limit: page.fetch_limit()?];
+        let revisions = self.0.database().fetch_all(REVISIONS, values).await?;
+        Ok(page.build_page(revisions, |revision: &ShipRevision| revision.revision))
     }
 }
 
 /// Returns the subject of audit entries about a ship.
-pub(crate) fn subject(name: &str) -> String {
+pub(crate) fn audit_subject(name: &str) -> String {
     format!("ship:{name}")
 }
 
 /// Returns the state of a ship for the audit; the document is in the history of the ship.
-fn state(ship: &Ship) -> Value {
+fn audit_state(ship: &Ship) -> Value {
     json!({ "revision": ship.revision, "sha256": sha256_hex(ship.document.as_bytes()) })
 }
 
 /// Returns a ship that is not deleted, as the transaction sees it.
-pub(crate) async fn find(tx: &mut Transaction, name: &str) -> Result<Ship> {
-    present(name, tx.optional(GET, args![name: name]).await?)
+pub(crate) async fn find_ship(tx: &mut AuditedTransaction, name: &str) -> Result<Ship> {
+    require_present(name, tx.fetch_optional(GET, args![name: name]).await?)
 }
 
-fn present(name: &str, ship: Option<Ship>) -> Result<Ship> {
-    ship.filter(|ship| ship.deleted_us.is_none()).ok_or_else(|| StoreError::missing("ship", name))
+fn require_present(name: &str, ship: Option<Ship>) -> Result<Ship> {
+    ship.filter(|ship| ship.deleted_us.is_none()).ok_or_else(|| StoreError::not_found("ship", name))
 }
 
 /// Returns the reason why a name cannot be used again.
-fn taken(name: &str, holder: Result<Ship>) -> StoreError {
+fn name_conflict(name: &str, holder: Result<Ship>) -> StoreError {
     match holder {
         Ok(_) => StoreError::conflict("ship", name, "exists already"),
         Err(StoreError::NotFound { .. }) => {
@@ -241,9 +266,9 @@ fn taken(name: &str, holder: Result<Ship>) -> StoreError {
 }
 
 /// Returns the reason why a compare-and-swap changed no row.
-async fn stale(tx: &mut Transaction, name: &str) -> StoreError {
-    match find(tx, name).await {
-        Ok(ship) => StoreError::stale("ship", name, Some(ship.revision)),
+async fn update_conflict(tx: &mut AuditedTransaction, name: &str) -> StoreError {
+    match find_ship(tx, name).await {
+        Ok(ship) => StoreError::precondition_failed("ship", name, Some(ship.revision)),
         Err(error) => error,
     }
 }

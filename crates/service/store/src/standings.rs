@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use crate::arguments::{args, names_list};
-use crate::diagnoses::Diagnosed;
+use crate::diagnoses::DiagnosisRow;
 use crate::error::Result;
 use crate::record::record;
 use crate::statements::{pair, statements};
@@ -82,12 +82,12 @@ statements! {
 
 /// State of a ship in the fleet list.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct ShipStanding {
+pub struct ShipOverview {
     /// Its champion.
     pub champion: Option<VersionHead>,
     /// The latest diagnoses of the champion, or from which it resulted, at most 200, the latest
     /// first.
-    pub diagnoses: Vec<Diagnosed>,
+    pub diagnoses: Vec<DiagnosisRow>,
     /// Value of the requested fact.
     pub fact: Option<f64>,
     /// Values of the facts with the requested prefix, ordered by name.
@@ -98,8 +98,8 @@ pub struct ShipStanding {
 
 record! {
     /// A diagnosis with the version that it concerns.
-    pub struct Concerning {
-        flatten head: Diagnosed,
+    pub struct VersionDiagnosis {
+        flatten head: DiagnosisRow,
         /// The version's id.
         pub concerns: String,
     }
@@ -115,7 +115,7 @@ record! {
 
 record! {
     /// A fact's value.
-    pub struct FactOf {
+    pub struct FactValue {
         /// The ship.
         pub ship: String,
         /// The value.
@@ -125,7 +125,7 @@ record! {
 
 record! {
     /// Membership of a ship in a family.
-    pub struct Membership {
+    pub struct FamilyMembership {
         /// The ship.
         pub ship: String,
         /// The family.
@@ -135,36 +135,37 @@ record! {
 
 impl Store {
     /// Returns the champions of these ships with their documents; ships without one are skipped.
-    pub async fn champions(&self, ships: &[String]) -> Result<Vec<Version>> {
-        self.database().all(CHAMPION_DOCUMENTS, args![names: &names_list(ships)]).await
+    pub async fn list_champions(&self, ships: &[String]) -> Result<Vec<Version>> {
+        self.database().fetch_all(CHAMPION_DOCUMENTS, args![names: &names_list(ships)]).await
     }
 
     /// Returns the ids of those of the trials that are deleted.
     pub async fn deleted_trials(&self, ids: &[String]) -> Result<Vec<String>> {
         let found: Vec<TrialId> =
-            self.database().all(DELETED, args![ids: &names_list(ids)]).await?;
+            self.database().fetch_all(DELETED, args![ids: &names_list(ids)]).await?;
         Ok(found.into_iter().map(|trial| trial.id).collect())
     }
 
     /// Returns the state of each ship, with the value of one fact and of all facts whose names
     /// begin with `series`; a ship without data has an empty state.
-    pub async fn standings(
+    pub async fn ship_overviews(
         &self,
         ships: &[String],
         fact: &str,
         series: &str,
-    ) -> Result<BTreeMap<String, ShipStanding>> {
+    ) -> Result<BTreeMap<String, ShipOverview>> {
         let (database, names) = (self.database(), names_list(ships));
         // Every requested ship has an entry, also one without data.
-        let empty = |ship: &String| (ship.clone(), ShipStanding::default());
-        let mut all: BTreeMap<String, ShipStanding> = ships.iter().map(empty).collect();
-        let champions: Vec<VersionHead> = database.all(CHAMPIONS, args![names: &names]).await?;
+        let empty = |ship: &String| (ship.clone(), ShipOverview::default());
+        let mut all: BTreeMap<String, ShipOverview> = ships.iter().map(empty).collect();
+        let champions: Vec<VersionHead> =
+            database.fetch_all(CHAMPIONS, args![names: &names]).await?;
         let ids: Vec<String> = champions.iter().map(|champion| champion.id.clone()).collect();
-        let concerning: Vec<Concerning> =
-            database.all(DIAGNOSES, args![ids: &names_list(&ids)]).await?;
-        let mut diagnoses: BTreeMap<String, Vec<Diagnosed>> = BTreeMap::new();
+        let concerning: Vec<VersionDiagnosis> =
+            database.fetch_all(DIAGNOSES, args![ids: &names_list(&ids)]).await?;
+        let mut diagnoses: BTreeMap<String, Vec<DiagnosisRow>> = BTreeMap::new();
         // The statement has sorted them, the latest first for each version.
-        for Concerning { head, concerns } in concerning {
+        for VersionDiagnosis { head, concerns } in concerning {
             diagnoses.entry(concerns).or_default().push(head);
         }
         for champion in champions {
@@ -173,18 +174,20 @@ impl Store {
                 standing.champion = Some(champion);
             }
         }
-        let facts: Vec<FactOf> = database.all(FACTS, args![names: &names, fact: fact]).await?;
-        for FactOf { ship, value } in facts {
+        let facts: Vec<FactValue> =
+            database.fetch_all(FACTS, args![names: &names, fact: fact]).await?;
+        for FactValue { ship, value } in facts {
             all.entry(ship).and_modify(|standing| standing.fact = Some(value));
         }
         // Names of facts consist of letters, digits and spaces, all of which sort before `~`.
         let end = format!("{series}~");
         let of_series = args![names: &names, from: series, before: &end];
-        for FactOf { ship, value } in database.all(SERIES, of_series).await? {
+        for FactValue { ship, value } in database.fetch_all(SERIES, of_series).await? {
             all.entry(ship).and_modify(|standing| standing.series.push(value));
         }
-        let families: Vec<Membership> = database.all(FAMILIES, args![names: &names]).await?;
-        for Membership { ship, family } in families {
+        let families: Vec<FamilyMembership> =
+            database.fetch_all(FAMILIES, args![names: &names]).await?;
+        for FamilyMembership { ship, family } in families {
             all.entry(ship).and_modify(|standing| standing.families.push(family));
         }
         Ok(all)

@@ -38,7 +38,7 @@ pub(crate) use prepare::ALL;
 mod prepare {
     use sqlx::{Executor as _, SqlSafeStr as _};
 
-    use crate::connections::Writer;
+    use crate::connections::DatabaseWriter;
     use crate::error::{Result, StoreError};
     use crate::store::Store;
     use crate::{
@@ -93,7 +93,7 @@ mod prepare {
             let mut count = 0;
             for (table, statements) in ALL {
                 for (name, statement) in *statements {
-                    self.prepare(*statement)
+                    self.prepare_statement(*statement)
                         .await
                         .map_err(|error| StoreError::conflict(table, *name, error.to_string()))?;
                     count += 1;
@@ -102,14 +102,17 @@ mod prepare {
             Ok(count)
         }
 
-        async fn prepare(&self, statement: super::Statement) -> sqlx::Result<()> {
+        async fn prepare_statement(&self, statement: super::Statement) -> sqlx::Result<()> {
             match &self.database().write {
-                Writer::Sqlite(group) => {
+                DatabaseWriter::Sqlite(group) => {
                     group.pool().prepare(statement.sqlite.into_sql_str()).await.map(drop)
                 }
-                Writer::Postgres(pool) => {
-                    pool.lease().pool.prepare(statement.postgres.into_sql_str()).await.map(drop)
-                }
+                DatabaseWriter::Postgres(pool) => pool
+                    .current_lease()
+                    .pool
+                    .prepare(statement.postgres.into_sql_str())
+                    .await
+                    .map(drop),
             }
         }
     }

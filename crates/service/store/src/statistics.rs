@@ -40,11 +40,11 @@ impl Store {
 
 impl TrialStatistics<'_> {
     /// Stores statistics, pairs of key and document, all or nothing; existing ones stay.
-    pub async fn put(&self, all: &[(String, String)]) -> Result<()> {
+    pub async fn insert_all(&self, all: &[(String, String)]) -> Result<()> {
         let mut tx = self.0.begin().await?;
         for (key, document) in all {
-            checks::sha256("key", key)?;
-            checks::json("document", document)?;
+            checks::check_sha256("key", key)?;
+            checks::check_json("document", document)?;
             let sha256 = sha256_hex(document.as_bytes());
             let values =
                 args![key: key, document: document, sha256: &sha256, created_us: self.0.now_us()];
@@ -58,7 +58,8 @@ impl TrialStatistics<'_> {
     /// # Errors
     /// Returns a conflict if the document does not have its hash.
     pub async fn get(&self, key: &str) -> Result<Option<String>> {
-        let Some(found) = self.0.database().optional::<StatisticsRow>(GET, args![key: key]).await?
+        let Some(found) =
+            self.0.database().fetch_optional::<StatisticsRow>(GET, args![key: key]).await?
         else {
             return Ok(None);
         };

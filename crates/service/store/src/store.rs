@@ -4,18 +4,18 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::clock::{Clock, Ids, UuidIds};
+use crate::clock::{Clock, IdGenerator, UuidIds};
 use crate::connect;
-use crate::database::{Database, Transaction};
+use crate::database::{AuditedTransaction, Database};
 use crate::error::Result;
-use crate::questions::Questions;
+use crate::questions::LookupQueue;
 use crate::record::record;
 use crate::reserve;
 use crate::statements::{same, statements};
-use crate::unit::Unit;
+use crate::unit::UnitTransaction;
 
 /// Maximum time of the health check of the database.
-const SOON: std::time::Duration = std::time::Duration::from_millis(800);
+const HEALTH_TIMEOUT: std::time::Duration = std::time::Duration::from_millis(800);
 
 statements! {
     PING = same("SELECT CAST(1 AS BIGINT) AS alive");
@@ -23,7 +23,7 @@ statements! {
 
 record! {
     /// The answer to a ping.
-    pub struct Pong {
+    pub struct PingRow {
         /// Always 1.
         pub alive: i64,
     }
@@ -36,13 +36,13 @@ pub struct Store(Arc<StoreParts>);
 struct StoreParts {
     database: Database,
     clock: Arc<dyn Clock>,
-    ids: Arc<dyn Ids>,
-    questions: Questions,
+    ids: Arc<dyn IdGenerator>,
+    questions: LookupQueue,
     /// File of the reserved space for the next start.
     reserve: Option<std::path::PathBuf>,
     /// Moment at which a test wants the next unit of work to stop.
     #[cfg(feature = "testing")]
-    ending: Arc<std::sync::Mutex<Option<crate::unit::Moment>>>,
+    ending: Arc<std::sync::Mutex<Option<crate::unit::CrashPoint>>>,
 }
 
 impl fmt::Debug for Store {
@@ -59,38 +59,42 @@ impl Store {
     }
 
     /// Opens a database as [`Self::connect`] does, with a generator of ids.
-    pub async fn connect_with(url: &str, clock: Arc<dyn Clock>, ids: Arc<dyn Ids>) -> Result<Self> {
-        let database = match connect::connect(url).await {
+    pub async fn connect_with(
+        url: &str,
+        clock: Arc<dyn Clock>,
+        ids: Arc<dyn IdGenerator>,
+    ) -> Result<Self> {
+        let database = match connect::connect_database(url).await {
             // A full disk: the reserved space is freed, and the database opened once more.
-            Err(error) if error.is_out_of_space() && reserve::release(url) => {
-                connect::connect(url).await?
+            Err(error) if error.is_out_of_space() && reserve::release_space(url) => {
+                connect::connect_database(url).await?
             }
             other => other?,
         };
-        Ok(Self::of(StoreParts {
+        Ok(Self::from_parts(StoreParts {
             database,
             clock,
             ids,
-            questions: Questions::default(),
-            reserve: reserve::of(url),
+            questions: LookupQueue::default(),
+            reserve: reserve::reserve_path(url),
             #[cfg(feature = "testing")]
             ending: Arc::default(),
         }))
     }
 
-    fn of(parts: StoreParts) -> Self {
+    fn from_parts(parts: StoreParts) -> Self {
         Self(Arc::new(parts))
     }
 
     /// Returns a handle whose reads and writes belong to a unit of work.
-    pub(crate) fn within(&self, unit: Unit) -> Self {
+    pub(crate) fn with_unit(&self, unit: UnitTransaction) -> Self {
         let StoreParts { database, clock, ids, .. } = &*self.0;
-        Self::of(StoreParts {
+        Self::from_parts(StoreParts {
             database: Database { unit: Some(unit), ..database.clone() },
             clock: Arc::clone(clock),
             ids: Arc::clone(ids),
             // Not used: the lookups of a unit of work are not batched.
-            questions: Questions::default(),
+            questions: LookupQueue::default(),
             reserve: self.0.reserve.clone(),
             #[cfg(feature = "testing")]
             ending: Arc::clone(&self.0.ending),
@@ -99,7 +103,7 @@ impl Store {
 
     /// Stops the next unit of work at a moment, as if its process had ended; for tests.
     #[cfg(feature = "testing")]
-    pub fn end_at(&self, moment: crate::unit::Moment) {
+    pub fn end_at(&self, moment: crate::unit::CrashPoint) {
         *self.0.ending.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(moment);
     }
 
@@ -110,21 +114,24 @@ impl Store {
     }
 
     #[cfg(feature = "testing")]
-    pub(crate) fn is_to_end_at(&self, moment: crate::unit::Moment) -> bool {
+    pub(crate) fn is_to_end_at(&self, moment: crate::unit::CrashPoint) -> bool {
         let mut ending = self.0.ending.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         ending.take_if(|at| *at == moment).is_some()
     }
 
     /// Checks that the database answers in a short time.
-    pub async fn health(&self) -> Result<()> {
-        let answered = tokio::time::timeout(SOON, self.database().optional::<Pong>(PING, &[]));
+    pub async fn check_health(&self) -> Result<()> {
+        let answered = tokio::time::timeout(
+            HEALTH_TIMEOUT,
+            self.database().fetch_optional::<PingRow>(PING, &[]),
+        );
         let late = |_| sqlx::Error::Io(std::io::ErrorKind::TimedOut.into());
         answered.await.map_err(late)?.map(drop)
     }
 
     /// Closes all connections once the work in progress has ended.
     pub async fn close(&self) {
-        self.questions().close();
+        self.lookup_queue().close();
         self.database().close().await;
     }
 
@@ -145,11 +152,11 @@ impl Store {
         &self.0.database
     }
 
-    pub(crate) fn questions(&self) -> &Questions {
+    pub(crate) fn lookup_queue(&self) -> &LookupQueue {
         &self.0.questions
     }
 
-    pub(crate) async fn begin(&self) -> Result<Transaction> {
+    pub(crate) async fn begin(&self) -> Result<AuditedTransaction> {
         self.database().begin().await
     }
 }

@@ -4,10 +4,10 @@ use serde_json::json;
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
-use crate::record::{Counted, record};
-use crate::ships::{self, Ships, subject};
+use crate::record::{RowCount, record};
+use crate::ships::{self, ShipRepository, audit_subject};
 use crate::statements::{pair, same, statements};
 
 /// Maximum number of tags of a ship.
@@ -26,51 +26,67 @@ statements! {
 
 record! {
     /// A tag of a ship.
-    pub struct Tag {
+    pub struct TagRow {
         /// The word.
         pub tag: String,
     }
 }
 
-impl Ships<'_> {
+impl ShipRepository<'_> {
     /// Returns the tags of a ship, in alphabetical order.
-    pub async fn tags(&self, name: &str) -> Result<Vec<String>> {
-        let tags: Vec<Tag> = self.0.database().all(OF_SHIP, args![ship: name]).await?;
+    pub async fn list_tags(&self, name: &str) -> Result<Vec<String>> {
+        let tags: Vec<TagRow> = self.0.database().fetch_all(OF_SHIP, args![ship: name]).await?;
         Ok(tags.into_iter().map(|tag| tag.tag).collect())
     }
 
     /// Adds a tag to a ship, which may have at most [`MAX_TAGS`]; an existing tag stays.
-    pub async fn tag(&self, name: &str, tag: &str) -> Result<()> {
-        checks::name("tag", tag)?;
+    pub async fn add_tag(&self, name: &str, tag: &str) -> Result<()> {
+        checks::check_name("tag", tag)?;
         let mut tx = self.0.begin().await?;
-        ships::find(&mut tx, name).await?;
+        ships::find_ship(&mut tx, name).await?;
         tx.execute(LOCK, args![ship: name]).await?;
         let new = tx.execute(PUT, args![ship: name, tag: tag]).await?;
         // Counted after the insertion, under the lock; too many roll it back.
         check_count(&mut tx, name).await?;
         if new > 0 {
             let after = json!({ "tag": tag });
-            tx.note(self.0.now_us(), "ship.tag", subject(name), None, Some(after));
+            tx.record_audit_event(
+                self.0.now_us(),
+                "ship.tag",
+                audit_subject(name),
+                None,
+                Some(after),
+            );
         }
         tx.commit().await
     }
 
     /// Removes a tag from a ship.
-    pub async fn untag(&self, name: &str, tag: &str) -> Result<()> {
+    pub async fn remove_tag(&self, name: &str, tag: &str) -> Result<()> {
         let mut tx = self.0.begin().await?;
-        ships::find(&mut tx, name).await?;
+        ships::find_ship(&mut tx, name).await?;
         let removed = tx.execute(REMOVE, args![ship: name, tag: tag]).await?;
         if removed > 0 {
             let before = json!({ "tag": tag });
-            tx.note(self.0.now_us(), "ship.untag", subject(name), Some(before), None);
+            tx.record_audit_event(
+                self.0.now_us(),
+                "ship.untag",
+                audit_subject(name),
+                Some(before),
+                None,
+            );
         }
         tx.commit().await?;
-        if removed > 0 { Ok(()) } else { Err(StoreError::missing("tag", format!("{name}/{tag}"))) }
+        if removed > 0 {
+            Ok(())
+        } else {
+            Err(StoreError::not_found("tag", format!("{name}/{tag}")))
+        }
     }
 }
 
-async fn check_count(tx: &mut Transaction, name: &str) -> Result<()> {
-    let count: Counted = tx.one(COUNT, args![ship: name]).await?;
+async fn check_count(tx: &mut AuditedTransaction, name: &str) -> Result<()> {
+    let count: RowCount = tx.fetch_one(COUNT, args![ship: name]).await?;
     match usize::try_from(count.rows).is_ok_and(|rows| rows <= MAX_TAGS) {
         true => Ok(()),
         false => Err(StoreError::conflict(

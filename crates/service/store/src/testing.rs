@@ -9,12 +9,12 @@ use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{AssertSqlSafe, ConnectOptions as _, Connection as _, Executor as _, PgConnection};
 use tempfile::TempDir;
 
-pub use earlier::migrations;
+pub use earlier::migration_numbers;
 pub use s3::TestS3;
 
 use crate::backup::TABLES;
 use crate::clock::ManualClock;
-use crate::connections::Pool;
+use crate::connections::ReadPool;
 use crate::store::Store;
 
 mod earlier;
@@ -34,7 +34,7 @@ pub struct TestDatabase {
 
 impl TestDatabase {
     /// Creates a new SQLite file.
-    pub fn sqlite() -> Self {
+    pub fn new_sqlite() -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         Self { url: format!("sqlite://{}", folder.path().join("store.db").display()), folder }
     }
@@ -42,19 +42,19 @@ impl TestDatabase {
     /// Creates a database on the private PostgreSQL server of this process. Returns none, with a
     /// message, if PostgreSQL is not installed, unless `SISTERSHIP_REQUIRE_POSTGRES=1`, which makes
     /// that a failure.
-    pub async fn postgres() -> Option<Self> {
+    pub async fn new_postgres() -> Option<Self> {
         static COUNT: AtomicU32 = AtomicU32::new(0);
-        let server = server::shared()?;
+        let server = server::shared_server()?;
         let name = format!("test_{}", COUNT.fetch_add(1, Ordering::SeqCst));
         let mut connection = server
-            .options()
+            .connect_options()
             .connect()
             .await
             .expect("a connection to the private PostgreSQL server");
-        create(&mut connection, &name).await.expect("a new database");
+        create_database(&mut connection, &name).await.expect("a new database");
         connection.close().await.expect("the end of a connection");
         Some(Self {
-            url: server.url(&name),
+            url: server.database_url(&name),
             folder: tempfile::tempdir().expect("a temporary folder"),
         })
     }
@@ -69,7 +69,7 @@ impl TestDatabase {
 
 impl TestDatabase {
     /// Executes a statement that no valid program would: without triggers and without foreign keys.
-    pub async fn damage(&self, sql: &str) {
+    pub async fn execute_unchecked(&self, sql: &str) {
         match self.url.starts_with("sqlite") {
             true => self.damage_sqlite(sql).await,
             false => self.damage_postgres(sql).await,
@@ -117,7 +117,7 @@ impl TestDatabase {
 
 /// Creates a database with an English collation, where the server supports it (from PostgreSQL 15):
 /// the order of keys must not depend on it.
-async fn create(connection: &mut PgConnection, name: &str) -> sqlx::Result<()> {
+async fn create_database(connection: &mut PgConnection, name: &str) -> sqlx::Result<()> {
     let plain = format!("CREATE DATABASE {name} TEMPLATE template0");
     let sorted = format!("{plain} LOCALE_PROVIDER icu ICU_LOCALE 'en'");
     match connection.execute(AssertSqlSafe(sorted)).await {
@@ -137,9 +137,9 @@ impl Store {
         for table in TABLES.iter().filter(kept) {
             let count = AssertSqlSafe(format!("SELECT COUNT(*) FROM {table}"));
             let rows = match &self.database().read {
-                Pool::Sqlite(pool) => sqlx::query_scalar(count).fetch_one(pool).await?,
-                Pool::Postgres(pool) => {
-                    sqlx::query_scalar(count).fetch_one(&pool.lease().pool).await?
+                ReadPool::Sqlite(pool) => sqlx::query_scalar(count).fetch_one(pool).await?,
+                ReadPool::Postgres(pool) => {
+                    sqlx::query_scalar(count).fetch_one(&pool.current_lease().pool).await?
                 }
             };
             counts.push((*table, rows));

@@ -6,13 +6,13 @@ use serde_json::{Value, json};
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::job::{Job, NewJob};
 use crate::jobs;
-use crate::objects::Objects;
-use crate::page::{List, Page};
-use crate::record::{Counted, record};
+use crate::objects::ObjectStorage;
+use crate::page::{ListPage, PageRequest};
+use crate::record::{RowCount, record};
 use crate::search_index;
 use crate::ships;
 use crate::statements::{same, statements};
@@ -108,20 +108,20 @@ pub struct NewTrial {
 }
 
 impl NewTrial {
-    fn check(&self) -> Result<()> {
-        checks::sha256("sha256", &self.sha256)?;
-        checks::sha256("object_key", &self.object_key)?;
-        checks::json("manifest", &self.manifest)?;
-        checks::json("conventions", &self.conventions)?;
-        checks::json("warnings", &self.warnings)?;
-        checks::count("sample_rows", self.sample_rows)?;
-        checks::not_negative("duration_s", self.duration_s)
+    fn check_fields(&self) -> Result<()> {
+        checks::check_sha256("sha256", &self.sha256)?;
+        checks::check_sha256("object_key", &self.object_key)?;
+        checks::check_json("manifest", &self.manifest)?;
+        checks::check_json("conventions", &self.conventions)?;
+        checks::check_json("warnings", &self.warnings)?;
+        checks::check_count("sample_rows", self.sample_rows)?;
+        checks::check_not_negative("duration_s", self.duration_s)
     }
 }
 
 /// Result of an insertion that may find an existing row.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Inserted<T> {
+pub struct InsertOutcome<T> {
     /// The inserted or existing row.
     pub row: T,
     /// True if this call has inserted it.
@@ -130,26 +130,26 @@ pub struct Inserted<T> {
 
 /// Repository of trials.
 #[derive(Debug, Clone, Copy)]
-pub struct Trials<'a>(pub(crate) &'a Store);
+pub struct TrialRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of trials; their samples are [`crate::Objects`].
-    pub fn trials(&self) -> Trials<'_> {
-        Trials(self)
+    pub fn trials(&self) -> TrialRepository<'_> {
+        TrialRepository(self)
     }
 }
 
-impl Trials<'_> {
+impl TrialRepository<'_> {
     /// Inserts a trial. If the ship has a trial with the same samples, that one is returned, and
     /// restored if it was deleted.
-    pub async fn insert(&self, new: &NewTrial) -> Result<Inserted<Trial>> {
+    pub async fn insert(&self, new: &NewTrial) -> Result<InsertOutcome<Trial>> {
         let mut inserted = self.insert_all(std::slice::from_ref(new)).await?;
-        inserted.pop().ok_or_else(|| StoreError::missing("trial", &new.name))
+        inserted.pop().ok_or_else(|| StoreError::not_found("trial", &new.name))
     }
 
     /// Inserts several trials, all or none.
-    pub async fn insert_all(&self, all: &[NewTrial]) -> Result<Vec<Inserted<Trial>>> {
-        self.write(all, None, |_| None).await.map(|(inserted, _)| inserted)
+    pub async fn insert_all(&self, all: &[NewTrial]) -> Result<Vec<InsertOutcome<Trial>>> {
+        self.insert_with_job(all, None, |_| None).await.map(|(inserted, _)| inserted)
     }
 
     /// Inserts several trials, all or none, with a subsequent job if `job` returns one: trials and
@@ -159,25 +159,25 @@ impl Trials<'_> {
     pub async fn insert_all_and_enqueue<F>(
         &self,
         all: &[NewTrial],
-        objects: &Objects,
+        objects: &ObjectStorage,
         job: F,
-    ) -> Result<(Vec<Inserted<Trial>>, Option<Job>)>
+    ) -> Result<(Vec<InsertOutcome<Trial>>, Option<Job>)>
     where
-        F: FnOnce(&[Inserted<Trial>]) -> Option<NewJob>,
+        F: FnOnce(&[InsertOutcome<Trial>]) -> Option<NewJob>,
     {
-        self.write(all, Some(objects), job).await
+        self.insert_with_job(all, Some(objects), job).await
     }
 
-    async fn write<F>(
+    async fn insert_with_job<F>(
         &self,
         all: &[NewTrial],
-        objects: Option<&Objects>,
+        objects: Option<&ObjectStorage>,
         job: F,
-    ) -> Result<(Vec<Inserted<Trial>>, Option<Job>)>
+    ) -> Result<(Vec<InsertOutcome<Trial>>, Option<Job>)>
     where
-        F: FnOnce(&[Inserted<Trial>]) -> Option<NewJob>,
+        F: FnOnce(&[InsertOutcome<Trial>]) -> Option<NewJob>,
     {
-        all.iter().try_for_each(NewTrial::check)?;
+        all.iter().try_for_each(NewTrial::check_fields)?;
         let mut tx = self.0.begin().await?;
         let mut inserted = Vec::with_capacity(all.len());
         for new in all {
@@ -186,67 +186,83 @@ impl Trials<'_> {
         // Checked after the insertions, which wait for a removal of unreferenced objects in
         // progress.
         if let Some(objects) = objects {
-            objects.must_have(inserted.iter().map(|trial| trial.row.object_key.clone())).await?;
+            objects
+                .check_present(inserted.iter().map(|trial| trial.row.object_key.clone()))
+                .await?;
         }
         // In a fixed order: two transactions that insert trials of the same ships could deadlock
         // otherwise.
         for ship in all.iter().map(|new| &new.ship).collect::<BTreeSet<_>>() {
-            search_index::mark(self.0, &mut tx, ship).await?;
+            search_index::queue_ship(self.0, &mut tx, ship).await?;
         }
         let job = match job(&inserted) {
-            Some(new) => Some(jobs::insert(self.0, &mut tx, &new).await?),
+            Some(new) => Some(jobs::insert_job(self.0, &mut tx, &new).await?),
             None => None,
         };
         tx.commit().await?;
         Ok((inserted, job))
     }
 
-    async fn insert_one(&self, tx: &mut Transaction, new: &NewTrial) -> Result<Inserted<Trial>> {
+    async fn insert_one(
+        &self,
+        tx: &mut AuditedTransaction,
+        new: &NewTrial,
+    ) -> Result<InsertOutcome<Trial>> {
         let id = self.0.new_id();
-        ships::find(tx, &new.ship).await?;
+        ships::find_ship(tx, &new.ship).await?;
         let values = args![id: &id, ship: &new.ship, sha256: &new.sha256, name: &new.name,
             manifest: &new.manifest,
             conventions: &new.conventions, manoeuvre: &new.manoeuvre, sample_rows: new.sample_rows,
             duration_s: new.duration_s, warnings: &new.warnings, object_key: &new.object_key,
             created_us: self.0.now_us()];
         let inserted = tx.execute(INSERT, values).await?;
-        let row: Trial = tx.one(REVIVE, args![ship: &new.ship, sha256: &new.sha256]).await?;
+        let row: Trial = tx.fetch_one(REVIVE, args![ship: &new.ship, sha256: &new.sha256]).await?;
         if inserted == 1 {
-            tx.note(self.0.now_us(), "trial.create", subject(&row), None, Some(state(&row)));
+            tx.record_audit_event(
+                self.0.now_us(),
+                "trial.create",
+                audit_subject(&row),
+                None,
+                Some(audit_state(&row)),
+            );
         }
-        Ok(Inserted { row, new: inserted == 1 })
+        Ok(InsertOutcome { row, new: inserted == 1 })
     }
 
     /// Returns the trial of an id.
     pub async fn get(&self, id: &str) -> Result<Trial> {
-        let trial = self.0.database().optional(GET, args![id: id]).await?;
-        trial.ok_or_else(|| StoreError::missing("trial", id))
+        let trial = self.0.database().fetch_optional(GET, args![id: id]).await?;
+        trial.ok_or_else(|| StoreError::not_found("trial", id))
     }
 
     /// Returns the trial of a ship with these samples.
-    pub async fn find(&self, ship: &str, sha256: &str) -> Result<Trial> {
-        let trial = self.0.database().optional(FIND, args![ship: ship, sha256: sha256]).await?;
-        trial.ok_or_else(|| StoreError::missing("trial", format!("{ship}/{sha256}")))
+    pub async fn find_by_hash(&self, ship: &str, sha256: &str) -> Result<Trial> {
+        let trial =
+            self.0.database().fetch_optional(FIND, args![ship: ship, sha256: sha256]).await?;
+        trial.ok_or_else(|| StoreError::not_found("trial", format!("{ship}/{sha256}")))
     }
 
     /// Returns true if there is a trial of this id, deleted or not.
-    pub async fn was(&self, id: &str) -> Result<bool> {
-        let found: Option<Counted> = self.0.database().optional(WAS, args![id: id]).await?;
+    pub async fn ever_existed(&self, id: &str) -> Result<bool> {
+        let found: Option<RowCount> = self.0.database().fetch_optional(WAS, args![id: id]).await?;
         Ok(found.is_some_and(|found| found.rows > 0))
     }
 
     /// Lists all trials of all ships, deleted or not, in the order of their upload.
-    pub async fn all(&self, page: &Page) -> Result<List<Trial>> {
-        let trials =
-            self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
-        Ok(page.of(trials, |trial: &Trial| trial.id.clone()))
+    pub async fn list_all(&self, page: &PageRequest) -> Result<ListPage<Trial>> {
+        let trials = self
+            .0
+            .database()
+            .fetch_all(ALL, args![after: &page.after, limit: page.fetch_limit()?])
+            .await?;
+        Ok(page.build_page(trials, |trial: &Trial| trial.id.clone()))
     }
 
     /// Lists the trials of a ship, in the order of their upload.
-    pub async fn list(&self, ship: &str, page: &Page) -> Result<List<Trial>> {
-        let values = args![ship: ship, after: &page.after, limit: page.fetch()?];
-        let trials = self.0.database().all(LIST, values).await?;
-        Ok(page.of(trials, |trial: &Trial| trial.id.clone()))
+    pub async fn list(&self, ship: &str, page: &PageRequest) -> Result<ListPage<Trial>> {
+        let values = args![ship: ship, after: &page.after, limit: page.fetch_limit()?];
+        let trials = self.0.database().fetch_all(LIST, values).await?;
+        Ok(page.build_page(trials, |trial: &Trial| trial.id.clone()))
     }
 
     /// Deletes a trial; [`undelete`](Self::undelete) reverts it. Its samples stay: versions name
@@ -254,34 +270,46 @@ impl Trials<'_> {
     pub async fn delete(&self, id: &str) -> Result<Trial> {
         let mut tx = self.0.begin().await?;
         let trial: Option<Trial> =
-            tx.optional(DELETE, args![id: id, deleted_us: self.0.now_us()]).await?;
+            tx.fetch_optional(DELETE, args![id: id, deleted_us: self.0.now_us()]).await?;
         if let Some(trial) = &trial {
-            tx.note(self.0.now_us(), "trial.delete", subject(trial), Some(state(trial)), None);
-            search_index::mark(self.0, &mut tx, &trial.ship).await?;
+            tx.record_audit_event(
+                self.0.now_us(),
+                "trial.delete",
+                audit_subject(trial),
+                Some(audit_state(trial)),
+                None,
+            );
+            search_index::queue_ship(self.0, &mut tx, &trial.ship).await?;
         }
         tx.commit().await?;
-        trial.ok_or_else(|| StoreError::missing("trial", id))
+        trial.ok_or_else(|| StoreError::not_found("trial", id))
     }
 
     /// Restores a deleted trial.
     pub async fn undelete(&self, id: &str) -> Result<Trial> {
         let mut tx = self.0.begin().await?;
-        let trial: Option<Trial> = tx.optional(UNDELETE, args![id: id]).await?;
+        let trial: Option<Trial> = tx.fetch_optional(UNDELETE, args![id: id]).await?;
         if let Some(trial) = &trial {
-            tx.note(self.0.now_us(), "trial.undelete", subject(trial), None, Some(state(trial)));
-            search_index::mark(self.0, &mut tx, &trial.ship).await?;
+            tx.record_audit_event(
+                self.0.now_us(),
+                "trial.undelete",
+                audit_subject(trial),
+                None,
+                Some(audit_state(trial)),
+            );
+            search_index::queue_ship(self.0, &mut tx, &trial.ship).await?;
         }
         tx.commit().await?;
-        trial.ok_or_else(|| StoreError::missing("trial", id))
+        trial.ok_or_else(|| StoreError::not_found("trial", id))
     }
 }
 
 /// Returns the subject of audit entries about a trial.
-fn subject(trial: &Trial) -> String {
+fn audit_subject(trial: &Trial) -> String {
     format!("trial:{}", trial.id)
 }
 
 /// Returns the state of a trial for the audit.
-fn state(trial: &Trial) -> Value {
+fn audit_state(trial: &Trial) -> Value {
     json!({ "ship": trial.ship, "name": trial.name, "sha256": trial.sha256 })
 }

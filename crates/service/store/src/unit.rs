@@ -8,20 +8,20 @@ use std::sync::Arc;
 use tokio::sync::{Mutex, OwnedMutexGuard};
 
 use crate::chain;
-use crate::connections::{DatabaseTransaction, Writer};
-use crate::entry::Entry;
+use crate::connections::{DatabaseTransaction, DatabaseWriter};
+use crate::entry::NewAuditEntry;
 use crate::error::{Result, StoreError};
 
 /// The transaction that the clones of a handle share.
 #[derive(Clone, Default)]
-pub(crate) struct Unit(Arc<Mutex<UnitState>>);
+pub(crate) struct UnitTransaction(Arc<Mutex<UnitState>>);
 
 #[derive(Default)]
 struct UnitState {
     transaction: Option<DatabaseTransaction>,
     /// Audit entries of its steps, appended at its end: after that the transaction waits for
     /// nothing more.
-    entries: Vec<Entry>,
+    entries: Vec<NewAuditEntry>,
     /// True if the last step has failed and is still to be rolled back.
     undo: bool,
     ended: bool,
@@ -33,34 +33,34 @@ pub(crate) struct UnitStep {
     writes: bool,
 }
 
-impl fmt::Debug for Unit {
+impl fmt::Debug for UnitTransaction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Unit").finish_non_exhaustive()
     }
 }
 
-impl Unit {
+impl UnitTransaction {
     /// Begins a step, and the transaction with the first one.
-    pub(crate) async fn step(&self, writer: &Writer) -> Result<UnitStep> {
-        let mut step = self.enter().await?;
+    pub(crate) async fn begin_step(&self, writer: &DatabaseWriter) -> Result<UnitStep> {
+        let mut step = self.lock_state().await?;
         if step.state.transaction.is_none() {
             step.state.transaction = Some(writer.begin().await?);
         }
-        step.transaction()?.run("SAVEPOINT step").await?;
+        step.database_transaction()?.run("SAVEPOINT step").await?;
         step.writes = true;
         Ok(step)
     }
 
     /// Returns the unit for reads in its transaction, if that has begun.
-    pub(crate) async fn open(&self) -> Result<Option<UnitStep>> {
-        let step = self.enter().await?;
+    pub(crate) async fn open_transaction(&self) -> Result<Option<UnitStep>> {
+        let step = self.lock_state().await?;
         Ok(step.state.transaction.is_some().then_some(step))
     }
 
-    async fn enter(&self) -> Result<UnitStep> {
+    async fn lock_state(&self) -> Result<UnitStep> {
         let mut state = Arc::clone(&self.0).lock_owned().await;
         if state.ended {
-            return Err(ended());
+            return Err(ended_error());
         }
         if std::mem::take(&mut state.undo)
             && let Some(mut transaction) = state.transaction.take()
@@ -75,18 +75,18 @@ impl Unit {
     }
 
     /// Ends the unit and returns the transaction, if it has begun, complete except for the commit.
-    pub(crate) async fn end(&self) -> Result<Option<DatabaseTransaction>> {
-        let mut step = self.enter().await?;
+    pub(crate) async fn end_unit(&self) -> Result<Option<DatabaseTransaction>> {
+        let mut step = self.lock_state().await?;
         step.state.ended = true;
         let entries = std::mem::take(&mut step.state.entries);
         let Some(mut transaction) = step.state.transaction.take() else { return Ok(None) };
-        chain::enter(&mut transaction, entries).await?;
+        chain::append_entries(&mut transaction, entries).await?;
         Ok(Some(transaction))
     }
 
     /// Ends the unit and rolls it back.
-    pub(crate) async fn undo(&self) {
-        if let Ok(mut step) = self.enter().await {
+    pub(crate) async fn rollback_unit(&self) {
+        if let Ok(mut step) = self.lock_state().await {
             step.state.ended = true;
             // Dropping the transaction rolls it back.
             drop(step.state.transaction.take());
@@ -95,13 +95,13 @@ impl Unit {
 }
 
 impl UnitStep {
-    pub(crate) fn transaction(&mut self) -> Result<&mut DatabaseTransaction> {
-        self.state.transaction.as_mut().ok_or_else(ended)
+    pub(crate) fn database_transaction(&mut self) -> Result<&mut DatabaseTransaction> {
+        self.state.transaction.as_mut().ok_or_else(ended_error)
     }
 
     /// Releases the savepoint of the step and adds its audit entries to the unit.
-    pub(crate) async fn keep(mut self, entries: Vec<Entry>) -> Result<()> {
-        self.transaction()?.run("RELEASE SAVEPOINT step").await?;
+    pub(crate) async fn commit_step(mut self, entries: Vec<NewAuditEntry>) -> Result<()> {
+        self.database_transaction()?.run("RELEASE SAVEPOINT step").await?;
         self.state.entries.extend(entries);
         self.writes = false;
         Ok(())
@@ -115,14 +115,14 @@ impl Drop for UnitStep {
     }
 }
 
-fn ended() -> StoreError {
+fn ended_error() -> StoreError {
     StoreError::conflict("unit of work", "", "has ended")
 }
 
 /// Moment at which a test can stop a unit of work, as the end of its process would.
 #[cfg(feature = "testing")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Moment {
+pub enum CrashPoint {
     /// Everything is written and nothing is committed.
     BeforeCommit,
     /// Everything is committed and nothing is acknowledged.

@@ -2,25 +2,25 @@
 //! to the request that caused them.
 
 use crate::error::Result;
-use crate::idempotency::{self, Ticket};
+use crate::idempotency::{self, RequestTicket};
 use crate::store::Store;
 #[cfg(feature = "testing")]
-use crate::unit::Moment;
-use crate::unit::Unit;
+use crate::unit::CrashPoint;
+use crate::unit::UnitTransaction;
 
 /// Work that is committed completely or not at all, see [`Store::unit`]. It is rolled back when
 /// this and its handles are dropped.
 #[derive(Debug)]
 pub struct UnitOfWork {
     store: Store,
-    unit: Unit,
+    unit: UnitTransaction,
 }
 
 impl Store {
     /// Begins a unit of work.
-    pub fn unit(&self) -> UnitOfWork {
-        let unit = Unit::default();
-        UnitOfWork { store: self.within(unit.clone()), unit }
+    pub fn begin_unit(&self) -> UnitOfWork {
+        let unit = UnitTransaction::default();
+        UnitOfWork { store: self.with_unit(unit.clone()), unit }
     }
 }
 
@@ -35,28 +35,28 @@ impl UnitOfWork {
     ///
     /// # Errors
     /// Returns a conflict, and rolls the work back, if another process has taken over the request.
-    pub async fn keep(self, answer: Option<(&Ticket, i64, &str)>) -> Result<()> {
+    pub async fn commit(self, answer: Option<(&RequestTicket, i64, &str)>) -> Result<()> {
         if let Some((ticket, status, body)) = answer {
             let mut tx = self.store.begin().await?;
-            idempotency::answered(&mut tx, ticket, status, body).await?;
+            idempotency::store_answer(&mut tx, ticket, status, body).await?;
             tx.commit().await?;
         }
-        let Some(transaction) = self.unit.end().await? else { return Ok(()) };
+        let Some(transaction) = self.unit.end_unit().await? else { return Ok(()) };
         #[cfg(feature = "testing")]
-        if self.store.is_to_end_at(Moment::BeforeCommit) {
+        if self.store.is_to_end_at(CrashPoint::BeforeCommit) {
             drop(transaction);
             return std::future::pending().await;
         }
         transaction.commit().await?;
         #[cfg(feature = "testing")]
-        if self.store.is_to_end_at(Moment::AfterCommit) {
+        if self.store.is_to_end_at(CrashPoint::AfterCommit) {
             return std::future::pending().await;
         }
         Ok(())
     }
 
     /// Rolls the work back.
-    pub async fn undo(self) {
-        self.unit.undo().await;
+    pub async fn rollback(self) {
+        self.unit.rollback_unit().await;
     }
 }

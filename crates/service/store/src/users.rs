@@ -5,10 +5,10 @@ use serde_json::json;
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::grants::{self, GrantRow};
-use crate::page::{List, Page};
+use crate::page::{ListPage, PageRequest};
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
@@ -50,18 +50,18 @@ record! {
 
 /// Repository of users.
 #[derive(Debug, Clone, Copy)]
-pub struct Users<'a>(pub(crate) &'a Store);
+pub struct UserRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of users.
-    pub fn users(&self) -> Users<'_> {
-        Users(self)
+    pub fn users(&self) -> UserRepository<'_> {
+        UserRepository(self)
     }
 }
 
 impl User {
     /// Returns the principal of a user in [`crate::Grants`] and in the audit.
-    pub fn principal(name: &str) -> String {
+    pub fn principal_name(name: &str) -> String {
         format!("user:{name}")
     }
 
@@ -71,7 +71,7 @@ impl User {
     }
 }
 
-impl Users<'_> {
+impl UserRepository<'_> {
     /// Creates a user with roles; a name that was ever used is a conflict.
     pub async fn create(
         &self,
@@ -81,38 +81,45 @@ impl Users<'_> {
         roles: &[GrantRow],
     ) -> Result<User> {
         let mut tx = self.0.begin().await?;
-        let user = insert(&mut tx, name, title, password_hash, self.0.now_us()).await?;
-        let principal = User::principal(name);
-        grants::put(&mut tx, &principal, roles).await?;
-        let after = json!({ "title": title, "roles": grants::words(roles) });
-        tx.note(self.0.now_us(), "user.create", principal, None, Some(after));
+        let user = insert_user(&mut tx, name, title, password_hash, self.0.now_us()).await?;
+        let principal = User::principal_name(name);
+        grants::insert_roles(&mut tx, &principal, roles).await?;
+        let after = json!({ "title": title, "roles": grants::role_names(roles) });
+        tx.record_audit_event(self.0.now_us(), "user.create", principal, None, Some(after));
         tx.commit().await?;
         Ok(user)
     }
 
     /// Returns a user.
     pub async fn get(&self, name: &str) -> Result<User> {
-        self.find(name).await?.ok_or_else(|| StoreError::missing("user", name))
+        self.find(name).await?.ok_or_else(|| StoreError::not_found("user", name))
     }
 
     /// Finds a user by name.
     pub async fn find(&self, name: &str) -> Result<Option<User>> {
-        self.0.database().optional(GET, args![name: name]).await
+        self.0.database().fetch_optional(GET, args![name: name]).await
     }
 
     /// Lists the users by name.
-    pub async fn list(&self, page: &Page) -> Result<List<User>> {
-        let values = args![after: &page.after, limit: page.fetch()?];
-        let users = self.0.database().all(LIST, values).await?;
-        Ok(page.of(users, |user: &User| user.name.clone()))
+    pub async fn list(&self, page: &PageRequest) -> Result<ListPage<User>> {
+        let values = args![after: &page.after, limit: page.fetch_limit()?];
+        let users = self.0.database().fetch_all(LIST, values).await?;
+        Ok(page.build_page(users, |user: &User| user.name.clone()))
     }
 
     /// Sets a password and ends the sessions of the user.
     pub async fn set_password(&self, name: &str, password_hash: &str) -> Result<User> {
         let mut tx = self.0.begin().await?;
-        let set = tx.optional(PASSWORD, args![name: name, password_hash: password_hash]).await?;
-        let user = self.changed(&mut tx, name, set, "has gone").await?;
-        tx.note(self.0.now_us(), "user.password", User::principal(name), None, None);
+        let set =
+            tx.fetch_optional(PASSWORD, args![name: name, password_hash: password_hash]).await?;
+        let user = self.finish_change(&mut tx, name, set, "has gone").await?;
+        tx.record_audit_event(
+            self.0.now_us(),
+            "user.password",
+            User::principal_name(name),
+            None,
+            None,
+        );
         tx.commit().await?;
         Ok(user)
     }
@@ -121,10 +128,16 @@ impl Users<'_> {
     pub async fn disable(&self, name: &str) -> Result<User> {
         let mut tx = self.0.begin().await?;
         let values = args![name: name, disabled_us: self.0.now_us()];
-        let disabled = tx.optional(DISABLE, values).await?;
-        let user = self.changed(&mut tx, name, disabled, "is disabled already").await?;
+        let disabled = tx.fetch_optional(DISABLE, values).await?;
+        let user = self.finish_change(&mut tx, name, disabled, "is disabled already").await?;
         let (before, after) = (json!({ "enabled": true }), json!({ "enabled": false }));
-        tx.note(self.0.now_us(), "user.disable", User::principal(name), Some(before), Some(after));
+        tx.record_audit_event(
+            self.0.now_us(),
+            "user.disable",
+            User::principal_name(name),
+            Some(before),
+            Some(after),
+        );
         tx.commit().await?;
         Ok(user)
     }
@@ -132,19 +145,25 @@ impl Users<'_> {
     /// Enables a disabled user.
     pub async fn enable(&self, name: &str) -> Result<User> {
         let mut tx = self.0.begin().await?;
-        let enabled = tx.optional(ENABLE, args![name: name]).await?;
-        let user = self.changed(&mut tx, name, enabled, "is enabled already").await?;
+        let enabled = tx.fetch_optional(ENABLE, args![name: name]).await?;
+        let user = self.finish_change(&mut tx, name, enabled, "is enabled already").await?;
         let (before, after) = (json!({ "enabled": false }), json!({ "enabled": true }));
-        tx.note(self.0.now_us(), "user.enable", User::principal(name), Some(before), Some(after));
+        tx.record_audit_event(
+            self.0.now_us(),
+            "user.enable",
+            User::principal_name(name),
+            Some(before),
+            Some(after),
+        );
         tx.commit().await?;
         Ok(user)
     }
 
     /// Ends the sessions of a user and returns the changed row, or the reason why no row was
     /// changed.
-    async fn changed(
+    async fn finish_change(
         &self,
-        tx: &mut Transaction,
+        tx: &mut AuditedTransaction,
         name: &str,
         changed: Option<User>,
         why: &str,
@@ -154,32 +173,32 @@ impl Users<'_> {
         if let Some(user) = changed {
             return Ok(user);
         }
-        there(tx, name).await?;
+        require_user(tx, name).await?;
         Err(StoreError::conflict("user", name, why))
     }
 }
 
 /// Creates a user within a transaction.
-pub(crate) async fn insert(
-    tx: &mut Transaction,
+pub(crate) async fn insert_user(
+    tx: &mut AuditedTransaction,
     name: &str,
     title: &str,
     password_hash: Option<&str>,
     now_us: i64,
 ) -> Result<User> {
-    checks::name("name", name)?;
+    checks::check_name("name", name)?;
     let values = args![name: name, title: title, password_hash: password_hash, created_us: now_us];
     let taken = || StoreError::conflict("user", name, "there is one of this name already");
-    tx.optional(INSERT, values).await?.ok_or_else(taken)
+    tx.fetch_optional(INSERT, values).await?.ok_or_else(taken)
 }
 
 /// Returns a user, or an error if there is none.
-pub(crate) async fn there(tx: &mut Transaction, name: &str) -> Result<User> {
-    let found = tx.optional(GET, args![name: name]).await?;
-    found.ok_or_else(|| StoreError::missing("user", name))
+pub(crate) async fn require_user(tx: &mut AuditedTransaction, name: &str) -> Result<User> {
+    let found = tx.fetch_optional(GET, args![name: name]).await?;
+    found.ok_or_else(|| StoreError::not_found("user", name))
 }
 
 /// Ends all sessions of a user.
-pub(crate) async fn sign_out(tx: &mut Transaction, name: &str) -> Result<()> {
+pub(crate) async fn sign_out(tx: &mut AuditedTransaction, name: &str) -> Result<()> {
     tx.execute(SIGN_OUT, args![user_name: name]).await.map(drop)
 }

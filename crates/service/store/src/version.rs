@@ -2,7 +2,7 @@
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::record::record;
 use crate::statements::{same, statements};
@@ -67,31 +67,39 @@ pub struct NewVersion {
 
 impl NewVersion {
     /// Checks that all fields can be stored.
-    pub(crate) fn check(&self) -> Result<()> {
-        checks::name("model", &self.model)?;
-        checks::name("law", &self.law)?;
-        checks::name("method", &self.method)?;
-        self.weights.as_deref().map_or(Ok(()), |key| checks::sha256("weights", key))?;
-        checks::json("document", &self.document)
+    pub(crate) fn check_fields(&self) -> Result<()> {
+        checks::check_name("model", &self.model)?;
+        checks::check_name("law", &self.law)?;
+        checks::check_name("method", &self.method)?;
+        self.weights.as_deref().map_or(Ok(()), |key| checks::check_sha256("weights", key))?;
+        checks::check_json("document", &self.document)
     }
 }
 
 /// Checks that the transaction sees a version of this number.
-pub(crate) async fn check_exists(tx: &mut Transaction, model: &str, number: i64) -> Result<()> {
+pub(crate) async fn check_exists(
+    tx: &mut AuditedTransaction,
+    model: &str,
+    number: i64,
+) -> Result<()> {
     let version: Option<VersionHead> =
-        tx.optional(HEAD, args![model: model, number: number]).await?;
-    version.map(drop).ok_or_else(|| missing(model, number))
+        tx.fetch_optional(HEAD, args![model: model, number: number]).await?;
+    version.map(drop).ok_or_else(|| missing_version(model, number))
 }
 
 /// Checks that the transaction sees the version of an id; an error names `field`.
-pub(crate) async fn check_id(tx: &mut Transaction, field: &'static str, id: &str) -> Result<()> {
-    let version: Option<VersionHead> = tx.optional(HEAD_BY_ID, args![id: id]).await?;
+pub(crate) async fn check_id(
+    tx: &mut AuditedTransaction,
+    field: &'static str,
+    id: &str,
+) -> Result<()> {
+    let version: Option<VersionHead> = tx.fetch_optional(HEAD_BY_ID, args![id: id]).await?;
     version
         .map(drop)
         .ok_or_else(|| StoreError::invalid(field, format!("there is no version `{id}`")))
 }
 
 /// Returns the error of a missing version.
-pub(crate) fn missing(model: &str, number: i64) -> StoreError {
-    StoreError::missing("version", format!("{model}/{number}"))
+pub(crate) fn missing_version(model: &str, number: i64) -> StoreError {
+    StoreError::not_found("version", format!("{model}/{number}"))
 }

@@ -5,15 +5,15 @@ use serde_json::json;
 use crate::actor::Actor;
 use crate::aliases::{self, AliasMove};
 use crate::arguments::args;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
-use crate::objects::{Objects, sha256_hex};
-use crate::page::{List, Page};
+use crate::objects::{ObjectStorage, sha256_hex};
+use crate::page::{ListPage, PageRequest};
 use crate::questions::CurrentVersion;
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;
-use crate::version::{NewVersion, Version, VersionHead, check_id, missing};
+use crate::version::{NewVersion, Version, VersionHead, check_id, missing_version};
 
 statements! {
     // The row of the model stays locked until the commit, and a rolled back transaction returns its
@@ -63,73 +63,82 @@ record! {
 
 /// Repository of versions.
 #[derive(Debug, Clone, Copy)]
-pub struct Versions<'a>(pub(crate) &'a Store);
+pub struct VersionRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of versions (insert-only).
-    pub fn versions(&self) -> Versions<'_> {
-        Versions(self)
+    pub fn versions(&self) -> VersionRepository<'_> {
+        VersionRepository(self)
     }
 }
 
-impl Versions<'_> {
+impl VersionRepository<'_> {
     /// Creates the next version of a model and moves aliases to it, all or nothing.
     pub async fn create(&self, new: &NewVersion, moves: &[AliasMove]) -> Result<VersionHead> {
         let mut tx = self.0.begin().await?;
-        let version = insert(self.0, &mut tx, new, moves).await?;
+        let version = insert_version(self.0, &mut tx, new, moves).await?;
         tx.commit().await?;
         Ok(version)
     }
 
     /// Returns a version without its document.
-    pub async fn head(&self, model: &str, number: i64) -> Result<VersionHead> {
-        let found = self.0.database().optional(HEAD, args![model: model, number: number]).await?;
-        found.ok_or_else(|| missing(model, number))
+    pub async fn get_head(&self, model: &str, number: i64) -> Result<VersionHead> {
+        let found =
+            self.0.database().fetch_optional(HEAD, args![model: model, number: number]).await?;
+        found.ok_or_else(|| missing_version(model, number))
     }
 
     /// Returns a version by its number.
     pub async fn get(&self, model: &str, number: i64) -> Result<Version> {
-        let version = self.0.database().optional(GET, args![model: model, number: number]).await?;
-        version.ok_or_else(|| missing(model, number))
+        let version =
+            self.0.database().fetch_optional(GET, args![model: model, number: number]).await?;
+        version.ok_or_else(|| missing_version(model, number))
     }
 
     /// Returns the version that an alias of a ship points to now; none if the ship or the alias
     /// does not exist.
-    pub async fn current(&self, ship: &str, alias: &str) -> Result<Option<CurrentVersion>> {
-        self.0.current(ship, alias).await
+    pub async fn current_version(&self, ship: &str, alias: &str) -> Result<Option<CurrentVersion>> {
+        self.0.current_version(ship, alias).await
     }
 
     /// Returns a version by its id.
     pub async fn by_id(&self, id: &str) -> Result<Version> {
-        let version = self.0.database().optional(BY_ID, args![id: id]).await?;
-        version.ok_or_else(|| StoreError::missing("version", id))
+        let version = self.0.database().fetch_optional(BY_ID, args![id: id]).await?;
+        version.ok_or_else(|| StoreError::not_found("version", id))
     }
 
     /// Returns the version of a model with the highest number.
     pub async fn latest(&self, model: &str) -> Result<Version> {
-        let version = self.0.database().optional(LATEST, args![model: model]).await?;
-        version.ok_or_else(|| StoreError::missing("model", model))
+        let version = self.0.database().fetch_optional(LATEST, args![model: model]).await?;
+        version.ok_or_else(|| StoreError::not_found("model", model))
     }
 
     /// Lists the versions of a model, the latest first.
-    pub async fn list(&self, model: &str, page: &Page<i64>) -> Result<List<VersionHead, i64>> {
-        let values = args![model: model, after: page.after, limit: page.fetch()?];
-        let versions = self.0.database().all(LIST, values).await?;
-        Ok(page.of(versions, |version: &VersionHead| version.number))
+    pub async fn list(
+        &self,
+        model: &str,
+        page: &PageRequest<i64>,
+    ) -> Result<ListPage<VersionHead, i64>> {
+        let values = args![model: model, after: page.after, limit: page.fetch_limit()?];
+        let versions = self.0.database().fetch_all(LIST, values).await?;
+        Ok(page.build_page(versions, |version: &VersionHead| version.number))
     }
 
     /// Lists all versions of all models with their documents, in the order of their creation.
-    pub async fn all(&self, page: &Page) -> Result<List<Version>> {
-        let versions =
-            self.0.database().all(ALL, args![after: &page.after, limit: page.fetch()?]).await?;
-        Ok(page.of(versions, |version: &Version| version.head.id.clone()))
+    pub async fn list_all(&self, page: &PageRequest) -> Result<ListPage<Version>> {
+        let versions = self
+            .0
+            .database()
+            .fetch_all(ALL, args![after: &page.after, limit: page.fetch_limit()?])
+            .await?;
+        Ok(page.build_page(versions, |version: &Version| version.head.id.clone()))
     }
 
     /// Lists the keys of objects with the weights of learned corrections.
-    pub async fn weights(&self, page: &Page) -> Result<List<WeightsKey>> {
-        let values = args![after: &page.after, limit: page.fetch()?];
-        let keys = self.0.database().all(WEIGHTS, values).await?;
-        Ok(page.of(keys, |key: &WeightsKey| key.weights_key.clone()))
+    pub async fn list_weights(&self, page: &PageRequest) -> Result<ListPage<WeightsKey>> {
+        let values = args![after: &page.after, limit: page.fetch_limit()?];
+        let keys = self.0.database().fetch_all(WEIGHTS, values).await?;
+        Ok(page.build_page(keys, |key: &WeightsKey| key.weights_key.clone()))
     }
 
     /// Creates the next version of a model, whose learned correction has its weights in `objects`,
@@ -137,47 +146,51 @@ impl Versions<'_> {
     /// [`Store::remove_unreferred`] has removed them meanwhile, nothing is created.
     pub async fn create_with_weights(
         &self,
-        objects: &Objects,
+        objects: &ObjectStorage,
         new: &NewVersion,
         moves: &[AliasMove],
     ) -> Result<VersionHead> {
         let mut tx = self.0.begin().await?;
-        let version = insert(self.0, &mut tx, new, moves).await?;
-        objects.must_have(new.weights.iter().cloned()).await?;
+        let version = insert_version(self.0, &mut tx, new, moves).await?;
+        objects.check_present(new.weights.iter().cloned()).await?;
         tx.commit().await?;
         Ok(version)
     }
 
     /// Lists the versions of any model that were made from the version `id`, the oldest first.
-    pub async fn children(&self, id: &str, page: &Page) -> Result<List<VersionHead>> {
-        let values = args![parent: id, after: &page.after, limit: page.fetch()?];
-        let versions = self.0.database().all(CHILDREN, values).await?;
-        Ok(page.of(versions, |version: &VersionHead| version.id.clone()))
+    pub async fn list_children(
+        &self,
+        id: &str,
+        page: &PageRequest,
+    ) -> Result<ListPage<VersionHead>> {
+        let values = args![parent: id, after: &page.after, limit: page.fetch_limit()?];
+        let versions = self.0.database().fetch_all(CHILDREN, values).await?;
+        Ok(page.build_page(versions, |version: &VersionHead| version.id.clone()))
     }
 }
 
 /// Creates a version and moves aliases to it within a transaction.
-pub(crate) async fn insert(
+pub(crate) async fn insert_version(
     store: &Store,
-    tx: &mut Transaction,
+    tx: &mut AuditedTransaction,
     new: &NewVersion,
     moves: &[AliasMove],
 ) -> Result<VersionHead> {
-    new.check()?;
+    new.check_fields()?;
     if let Some(parent) = &new.parent {
         check_id(tx, "parent", parent).await?;
     }
     // From here on the row of the model is locked until the commit.
-    let NextNumber { number } = tx.one(NUMBER, args![model: &new.model]).await?;
+    let NextNumber { number } = tx.fetch_one(NUMBER, args![model: &new.model]).await?;
     let (id, sha256) = (store.new_id(), sha256_hex(new.document.as_bytes()));
     let author = Actor::current().name;
     let values = args![id: &id, model: &new.model, number: number, parent: &new.parent,
         law: &new.law, method: &new.method,
         document: &new.document, sha256: &sha256, created_us: store.now_us(),
         weights_key: &new.weights, author: &author];
-    let version: VersionHead = tx.one(INSERT, values).await?;
+    let version: VersionHead = tx.fetch_one(INSERT, values).await?;
     let after = json!({ "sha256": sha256, "method": new.method, "law": new.law });
-    tx.note(
+    tx.record_audit_event(
         store.now_us(),
         "version.create",
         format!("version:{}/{number}", new.model),
@@ -185,7 +198,7 @@ pub(crate) async fn insert(
         Some(after),
     );
     for alias in moves {
-        aliases::shift(store, tx, &new.model, number, alias).await?;
+        aliases::move_alias(store, tx, &new.model, number, alias).await?;
     }
     Ok(version)
 }

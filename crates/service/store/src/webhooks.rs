@@ -8,9 +8,9 @@ use serde_json::{Value, json};
 
 use crate::arguments::args;
 use crate::checks;
-use crate::database::Transaction;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
-use crate::page::{List, Page};
+use crate::page::{ListPage, PageRequest};
 use crate::record::record;
 use crate::statements::{pair, same, statements};
 use crate::store::Store;
@@ -163,106 +163,111 @@ pub struct NewWebhook {
 
 /// Repository of webhooks.
 #[derive(Debug, Clone, Copy)]
-pub struct Webhooks<'a>(pub(crate) &'a Store);
+pub struct WebhookRepository<'a>(pub(crate) &'a Store);
 
 impl Store {
     /// Returns the repository of webhooks.
-    pub fn webhooks(&self) -> Webhooks<'_> {
-        Webhooks(self)
+    pub fn webhooks(&self) -> WebhookRepository<'_> {
+        WebhookRepository(self)
     }
 }
 
-impl Webhooks<'_> {
+impl WebhookRepository<'_> {
     /// Creates a webhook.
     pub async fn create(&self, new: &NewWebhook) -> Result<Webhook> {
         let NewWebhook { title, url, secret, ship, drift_above, events } = new;
-        checks::not_negative("drift_above", *drift_above)?;
+        checks::check_not_negative("drift_above", *drift_above)?;
         check_events(events)?;
         let (id, now) = (self.0.new_id(), self.0.now_us());
         let mut tx = self.0.begin().await?;
         if let Some(ship) = ship {
-            let found: Option<WebhookWord> = tx.optional(SHIP, args![ship: ship]).await?;
+            let found: Option<WebhookWord> = tx.fetch_optional(SHIP, args![ship: ship]).await?;
             found
                 .ok_or_else(|| StoreError::invalid("ship", format!("there is no ship `{ship}`")))?;
         }
         let values = args![id: &id, title: title, url: url, secret: secret, ship: ship,
             drift_above: *drift_above, created_us: now];
-        let webhook = tx.one(INSERT, values).await?;
+        let webhook = tx.fetch_one(INSERT, values).await?;
         for event in events {
             tx.execute(LISTEN, args![event: event, webhook: &id]).await?;
         }
         let after = json!({ "title": title, "url": url, "ship": ship, "events": events,
             "drift_above": drift_above });
-        tx.note(now, "webhook.create", format!("webhook:{id}"), None, Some(after));
+        tx.record_audit_event(now, "webhook.create", format!("webhook:{id}"), None, Some(after));
         tx.commit().await?;
         Ok(webhook)
     }
 
     /// Returns a webhook.
     pub async fn get(&self, id: &str) -> Result<Webhook> {
-        let found = self.0.database().optional(GET, args![id: id]).await?;
-        found.ok_or_else(|| StoreError::missing("webhook", id))
+        let found = self.0.database().fetch_optional(GET, args![id: id]).await?;
+        found.ok_or_else(|| StoreError::not_found("webhook", id))
     }
 
     /// Returns the events of a webhook.
-    pub async fn events(&self, id: &str) -> Result<Vec<String>> {
-        let words: Vec<WebhookWord> = self.0.database().all(EVENTS_OF, args![webhook: id]).await?;
+    pub async fn list_events(&self, id: &str) -> Result<Vec<String>> {
+        let words: Vec<WebhookWord> =
+            self.0.database().fetch_all(EVENTS_OF, args![webhook: id]).await?;
         Ok(words.into_iter().map(|event| event.word).collect())
     }
 
     /// Lists the webhooks by id, including ended ones.
-    pub async fn list(&self, page: &Page) -> Result<List<Webhook>> {
-        let values = args![after: &page.after, limit: page.fetch()?];
-        let webhooks = self.0.database().all(LIST, values).await?;
-        Ok(page.of(webhooks, |webhook: &Webhook| webhook.id.clone()))
+    pub async fn list(&self, page: &PageRequest) -> Result<ListPage<Webhook>> {
+        let values = args![after: &page.after, limit: page.fetch_limit()?];
+        let webhooks = self.0.database().fetch_all(LIST, values).await?;
+        Ok(page.build_page(webhooks, |webhook: &Webhook| webhook.id.clone()))
     }
 
     /// Ends a webhook permanently; its pending deliveries are given up.
-    pub async fn end(&self, id: &str) -> Result<Webhook> {
+    pub async fn end_webhook(&self, id: &str) -> Result<Webhook> {
         let now = self.0.now_us();
         let mut tx = self.0.begin().await?;
-        let Some(webhook) = tx.optional(END, args![id: id, ended_us: now]).await? else {
-            return Err(match tx.optional::<Webhook>(GET, args![id: id]).await? {
+        let Some(webhook) = tx.fetch_optional(END, args![id: id, ended_us: now]).await? else {
+            return Err(match tx.fetch_optional::<Webhook>(GET, args![id: id]).await? {
                 Some(_) => StoreError::conflict("webhook", id, "has ended already"),
-                None => StoreError::missing("webhook", id),
+                None => StoreError::not_found("webhook", id),
             });
         };
         // In the same transaction: no pending delivery is taken after the end.
         tx.execute(GIVE_UP, args![webhook: id]).await?;
         let after = json!({ "ended": true });
-        tx.note(now, "webhook.end", format!("webhook:{id}"), None, Some(after));
+        tx.record_audit_event(now, "webhook.end", format!("webhook:{id}"), None, Some(after));
         tx.commit().await?;
         Ok(webhook)
     }
 
     /// Lists the deliveries to a webhook, the latest first.
-    pub async fn deliveries(&self, id: &str, page: &Page) -> Result<List<Delivery>> {
-        let values = args![webhook: id, after: &page.after, limit: page.fetch()?];
-        let deliveries = self.0.database().all(DELIVERIES, values).await?;
-        Ok(page.of(deliveries, |delivery: &Delivery| delivery.id.clone()))
+    pub async fn list_deliveries(
+        &self,
+        id: &str,
+        page: &PageRequest,
+    ) -> Result<ListPage<Delivery>> {
+        let values = args![webhook: id, after: &page.after, limit: page.fetch_limit()?];
+        let deliveries = self.0.database().fetch_all(DELIVERIES, values).await?;
+        Ok(page.build_page(deliveries, |delivery: &Delivery| delivery.id.clone()))
     }
 
     /// Takes the delivery that is due first, if there is one, until `until_us`: then it is due
     /// again.
-    pub async fn take(&self, until_us: i64) -> Result<Option<(Delivery, Webhook)>> {
+    pub async fn take_due(&self, until_us: i64) -> Result<Option<(Delivery, Webhook)>> {
         let due: Option<Delivery> =
-            self.0.database().optional(DUE_NOW, args![due_us: self.0.now_us()]).await?;
+            self.0.database().fetch_optional(DUE_NOW, args![due_us: self.0.now_us()]).await?;
         // The common case of polling: nothing is due, and no transaction is needed.
         if due.is_none() {
             return Ok(None);
         }
         let mut tx = self.0.begin().await?;
         // Read again under the lock; on PostgreSQL, rows that other workers hold are skipped.
-        let due: Option<Delivery> = tx.optional(DUE, args![due_us: self.0.now_us()]).await?;
+        let due: Option<Delivery> = tx.fetch_optional(DUE, args![due_us: self.0.now_us()]).await?;
         let Some(due) = due else { return Ok(None) };
-        let taken: Delivery = tx.one(TAKE, args![id: &due.id, due_us: until_us]).await?;
-        let webhook = tx.one(GET, args![id: &taken.webhook]).await?;
+        let taken: Delivery = tx.fetch_one(TAKE, args![id: &due.id, due_us: until_us]).await?;
+        let webhook = tx.fetch_one(GET, args![id: &taken.webhook]).await?;
         tx.commit().await?;
         Ok(Some((taken, webhook)))
     }
 
     /// Records that a delivery has arrived.
-    pub async fn arrived(&self, id: &str, answer: &str) -> Result<()> {
+    pub async fn record_arrival(&self, id: &str, answer: &str) -> Result<()> {
         let mut tx = self.0.begin().await?;
         let values = args![id: id, delivered_us: self.0.now_us(), answer: answer];
         tx.execute(ARRIVED, values).await?;
@@ -270,20 +275,20 @@ impl Webhooks<'_> {
     }
 
     /// Records a failed attempt, and the time of the next one, if there is one.
-    pub async fn failed(&self, id: &str, due_us: Option<i64>, answer: &str) -> Result<()> {
+    pub async fn record_failure(&self, id: &str, due_us: Option<i64>, answer: &str) -> Result<()> {
         let mut tx = self.0.begin().await?;
         tx.execute(FAILED, args![id: id, due_us: due_us, answer: answer]).await?;
         tx.commit().await
     }
 
     /// Queues a delivery that has not arrived again, with its attempts counted from zero.
-    pub async fn again(&self, webhook: &str, delivery: &str) -> Result<Delivery> {
+    pub async fn retry_delivery(&self, webhook: &str, delivery: &str) -> Result<Delivery> {
         let now = self.0.now_us();
         let mut tx = self.0.begin().await?;
         let values = args![id: delivery, webhook: webhook, due_us: now];
-        let again = tx.optional(AGAIN, values).await?;
-        let again = again.ok_or_else(|| StoreError::missing("delivery under way", delivery))?;
-        tx.note(now, "webhook.again", format!("webhook:{webhook}"), None, None);
+        let again = tx.fetch_optional(AGAIN, values).await?;
+        let again = again.ok_or_else(|| StoreError::not_found("delivery under way", delivery))?;
+        tx.record_audit_event(now, "webhook.again", format!("webhook:{webhook}"), None, None);
         tx.commit().await?;
         Ok(again)
     }
@@ -306,43 +311,43 @@ fn check_events(events: &[String]) -> Result<()> {
 }
 
 /// Notifies all webhooks of an event, once the transaction is committed.
-pub(crate) async fn tell(
+pub(crate) async fn notify(
     store: &Store,
-    tx: &mut Transaction,
+    tx: &mut AuditedTransaction,
     event: &str,
     ship: &str,
     about: Value,
 ) -> Result<()> {
-    tell_of(store, tx, (event, f64::MAX), ship, about).await
+    insert_deliveries(store, tx, (event, f64::MAX), ship, about).await
 }
 
 /// Notifies the webhooks whose threshold of drift is below `ratio`.
-pub(crate) async fn tell_drift(
+pub(crate) async fn notify_drift(
     store: &Store,
-    tx: &mut Transaction,
+    tx: &mut AuditedTransaction,
     ratio: f64,
     ship: &str,
 ) -> Result<()> {
     let about = json!({ "ratio": ratio });
-    tell_of(store, tx, (DRIFT, ratio), ship, about).await
+    insert_deliveries(store, tx, (DRIFT, ratio), ship, about).await
 }
 
-async fn tell_of(
+async fn insert_deliveries(
     store: &Store,
-    tx: &mut Transaction,
+    tx: &mut AuditedTransaction,
     (event, ratio): (&str, f64),
     ship: &str,
     about: Value,
 ) -> Result<()> {
     let values = args![event: event, ship: ship, drift_above: ratio];
-    let listening: Vec<WebhookWord> = tx.all(LISTENING, values).await?;
+    let listening: Vec<WebhookWord> = tx.fetch_all(LISTENING, values).await?;
     if listening.is_empty() {
         return Ok(());
     }
     let now = store.now_us();
     let body = json!({ "event": event, "ship": ship, "at_us": now, "about": about }).to_string();
     // One body for all webhooks, checked once.
-    checks::json("body", &body)?;
+    checks::check_json("body", &body)?;
     for webhook in listening {
         let id = store.new_id();
         let values =

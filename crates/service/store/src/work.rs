@@ -3,13 +3,13 @@
 
 use std::time::Duration;
 
-use crate::arguments::{Args, args};
+use crate::arguments::{StatementArgs, args};
 use crate::checks;
-use crate::clock::micros;
-use crate::database::Transaction;
+use crate::clock::duration_us;
+use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::job::{Job, JobState, job};
-use crate::jobs::{Jobs, find};
+use crate::jobs::{JobRepository, find_job};
 use crate::statements::{Statement, pair, same, statements};
 
 /// Number of lost workers from which a job counts as the cause of their death, and is not restarted
@@ -45,7 +45,7 @@ statements! {
 
 /// Result of a worker's request for a job.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Claimed {
+pub enum JobClaim {
     /// The job, which the worker holds now.
     Job(Box<Job>),
     /// There is a job during which a process has died: it must be claimed by a process that does
@@ -62,30 +62,30 @@ enum JobEnd<'a> {
     Cancelled,
 }
 
-impl Jobs<'_> {
+impl JobRepository<'_> {
     /// Claims the oldest job that is queued, or whose lease has run out. A job that has lost
     /// [`MAX_LOST_WORKERS`] workers ends as failed; one that was to be cancelled when its worker
     /// died is cancelled. `alone` says that the worker's process does nothing else until the job
     /// ends.
-    pub async fn claim(&self, worker: &str, lease: Duration, alone: bool) -> Result<Claimed> {
+    pub async fn claim_next(&self, worker: &str, lease: Duration, alone: bool) -> Result<JobClaim> {
         let mut tx = self.0.begin().await?;
         let now = self.0.now_us();
         let claimed = loop {
-            let Some(job) = tx.optional::<Job>(NEXT, args![now_us: now]).await? else {
-                break Claimed::Nothing;
+            let Some(job) = tx.fetch_optional::<Job>(NEXT, args![now_us: now]).await? else {
+                break JobClaim::Nothing;
             };
             // A running job is returned only with an expired lease: its worker counts as lost.
             let lost = job.lost_workers + i64::from(job.state == JobState::Running);
-            if bury(&mut tx, &job, lost, now).await? {
+            if end_abandoned(&mut tx, &job, lost, now).await? {
                 continue;
             }
             // The job may have killed its process: it runs only where no other job could be blamed.
             if lost > 0 && !alone {
-                break Claimed::Alone;
+                break JobClaim::Alone;
             }
-            let values = args![id: &job.id, worker: worker, lease_until_us: until(now, lease),
+            let values = args![id: &job.id, worker: worker, lease_until_us: lease_end(now, lease),
                 started_us: now, lost_workers: lost];
-            break Claimed::Job(Box::new(tx.one(START, values).await?));
+            break JobClaim::Job(Box::new(tx.fetch_one(START, values).await?));
         };
         tx.commit().await?;
         Ok(claimed)
@@ -93,7 +93,7 @@ impl Jobs<'_> {
 
     /// Reports that the worker which held a job under `fence` is alive: it lost the job by a late
     /// heartbeat, not by its death.
-    pub async fn lives(&self, id: &str, fence: i64) -> Result<()> {
+    pub async fn mark_alive(&self, id: &str, fence: i64) -> Result<()> {
         let mut tx = self.0.begin().await?;
         tx.execute(LIVES, args![id: id, fence: fence]).await?;
         tx.commit().await
@@ -109,68 +109,68 @@ impl Jobs<'_> {
         message: &str,
         lease: Duration,
     ) -> Result<bool> {
-        let until = until(self.0.now_us(), lease);
+        let until = lease_end(self.0.now_us(), lease);
         let values = args![id: id, fence: fence, progress: progress, message: message,
             lease_until_us: until];
-        self.held(HEARTBEAT, id, fence, values).await.map(|job| job.cancel_requested)
+        self.update_held(HEARTBEAT, id, fence, values).await.map(|job| job.cancel_requested)
     }
 
     /// Completes a job with a result, JSON. For a result with a version, see
     /// [`crate::Store::commit_refinement`].
     pub async fn complete(&self, id: &str, fence: i64, result: &str) -> Result<Job> {
-        self.end(id, fence, JobEnd::Succeeded { result }).await
+        self.end_job(id, fence, JobEnd::Succeeded { result }).await
     }
 
     /// Ends a job as failed.
     pub async fn fail(&self, id: &str, fence: i64, error: &str) -> Result<Job> {
-        self.end(id, fence, JobEnd::Failed { error }).await
+        self.end_job(id, fence, JobEnd::Failed { error }).await
     }
 
     /// Ends a job as cancelled.
-    pub async fn cancelled(&self, id: &str, fence: i64) -> Result<Job> {
-        self.end(id, fence, JobEnd::Cancelled).await
+    pub async fn end_cancelled(&self, id: &str, fence: i64) -> Result<Job> {
+        self.end_job(id, fence, JobEnd::Cancelled).await
     }
 
     /// Returns a job to the queue, for a worker that is asked to stop; the attempt is not counted.
-    pub async fn release(&self, id: &str, fence: i64) -> Result<Job> {
-        self.held(RELEASE, id, fence, args![id: id, fence: fence]).await
+    pub async fn release_job(&self, id: &str, fence: i64) -> Result<Job> {
+        self.update_held(RELEASE, id, fence, args![id: id, fence: fence]).await
     }
 
     /// Applies a change that only the holder of the job's fencing number may make.
-    async fn held(
+    async fn update_held(
         &self,
         statement: Statement,
         id: &str,
         fence: i64,
-        values: Args<'_>,
+        values: StatementArgs<'_>,
     ) -> Result<Job> {
         let mut tx = self.0.begin().await?;
-        let job = held(&mut tx, statement, id, fence, values).await?;
+        let job = update_held_job(&mut tx, statement, id, fence, values).await?;
         tx.commit().await?;
         Ok(job)
     }
 
-    async fn end(&self, id: &str, fence: i64, how: JobEnd<'_>) -> Result<Job> {
+    async fn end_job(&self, id: &str, fence: i64, how: JobEnd<'_>) -> Result<Job> {
         let mut tx = self.0.begin().await?;
-        let job = end(&mut tx, id, fence, how, self.0.now_us()).await?;
+        let job = end_held_job(&mut tx, id, fence, how, self.0.now_us()).await?;
         tx.commit().await?;
         Ok(job)
     }
 }
 
 /// Completes a job with its result within a transaction.
-pub(crate) async fn complete(
-    tx: &mut Transaction,
+pub(crate) async fn complete_job(
+    tx: &mut AuditedTransaction,
     id: &str,
     fence: i64,
     result: &str,
     now_us: i64,
 ) -> Result<Job> {
-    end(tx, id, fence, JobEnd::Succeeded { result }, now_us).await
+    end_held_job(tx, id, fence, JobEnd::Succeeded { result }, now_us).await
 }
 
-async fn end(
-    tx: &mut Transaction,
+async fn end_held_job(
+    tx: &mut AuditedTransaction,
     id: &str,
     fence: i64,
     how: JobEnd<'_>,
@@ -181,15 +181,20 @@ async fn end(
         JobEnd::Failed { error } => (JobState::Failed, None, Some(error)),
         JobEnd::Cancelled => (JobState::Cancelled, None, None),
     };
-    result.map_or(Ok(()), |result| checks::json("result", result))?;
+    result.map_or(Ok(()), |result| checks::check_json("result", result))?;
     let state = state.as_str();
     let values = args![id: id, fence: fence, state: state, result: result, error: error,
         finished_us: now_us];
-    held(tx, END, id, fence, values).await
+    update_held_job(tx, END, id, fence, values).await
 }
 
 /// Ends a job that must not be restarted; returns true if it did.
-async fn bury(tx: &mut Transaction, job: &Job, lost: i64, now_us: i64) -> Result<bool> {
+async fn end_abandoned(
+    tx: &mut AuditedTransaction,
+    job: &Job,
+    lost: i64,
+    now_us: i64,
+) -> Result<bool> {
     let worker = job.worker.as_deref().unwrap_or("?");
     let message = format!(
         "the job ended its process {}; it is set aside and not begun again by itself (the last \
@@ -204,26 +209,26 @@ async fn bury(tx: &mut Transaction, job: &Job, lost: i64, now_us: i64) -> Result
     };
     // Before the end, so that the ended job shows the number of its lost workers.
     tx.execute(COUNT_LOST, args![id: &job.id, lost_workers: lost]).await?;
-    end(tx, &job.id, job.fence, how, now_us).await.map(|_| true)
+    end_held_job(tx, &job.id, job.fence, how, now_us).await.map(|_| true)
 }
 
-async fn held(
-    tx: &mut Transaction,
+async fn update_held_job(
+    tx: &mut AuditedTransaction,
     statement: Statement,
     id: &str,
     fence: i64,
-    values: Args<'_>,
+    values: StatementArgs<'_>,
 ) -> Result<Job> {
-    if let Some(job) = tx.optional(statement, values).await? {
+    if let Some(job) = tx.fetch_optional(statement, values).await? {
         return Ok(job);
     }
     // No row matched: the job does not exist, or another worker holds it under a newer fence.
-    let job = find(tx, id).await?;
+    let job = find_job(tx, id).await?;
     let message =
         format!("is {} under fence {}; who holds fence {fence} has lost it", job.state, job.fence);
     Err(StoreError::conflict("job", id, message))
 }
 
-fn until(now_us: i64, lease: Duration) -> i64 {
-    now_us.saturating_add(micros(lease))
+fn lease_end(now_us: i64, lease: Duration) -> i64 {
+    now_us.saturating_add(duration_us(lease))
 }

@@ -5,15 +5,16 @@ use axum::http::{HeaderMap, StatusCode, header};
 use crate::problem::{Problem, Result};
 
 /// Returns the offered media type that the caller prefers; the first one if the header is absent.
-pub fn choose(headers: &HeaderMap, offered: &[&'static str]) -> Result<&'static str> {
+pub fn choose_media(headers: &HeaderMap, offered: &[&'static str]) -> Result<&'static str> {
     let lines = headers.get_all(header::ACCEPT).into_iter().filter_map(|value| value.to_str().ok());
-    let accepted: Vec<(&str, f64)> = lines.flat_map(|line| line.split(',')).map(range).collect();
+    let accepted: Vec<(&str, f64)> =
+        lines.flat_map(|line| line.split(',')).map(parse_range).collect();
     if accepted.is_empty() {
         return offered.first().copied().ok_or_else(|| Problem::internal("nothing is offered"));
     }
     let mut best: Option<(&'static str, f64)> = None;
     for media in offered {
-        let quality = quality(&accepted, media);
+        let quality = media_quality(&accepted, media);
         // Strictly greater: of equally preferred forms the first offered one is taken.
         if quality > 0.0 && best.is_none_or(|(_, most)| quality > most) {
             best = Some((media, quality));
@@ -29,7 +30,7 @@ pub fn choose(headers: &HeaderMap, offered: &[&'static str]) -> Result<&'static 
 }
 
 /// Parses a media range and its quality (default 1).
-fn range(text: &str) -> (&str, f64) {
+fn parse_range(text: &str) -> (&str, f64) {
     let mut parts = text.split(';').map(str::trim);
     let media = parts.next().unwrap_or_default();
     let quality =
@@ -38,7 +39,7 @@ fn range(text: &str) -> (&str, f64) {
 }
 
 /// Returns the quality that the most specific matching range gives a media type; 0 if none matches.
-fn quality(accepted: &[(&str, f64)], media: &str) -> f64 {
+fn media_quality(accepted: &[(&str, f64)], media: &str) -> f64 {
     let family = format!("{}/*", media.split('/').next().unwrap_or_default());
     let of = |wanted: &str| {
         accepted.iter().find(|(range, _)| range.eq_ignore_ascii_case(wanted)).map(|&(_, q)| q)
@@ -52,7 +53,7 @@ mod tests {
     use super::*;
 
     fn chosen(accept: &str) -> Result<&'static str> {
-        choose(
+        choose_media(
             &HeaderMap::from_iter([(header::ACCEPT, accept.parse().unwrap())]),
             &["application/json", "text/html"],
         )
@@ -60,7 +61,7 @@ mod tests {
 
     #[test]
     fn the_best_liked_form_is_taken() {
-        assert_eq!(choose(&HeaderMap::new(), &["a/b"]).unwrap(), "a/b");
+        assert_eq!(choose_media(&HeaderMap::new(), &["a/b"]).unwrap(), "a/b");
         assert_eq!(chosen("*/*").unwrap(), "application/json");
         assert_eq!(chosen("text/html,application/xml;q=0.9,*/*;q=0.8").unwrap(), "text/html");
         assert_eq!(chosen("text/*;q=0.1, application/json;q=0").unwrap(), "text/html");

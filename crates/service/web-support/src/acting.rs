@@ -7,12 +7,12 @@ use sistership_auth::Rights;
 use sistership_store::Actor;
 
 tokio::task_local! {
-    static ACTING: Acting;
+    static ACTING: RequestActor;
 }
 
 /// Method of authentication.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Kind {
+pub enum AuthenticationKind {
     /// Access from this machine, on a server without authentication.
     Local,
     /// The server's API key.
@@ -36,12 +36,12 @@ pub struct Principal {
     /// Rights.
     pub rights: Rights,
     /// Method of authentication.
-    pub kind: Kind,
+    pub kind: AuthenticationKind,
 }
 
 /// Principal and origin of a request.
 #[derive(Debug, Clone)]
-pub struct Acting {
+pub struct RequestActor {
     /// Principal.
     pub principal: Arc<Principal>,
     /// Origin, as in the audit.
@@ -50,32 +50,32 @@ pub struct Acting {
 
 impl Principal {
     /// Creates a principal with all rights.
-    pub fn owner(name: &str, kind: Kind) -> Self {
-        Self { name: name.to_owned(), rights: Rights::all(), kind }
+    pub fn with_all_rights(name: &str, kind: AuthenticationKind) -> Self {
+        Self { name: name.to_owned(), rights: Rights::full_access(), kind }
     }
 }
 
-impl Acting {
+impl RequestActor {
     /// Runs a future in the name of this principal, which is also the author of changes in the
     /// store.
-    pub async fn scope<T>(self, work: impl Future<Output = T>) -> T {
+    pub async fn run_scoped<T>(self, work: impl Future<Output = T>) -> T {
         let actor = Actor::new(self.principal.name.clone(), self.origin.clone());
-        ACTING.scope(self, actor.acting(work)).await
+        ACTING.scope(self, actor.run_scoped(work)).await
     }
 }
 
 /// Returns the principal of the present task; none outside of a request.
-pub fn current() -> Option<Acting> {
+pub fn current_actor() -> Option<RequestActor> {
     ACTING.try_with(Clone::clone).ok()
 }
 
 /// Wraps work for a spawned task, so that it continues in the name of the present principal.
-pub fn carried<T>(work: impl Future<Output = T>) -> impl Future<Output = T> {
+pub fn carry_actor<T>(work: impl Future<Output = T>) -> impl Future<Output = T> {
     // Read here, in the calling task: inside the spawned one it would be absent.
-    let acting = current();
+    let acting = current_actor();
     async move {
         match acting {
-            Some(acting) => acting.scope(work).await,
+            Some(acting) => acting.run_scoped(work).await,
             None => work.await,
         }
     }

@@ -15,7 +15,7 @@ pub type AnswerKey = (String, Option<String>, &'static str);
 
 /// A cached answer.
 #[derive(Debug, Clone)]
-pub struct Answer {
+pub struct CachedAnswer {
     /// Entity tag.
     pub etag: HeaderValue,
     /// Body.
@@ -24,32 +24,32 @@ pub struct Answer {
 
 /// Cache of answers; the least used are removed first.
 #[derive(Debug)]
-pub struct Answers(Cache<AnswerKey, Answer, Size>);
+pub struct AnswerCache(Cache<AnswerKey, CachedAnswer, AnswerWeight>);
 
 #[derive(Debug, Clone)]
-struct Size;
+struct AnswerWeight;
 
-impl Weighter<AnswerKey, Answer> for Size {
-    fn weight(&self, _: &AnswerKey, answer: &Answer) -> u64 {
+impl Weighter<AnswerKey, CachedAnswer> for AnswerWeight {
+    fn weight(&self, _: &AnswerKey, answer: &CachedAnswer) -> u64 {
         // The body, and about 300 bytes for key, tag and the entry itself.
         answer.body.len() as u64 + 300
     }
 }
 
-impl Default for Answers {
+impl Default for AnswerCache {
     fn default() -> Self {
-        Self(Cache::with_weighter(COUNT, MOST, Size))
+        Self(Cache::with_weighter(COUNT, MOST, AnswerWeight))
     }
 }
 
-impl Answers {
+impl AnswerCache {
     /// Returns a cached answer.
-    pub fn get(&self, key: &AnswerKey) -> Option<Answer> {
+    pub fn get(&self, key: &AnswerKey) -> Option<CachedAnswer> {
         self.0.get(key)
     }
 
     /// Adds an answer to the cache.
-    pub fn keep(&self, key: AnswerKey, answer: Answer) {
+    pub fn insert_answer(&self, key: AnswerKey, answer: CachedAnswer) {
         self.0.insert(key, answer);
     }
 }

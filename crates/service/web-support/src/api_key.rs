@@ -1,7 +1,7 @@
 //! The server's API key, of which only the hash is stored, and the token of forms.
 
 use sha2::{Digest as _, Sha256};
-use sistership_auth::{hex, same, sha256};
+use sistership_auth::{constant_time_eq, hash_text, to_hex};
 use uuid::Uuid;
 
 /// An API key, as its hash.
@@ -11,13 +11,13 @@ pub struct ApiKey([u8; 32]);
 impl ApiKey {
     /// Creates the stored form of a key.
     pub fn new(key: &str) -> Self {
-        Self(sha256(key))
+        Self(hash_text(key))
     }
 
     /// Returns true if this is the key, in a time that does not depend on the position of a
     /// difference.
-    pub fn is(&self, presented: &str) -> bool {
-        same(&self.0, &sha256(presented))
+    pub fn matches_key(&self, presented: &str) -> bool {
+        constant_time_eq(&self.0, &hash_text(presented))
     }
 }
 
@@ -28,18 +28,18 @@ pub struct FormToken(String);
 
 impl FormToken {
     /// Creates the token of a server with this key, or without one.
-    pub fn of(key: Option<&ApiKey>) -> Self {
+    pub fn from_key(key: Option<&ApiKey>) -> Self {
         let mut hash = Sha256::new_with_prefix("sistership form ");
         match key {
             Some(ApiKey(key)) => hash.update(key),
             // Each has 32 random bits at least (RFC 9562, 5.7).
             None => (0..8).for_each(|_| hash.update(Uuid::now_v7())),
         }
-        Self(hex(&hash.finalize()))
+        Self(to_hex(&hash.finalize()))
     }
 
     /// Returns the token.
-    pub fn text(&self) -> &str {
+    pub fn as_str(&self) -> &str {
         &self.0
     }
 }
@@ -51,8 +51,11 @@ mod tests {
     #[test]
     fn only_the_key_opens() {
         let key = ApiKey::new("secret");
-        assert!(key.is("secret") && !key.is("secre") && !key.is(""));
-        assert_eq!(FormToken::of(Some(&key)).text(), FormToken::of(Some(&key)).text());
-        assert_ne!(FormToken::of(None).text(), FormToken::of(None).text());
+        assert!(key.matches_key("secret") && !key.matches_key("secre") && !key.matches_key(""));
+        assert_eq!(
+            FormToken::from_key(Some(&key)).as_str(),
+            FormToken::from_key(Some(&key)).as_str()
+        );
+        assert_ne!(FormToken::from_key(None).as_str(), FormToken::from_key(None).as_str());
     }
 }

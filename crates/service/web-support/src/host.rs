@@ -12,8 +12,8 @@ const SEC_FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 
 /// Returns the authority to which a request is addressed: exactly one (RFC 9112, 3.2). HTTP/1.0 has
 /// no `Host`, and no browser uses it: there it may be missing.
-pub fn addressed(request: &Request) -> Result<Option<Authority>> {
-    let host = single(request.headers(), &header::HOST)?;
+pub fn request_authority(request: &Request) -> Result<Option<Authority>> {
+    let host = single_header(request.headers(), &header::HOST)?;
     let host = host.map(|host| host.parse::<Authority>().map_err(|_| wrong_host())).transpose()?;
     if host.as_ref().is_some_and(|host| host.as_str().contains('@')) {
         return Err(wrong_host());
@@ -41,7 +41,7 @@ fn wrong_host() -> Problem {
 }
 
 /// Returns the value of a header that may occur once.
-pub fn single<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'a str>> {
+pub fn single_header<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'a str>> {
     let mut values = headers.get_all(name).iter();
     let first = values.next();
     if values.next().is_some() {
@@ -62,28 +62,29 @@ pub fn single<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'
 /// Checks that a request comes from this machine, on a server without an API key. Web pages of
 /// other sites in a browser on this machine must not reach the server, neither by a host name that
 /// points here (`Host`) nor by forms (`Origin`, `Sec-Fetch-Site`).
-pub fn from_this_machine(
+pub fn check_local_origin(
     method: &Method,
     headers: &HeaderMap,
     host: Option<&Authority>,
 ) -> Result<()> {
     if let Some(host) = host.filter(|host| !is_local(host.host())) {
-        return Err(refused(format!(
+        return Err(forbidden_problem(format!(
             "without an API key this server answers to localhost only, not to `{host}`"
         )));
     }
-    let (origin, site) = (single(headers, &header::ORIGIN)?, single(headers, &SEC_FETCH_SITE)?);
+    let (origin, site) =
+        (single_header(headers, &header::ORIGIN)?, single_header(headers, &SEC_FETCH_SITE)?);
     if method.is_safe() {
         return Ok(());
     }
     if let Some(origin) = origin.filter(|origin| !is_own(origin, host)) {
-        return Err(refused(format!(
+        return Err(forbidden_problem(format!(
             "without an API key this server takes no changes from the web site `{origin}`"
         )));
     }
     // `none` is a request by a person, typed or from a bookmark.
     match site.filter(|site| !["same-origin", "none"].contains(site)) {
-        Some(site) => Err(refused(format!(
+        Some(site) => Err(forbidden_problem(format!(
             "without an API key this server takes no changes from other web sites (Sec-Fetch-Site: \
              {site})"
         ))),
@@ -94,14 +95,15 @@ pub fn from_this_machine(
 /// Returns true if a browser states that the request comes from a page of this server. The scheme
 /// may differ where a proxy is in front of the server.
 pub fn is_same_origin(headers: &HeaderMap, host: Option<&Authority>) -> Result<bool> {
-    let (origin, site) = (single(headers, &header::ORIGIN)?, single(headers, &SEC_FETCH_SITE)?);
+    let (origin, site) =
+        (single_header(headers, &header::ORIGIN)?, single_header(headers, &SEC_FETCH_SITE)?);
     let authority = origin.and_then(|origin| origin.split_once("://")).map(|(_, own)| own);
     let own =
         authority.zip(host).is_some_and(|(own, host)| own.eq_ignore_ascii_case(host.as_str()));
     Ok(own && site.is_none_or(|site| site == "same-origin"))
 }
 
-fn refused(detail: String) -> Problem {
+fn forbidden_problem(detail: String) -> Problem {
     Problem::new(StatusCode::FORBIDDEN, detail)
 }
 
@@ -143,7 +145,7 @@ mod tests {
             .body(axum::body::Body::empty())
             .unwrap();
         *request.headers_mut() = headers(&pairs);
-        addressed(&request)
+        request_authority(&request)
     }
 
     #[test]
@@ -190,7 +192,7 @@ mod tests {
     #[test]
     fn without_a_key_other_sites_are_kept_out() {
         let asks = |method: Method, host: &str, pairs: &[(&'static str, &str)]| {
-            from_this_machine(&method, &headers(pairs), Some(&host.parse().unwrap()))
+            check_local_origin(&method, &headers(pairs), Some(&host.parse().unwrap()))
                 .map_err(|problem| problem.status)
         };
         for host in ["localhost:8080", "127.0.0.1:1", "[::1]:80", "LOCALHOST"] {

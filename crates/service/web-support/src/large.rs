@@ -10,37 +10,37 @@ use bytes::Bytes;
 use hyper::body::{Frame, SizeHint};
 
 use crate::problem::Problem;
-use sistership_jobs::budget::{self, Share};
+use sistership_jobs::budget::{self, MemoryShare};
 
 /// Maximum size of an answer that is not counted, bytes; larger ones are sent in pieces of it, so
 /// that at most one piece is outside of the count.
 const PIECE: usize = 64 << 10;
 
 /// A body with its share of the memory budget.
-struct Large {
+struct LargeBody {
     body: Body,
     /// Rest of a frame that is not sent yet.
     rest: Bytes,
-    _share: Option<Share>,
+    _share: Option<MemoryShare>,
 }
 
 /// Takes a share of the memory budget for a large answer; replaces the answer by a refusal if there
 /// is none.
-pub async fn counted(response: Response) -> Response {
+pub async fn count_large(response: Response) -> Response {
     let size = response.body().size_hint().exact().unwrap_or_default();
     if size <= PIECE as u64 {
         return response;
     }
-    match budget::share(size).await {
+    match budget::reserve_share(size).await {
         Ok(share) => {
-            response.map(|body| Body::new(Large { body, rest: Bytes::new(), _share: share }))
+            response.map(|body| Body::new(LargeBody { body, rest: Bytes::new(), _share: share }))
         }
         // The answer is dropped here: its memory is free again before the refusal is sent.
         Err(shortage) => Problem::from(shortage).into_response(),
     }
 }
 
-impl HttpBody for Large {
+impl HttpBody for LargeBody {
     type Data = Bytes;
     type Error = axum::Error;
 
@@ -84,13 +84,14 @@ mod tests {
     use futures::StreamExt as _;
 
     use super::*;
-    use sistership_jobs::budget::{Budget, Held};
+    use sistership_jobs::budget::{MemoryBudget, RequestMemory};
 
     #[tokio::test]
     async fn a_large_answer_has_its_share_until_it_is_handed_out() {
-        let budget = Budget::new(1 << 20, "x");
+        let budget = MemoryBudget::new(1 << 20, "x");
         let answer = |size: usize| {
-            Held::new(budget.clone(), Duration::ZERO).scope(counted(vec![7; size].into_response()))
+            RequestMemory::new(budget.clone(), Duration::ZERO)
+                .run_async(count_large(vec![7; size].into_response()))
         };
         assert_eq!(answer(2 << 20).await.status(), 413);
         let response = answer(600 << 10).await;
@@ -100,6 +101,6 @@ mod tests {
         let pieces: Vec<_> =
             response.into_body().into_data_stream().map(Result::unwrap).collect().await;
         assert!(pieces.len() == 10 && pieces.iter().all(|piece| piece.len() <= PIECE));
-        assert_eq!(budget.free(), 1 << 20);
+        assert_eq!(budget.free_bytes(), 1 << 20);
     }
 }

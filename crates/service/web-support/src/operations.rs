@@ -8,20 +8,20 @@ use utoipa::openapi::{
 };
 
 use crate::problem::{MEDIA, Problem};
-use crate::query::parameters;
+use crate::query::operation_parameters;
 
 /// Adds the common parts to every operation.
-pub fn complete(document: &mut OpenApi) {
+pub fn complete_operations(document: &mut OpenApi) {
     for (path, item) in &mut document.paths.paths {
-        for (method, operation) in operations(item) {
-            operation.operation_id = Some(id(method, path));
+        for (method, operation) in path_operations(item) {
+            operation.operation_id = Some(make_operation_id(method, path));
             add_problems(method, path, operation);
         }
     }
     let components = document.components.get_or_insert_with(Components::new);
     components
         .responses
-        .extend(PROBLEMS.map(|status| (problem_name(status), problem(status).into())));
+        .extend(PROBLEMS.map(|status| (problem_name(status), problem_response(status).into())));
 }
 
 /// Statuses of problems that operations have in common.
@@ -32,7 +32,7 @@ fn problem_name(status: u16) -> String {
     format!("Problem{status}")
 }
 
-fn problem(status: u16) -> Response {
+fn problem_response(status: u16) -> Response {
     let status = StatusCode::from_u16(status).unwrap_or_default();
     let content = Content::new(Some(Ref::from_schema_name("Problem")));
     ResponseBuilder::new()
@@ -41,7 +41,7 @@ fn problem(status: u16) -> Response {
         .build()
 }
 
-fn operations(item: &mut PathItem) -> impl Iterator<Item = (&'static str, &mut Operation)> {
+fn path_operations(item: &mut PathItem) -> impl Iterator<Item = (&'static str, &mut Operation)> {
     let all = [
         ("get", &mut item.get),
         ("put", &mut item.put),
@@ -52,7 +52,7 @@ fn operations(item: &mut PathItem) -> impl Iterator<Item = (&'static str, &mut O
 }
 
 /// Returns the operation id, from which generated clients take names: `get_ships_ship_model`.
-fn id(method: &str, path: &str) -> String {
+fn make_operation_id(method: &str, path: &str) -> String {
     let words = path
         .split('/')
         .filter(|word| !word.is_empty() && *word != "v1")
@@ -63,7 +63,7 @@ fn id(method: &str, path: &str) -> String {
 /// Adds the possible problems; their statuses follow from the inputs of the operation.
 fn add_problems(method: &str, path: &str, operation: &mut Operation) {
     let has = |place: ParameterIn, name: &str| {
-        let all = parameters(operation);
+        let all = operation_parameters(operation);
         all.filter(|known| known.parameter_in == place)
             .any(|known| name.is_empty() || known.name == name)
     };
@@ -96,11 +96,11 @@ fn add_problems(method: &str, path: &str, operation: &mut Operation) {
     }
     // Any other status is described as an internal problem.
     responses.insert("default".to_owned(), RefOr::Ref(Ref::from_response_name(problem_name(500))));
-    responses.iter_mut().for_each(|(status, response)| describe(status, response));
+    responses.iter_mut().for_each(|(status, response)| describe_response(status, response));
 }
 
 /// Fills a missing description of a response, which OpenAPI requires, from its status.
-fn describe(status: &str, response: &mut RefOr<Response>) {
+fn describe_response(status: &str, response: &mut RefOr<Response>) {
     let RefOr::T(response) = response else { return };
     if response.description.is_empty() {
         let known = status.parse().ok().and_then(|status: u16| StatusCode::from_u16(status).ok());

@@ -4,7 +4,7 @@ use base64::Engine as _;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use sistership_store::{List, Page};
+use sistership_store::{ListPage, PageRequest};
 use utoipa::{IntoParams, ToSchema};
 
 use crate::field::{Cursor, Limit};
@@ -14,7 +14,7 @@ use crate::problem::{Fault, Problem, Result};
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-pub struct Paged {
+pub struct PageQuery {
     /// Maximum number of items to return.
     #[param(inline)]
     limit: Option<Limit>,
@@ -23,13 +23,13 @@ pub struct Paged {
     after: Option<Cursor>,
 }
 
-impl Paged {
+impl PageQuery {
     /// Returns the requested page.
     ///
     /// # Errors
     /// Returns an error if `after` is not a cursor of this list.
-    pub fn page<K: DeserializeOwned>(&self) -> Result<Page<K>> {
-        page(self.limit, self.after.as_ref())
+    pub fn requested_page<K: DeserializeOwned>(&self) -> Result<PageRequest<K>> {
+        parse_page(self.limit, self.after.as_ref())
     }
 }
 
@@ -46,16 +46,16 @@ pub struct Listing<T> {
 
 impl<T> Listing<T> {
     /// Creates a page from rows, each converted by `view`.
-    pub fn of<R, K: Serialize>(list: List<R, K>, view: impl FnMut(R) -> T) -> Self {
+    pub fn from_list<R, K: Serialize>(list: ListPage<R, K>, view: impl FnMut(R) -> T) -> Self {
         Self {
             items: list.items.into_iter().map(view).collect(),
-            next: list.next.as_ref().and_then(cursor),
+            next: list.next.as_ref().and_then(encode_cursor),
         }
     }
 }
 
 /// Encodes a key as an opaque cursor.
-pub fn cursor<K: Serialize>(key: &K) -> Option<String> {
+pub fn encode_cursor<K: Serialize>(key: &K) -> Option<String> {
     Some(BASE64_URL_SAFE_NO_PAD.encode(serde_json::to_vec(key).ok()?))
 }
 
@@ -63,14 +63,18 @@ pub fn cursor<K: Serialize>(key: &K) -> Option<String> {
 ///
 /// # Errors
 /// Returns an error if `after` is not a cursor of this list.
-pub fn page<K: DeserializeOwned>(limit: Option<Limit>, after: Option<&Cursor>) -> Result<Page<K>> {
+pub fn parse_page<K: DeserializeOwned>(
+    limit: Option<Limit>,
+    after: Option<&Cursor>,
+) -> Result<PageRequest<K>> {
     let key = |text: &str| serde_json::from_slice(&BASE64_URL_SAFE_NO_PAD.decode(text).ok()?).ok();
     let wrong = || {
         let message = "is not the `next` of a page of this list; leave it out for the first page";
-        Problem::bad_request(format!("after: {message}")).with(Fault::at("after", message))
+        Problem::bad_request(format!("after: {message}"))
+            .with_fault(Fault::at_field("after", message))
     };
     let after = after.map(|text| key(text).ok_or_else(wrong)).transpose()?;
-    Ok(Page { after, limit: limit.unwrap_or_default().get() })
+    Ok(PageRequest { after, limit: limit.unwrap_or_default().get() })
 }
 
 #[cfg(test)]
@@ -81,16 +85,16 @@ mod tests {
     #[test]
     fn a_cursor_is_taken_back_and_nothing_else_is() {
         let key = (Some(0.1 + 0.2), "a/b".to_owned());
-        let text = cursor(&key).unwrap();
+        let text = encode_cursor(&key).unwrap();
         assert!(
             text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_')
         );
         assert_eq!(
-            page(None, Some(&text.parse().unwrap())).unwrap(),
-            Page { after: Some(key), limit: 100 }
+            parse_page(None, Some(&text.parse().unwrap())).unwrap(),
+            PageRequest { after: Some(key), limit: 100 }
         );
-        for wrong in ["7", "mariner", &cursor(&7).unwrap()] {
-            let problem = page::<String>(None, Some(&wrong.parse().unwrap())).unwrap_err();
+        for wrong in ["7", "mariner", &encode_cursor(&7).unwrap()] {
+            let problem = parse_page::<String>(None, Some(&wrong.parse().unwrap())).unwrap_err();
             assert_eq!(
                 (problem.status, problem.errors[0].field.as_deref()),
                 (400, Some("after")),

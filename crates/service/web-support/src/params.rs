@@ -7,9 +7,9 @@ use crate::problem::Problem;
 /// Parameters of the path.
 #[derive(Debug, FromRequestParts)]
 #[from_request(via(Path), rejection(Problem))]
-pub struct Place<T>(pub T);
+pub struct PathParams<T>(pub T);
 
 /// Parameters of the query.
 #[derive(Debug, FromRequestParts)]
 #[from_request(via(Query), rejection(Problem))]
-pub struct Params<T>(pub T);
+pub struct QueryParams<T>(pub T);

@@ -19,7 +19,7 @@ const JSON_FACTOR: u64 = 20;
 
 /// A body that is one document.
 #[derive(Debug)]
-pub struct Payload {
+pub struct DocumentBody {
     media: String,
     bytes: Bytes,
 }
@@ -33,7 +33,7 @@ pub struct DocumentLimits {
     pub yaml_bytes: usize,
 }
 
-impl<S: Send + Sync> FromRequest<S> for Payload
+impl<S: Send + Sync> FromRequest<S> for DocumentBody
 where
     DocumentLimits: FromRef<S>,
 {
@@ -42,27 +42,27 @@ where
     async fn from_request(request: Request, state: &S) -> Result<Self> {
         let limits = DocumentLimits::from_ref(state);
         // Compression is refused first: the limits below apply to the bytes that are sent.
-        plain(request.headers())?;
-        let media = media(request.headers());
+        check_uncompressed(request.headers())?;
+        let media = media_type(request.headers());
         let mut payload = Self { media, bytes: Bytes::new() };
         let (most, factor) = match payload.is_json() {
             true => (limits.json_bytes, JSON_FACTOR),
             false => (limits.yaml_bytes, YAML_FACTOR),
         };
-        payload.bytes = whole(request, most).await?;
+        payload.bytes = read_body(request, most).await?;
         // Memory for parsing, on top of that of the bytes.
-        budget::take(factor * payload.bytes.len() as u64).await?;
+        budget::reserve_for_request(factor * payload.bytes.len() as u64).await?;
         Ok(payload)
     }
 }
 
 /// Reads a body, counted against the memory budget as it arrives: a stalled client holds no more
 /// than it has sent.
-async fn whole(request: Request, most: usize) -> Result<Bytes> {
+async fn read_body(request: Request, most: usize) -> Result<Bytes> {
     let mut stream = request.with_limited_body().into_body().into_data_stream();
     let mut bytes = BytesMut::new();
     while let Some(chunk) = stream.next().await {
-        let chunk = chunk.map_err(interrupted)?;
+        let chunk = chunk.map_err(body_problem)?;
         // Tested before the chunk is added, so that the buffer never exceeds the limit.
         if bytes.len() + chunk.len() > most {
             return Err(too_large(&format!(
@@ -71,13 +71,13 @@ async fn whole(request: Request, most: usize) -> Result<Bytes> {
             )));
         }
         // Twice the size, because the buffer grows by doubling.
-        budget::take(2 * chunk.len() as u64).await?;
+        budget::reserve_for_request(2 * chunk.len() as u64).await?;
         bytes.extend_from_slice(&chunk);
     }
     Ok(bytes.freeze())
 }
 
-fn interrupted(error: axum::Error) -> Problem {
+fn body_problem(error: axum::Error) -> Problem {
     let text = error.to_string();
     // The library has no type for this error, only its text.
     match text.contains("length limit") {
@@ -97,9 +97,9 @@ fn too_large(what: &str) -> Problem {
 pub fn from_slice<T: DeserializeOwned>(bytes: &[u8]) -> Result<T> {
     let mut reader = serde_json::Deserializer::from_slice(bytes);
     let value = serde_path_to_error::deserialize(&mut reader)
-        .map_err(|error| refused(&error.path().to_string(), error.inner()))?;
+        .map_err(|error| json_problem(&error.path().to_string(), error.inner()))?;
     // Text after the document is an error.
-    reader.end().map_err(|error| refused(".", &error))?;
+    reader.end().map_err(|error| json_problem(".", &error))?;
     Ok(value)
 }
 
@@ -107,12 +107,12 @@ pub fn from_slice<T: DeserializeOwned>(bytes: &[u8]) -> Result<T> {
 ///
 /// # Errors
 /// Returns an error if there is not enough memory.
-pub async fn read_yaml(bytes: usize) -> Result<()> {
-    Ok(budget::take(YAML_FACTOR * bytes as u64).await?)
+pub async fn reserve_yaml_memory(bytes: usize) -> Result<()> {
+    Ok(budget::reserve_for_request(YAML_FACTOR * bytes as u64).await?)
 }
 
 /// Returns the media type of a body, in lower case and without parameters; empty if absent.
-pub fn media(headers: &HeaderMap) -> String {
+pub fn media_type(headers: &HeaderMap) -> String {
     let value =
         headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
     value.split(';').next().unwrap_or_default().trim().to_ascii_lowercase()
@@ -122,7 +122,7 @@ pub fn media(headers: &HeaderMap) -> String {
 ///
 /// # Errors
 /// Returns an error if the body is compressed.
-pub fn plain(headers: &HeaderMap) -> Result<()> {
+pub fn check_uncompressed(headers: &HeaderMap) -> Result<()> {
     match headers.get(header::CONTENT_ENCODING) {
         // `identity` means no encoding.
         Some(encoding) if encoding != "identity" => Err(Problem::new(
@@ -133,7 +133,7 @@ pub fn plain(headers: &HeaderMap) -> Result<()> {
     }
 }
 
-impl Payload {
+impl DocumentBody {
     /// Returns the bytes, which also identify a repeated request.
     pub fn bytes(&self) -> &Bytes {
         &self.bytes
@@ -155,9 +155,9 @@ impl Payload {
     /// # Errors
     /// Returns an error if the body has another type or is not valid; it names the field and the
     /// line.
-    pub fn json<T: DeserializeOwned>(&self) -> Result<T> {
+    pub fn parse_json<T: DeserializeOwned>(&self) -> Result<T> {
         if !self.is_json() {
-            return Err(self.wrong("application/json"));
+            return Err(self.wrong_type("application/json"));
         }
         from_slice(&self.bytes)
     }
@@ -166,16 +166,16 @@ impl Payload {
     ///
     /// # Errors
     /// Returns an error if the body has another type or is not UTF-8.
-    pub fn text(&self) -> Result<&str> {
+    pub fn yaml_text(&self) -> Result<&str> {
         if !self.is_text() {
-            return Err(self.wrong("application/yaml"));
+            return Err(self.wrong_type("application/yaml"));
         }
         std::str::from_utf8(&self.bytes)
             .map_err(|error| Problem::bad_request(format!("the body is not UTF-8: {error}")))
     }
 
     /// Returns the problem of an unsupported content type.
-    pub fn wrong(&self, wanted: &str) -> Problem {
+    pub fn wrong_type(&self, wanted: &str) -> Problem {
         let found =
             if self.media.is_empty() { "nothing".to_owned() } else { format!("`{}`", self.media) };
         let detail = format!("Content-Type is {found}; send `{wanted}`");
@@ -192,7 +192,7 @@ const TYPES: [(&str, &str); 4] = [
 ];
 
 /// Returns the problem of a JSON document: 400 for a syntax error, 422 for invalid content.
-fn refused(path: &str, error: &serde_json::Error) -> Problem {
+fn json_problem(path: &str, error: &serde_json::Error) -> Problem {
     let status =
         if error.is_data() { StatusCode::UNPROCESSABLE_ENTITY } else { StatusCode::BAD_REQUEST };
     let message = TYPES.iter().fold(error.to_string(), |text, (from, to)| text.replace(from, to));
@@ -202,7 +202,7 @@ fn refused(path: &str, error: &serde_json::Error) -> Problem {
         (format!("{path}: "), Some(path.to_owned()))
     };
     let detail = format!("{place}{message}");
-    Problem::new(status, detail).with(Fault {
+    Problem::new(status, detail).with_fault(Fault {
         field,
         row: Some(error.line()),
         column: None,
@@ -223,8 +223,8 @@ mod tests {
     }
 
     fn read(media: &str, text: &str) -> Problem {
-        let payload = Payload { media: media.into(), bytes: text.to_owned().into() };
-        payload.json::<std::collections::BTreeMap<String, Inner>>().unwrap_err()
+        let payload = DocumentBody { media: media.into(), bytes: text.to_owned().into() };
+        payload.parse_json::<std::collections::BTreeMap<String, Inner>>().unwrap_err()
     }
 
     #[test]

@@ -14,11 +14,11 @@ use crate::problem::{Fault, Problem, Result};
 
 /// Query parameters of each operation of the OpenAPI document, by path and method.
 #[derive(Debug)]
-pub struct KnownQuery(HashMap<(String, Method), Vec<String>>);
+pub struct KnownParameters(HashMap<(String, Method), Vec<String>>);
 
-impl KnownQuery {
+impl KnownParameters {
     /// Collects the parameters of a document.
-    pub fn of(document: &OpenApi) -> Self {
+    pub fn from_document(document: &OpenApi) -> Self {
         let mut known = HashMap::new();
         for (path, item) in document.paths.paths.iter().filter(|(path, _)| path.starts_with("/v1"))
         {
@@ -32,13 +32,13 @@ impl KnownQuery {
                 .into_iter()
                 .filter_map(|(method, operation)| Some((method, operation.as_ref()?)));
             known.extend(
-                there.map(|(method, operation)| ((path.clone(), method), names(operation))),
+                there.map(|(method, operation)| ((path.clone(), method), query_names(operation))),
             );
         }
         Self(known)
     }
 
-    fn check(&self, path: &str, method: &Method, query: &str) -> Result<()> {
+    fn check_query(&self, path: &str, method: &Method, query: &str) -> Result<()> {
         // HEAD is answered by the operation of GET and has its parameters.
         let method = if method == Method::HEAD { Method::GET } else { method.clone() };
         // Paths that are not in the document, such as pages, are not checked.
@@ -46,48 +46,52 @@ impl KnownQuery {
         else {
             return Ok(());
         };
-        let pairs: Vec<(String, String)> = pairs(query)?;
+        let pairs: Vec<(String, String)> = query_pairs(query)?;
         let unknown = pairs.into_iter().map(|(name, _)| name).find(|name| !known.contains(name));
-        unknown.map_or(Ok(()), |name| Err(refused(&name, known)))
+        unknown.map_or(Ok(()), |name| Err(unknown_parameter(&name, known)))
     }
 }
 
 /// Returns the parameters of an operation.
-pub fn parameters(operation: &Operation) -> impl Iterator<Item = &Parameter> {
+pub fn operation_parameters(operation: &Operation) -> impl Iterator<Item = &Parameter> {
     operation.parameters.iter().flatten().filter_map(|known| match known {
         RefOr::T(parameter) => Some(parameter),
         RefOr::Ref(_) => None,
     })
 }
 
-fn names(operation: &Operation) -> Vec<String> {
-    let all = parameters(operation);
+fn query_names(operation: &Operation) -> Vec<String> {
+    let all = operation_parameters(operation);
     all.filter(|known| known.parameter_in == ParameterIn::Query)
         .map(|known| known.name.clone())
         .collect()
 }
 
-fn pairs(query: &str) -> Result<Vec<(String, String)>> {
+fn query_pairs(query: &str) -> Result<Vec<(String, String)>> {
     let uri = axum::http::Uri::builder().path_and_query(format!("/?{query}")).build();
     let uri = uri.map_err(|error| Problem::bad_request(format!("query: {error}")))?;
     Ok(Query::try_from_uri(&uri).map(|Query(pairs)| pairs)?)
 }
 
-fn refused(name: &str, known: &[String]) -> Problem {
+fn unknown_parameter(name: &str, known: &[String]) -> Problem {
     let message = match known {
         [] => "is no parameter here; there are none".to_owned(),
         known => format!("is no parameter here; there are {}", known.join(", ")),
     };
-    Problem::bad_request(format!("{name}: {message}")).with(Fault::at(name, message))
+    Problem::bad_request(format!("{name}: {message}")).with_fault(Fault::at_field(name, message))
 }
 
 /// Middleware that refuses requests with unknown query parameters.
 pub async fn refuse_unknown(
-    State(known): State<Arc<KnownQuery>>,
+    State(known): State<Arc<KnownParameters>>,
     path: MatchedPath,
     request: Request,
     next: Next,
 ) -> Result<Response> {
-    known.check(path.as_str(), request.method(), request.uri().query().unwrap_or_default())?;
+    known.check_query(
+        path.as_str(),
+        request.method(),
+        request.uri().query().unwrap_or_default(),
+    )?;
     Ok(next.run(request).await)
 }

@@ -8,7 +8,7 @@ use crate::problem::{Problem, Result};
 
 /// An answer with its headers, in the form that is stored for replay.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Reply {
+pub struct StoredReply {
     /// HTTP status.
     pub status: u16,
     /// URL of the created item.
@@ -22,7 +22,7 @@ pub struct Reply {
     pub queued: bool,
 }
 
-impl Reply {
+impl StoredReply {
     /// Creates an answer from a document.
     ///
     /// # Errors
@@ -34,15 +34,15 @@ impl Reply {
 
     /// Sets the URL of the created item, by the segments of its path.
     #[must_use]
-    pub fn at(mut self, segments: &[&str]) -> Self {
-        self.location = Some(path(segments));
+    pub fn with_location(mut self, segments: &[&str]) -> Self {
+        self.location = Some(encode_path(segments));
         self
     }
 
     /// Sets the URL of a list of the created items: a path and one query parameter.
     #[must_use]
-    pub fn at_list(mut self, segments: &[&str], (name, value): (&str, &str)) -> Self {
-        self.location = Some(format!("{}?{name}={}", path(segments), encoded(value)));
+    pub fn with_list_location(mut self, segments: &[&str], (name, value): (&str, &str)) -> Self {
+        self.location = Some(format!("{}?{name}={}", encode_path(segments), percent_encode(value)));
         self
     }
 
@@ -54,19 +54,19 @@ impl Reply {
 
     /// Sets the entity tag of the created item.
     #[must_use]
-    pub fn tagged(mut self, etag: String) -> Self {
+    pub fn with_etag(mut self, etag: String) -> Self {
         self.etag = Some(etag);
         self
     }
 }
 
 /// Returns a path of segments, each percent-encoded.
-pub fn path(segments: &[&str]) -> String {
-    segments.iter().map(|segment| format!("/{}", encoded(segment))).collect()
+pub fn encode_path(segments: &[&str]) -> String {
+    segments.iter().map(|segment| format!("/{}", percent_encode(segment))).collect()
 }
 
 /// Percent-encodes every byte except the unreserved ones (RFC 3986, 2.3).
-fn encoded(text: &str) -> String {
+fn percent_encode(text: &str) -> String {
     let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~".contains(&byte);
     let each = text.bytes().map(|byte| match is_plain(byte) {
         // Unreserved bytes are ASCII, so that each is one character.
@@ -76,7 +76,7 @@ fn encoded(text: &str) -> String {
     each.collect()
 }
 
-impl IntoResponse for Reply {
+impl IntoResponse for StoredReply {
     fn into_response(self) -> Response {
         let status = StatusCode::from_u16(self.status).unwrap_or(StatusCode::OK);
         let mut response =
@@ -98,7 +98,10 @@ mod tests {
 
     #[test]
     fn a_place_is_percent_encoded() {
-        assert_eq!(path(&["v1", "families", "A/B söhne"]), "/v1/families/A%2FB%20s%C3%B6hne");
-        assert_eq!(path(&["v1", "users", "a.b_c"]), "/v1/users/a.b_c");
+        assert_eq!(
+            encode_path(&["v1", "families", "A/B söhne"]),
+            "/v1/families/A%2FB%20s%C3%B6hne"
+        );
+        assert_eq!(encode_path(&["v1", "users", "a.b_c"]), "/v1/users/a.b_c");
     }
 }

@@ -59,17 +59,17 @@ impl From<RoleName> for Role {
 
 impl RoleView {
     /// Creates the view of a stored role.
-    pub fn of(row: GrantRow) -> Self {
+    pub fn from_row(row: GrantRow) -> Self {
         let GrantRow { scope_kind, scope_name, role } = row;
         let name = |kind: &str| (scope_kind == kind).then(|| scope_name.clone());
         Self { role, ship: name("ship"), family: name("family") }
     }
 
     /// Creates the view of a role.
-    pub fn of_grant(grant: &Grant) -> Self {
-        let (kind, name) = grant.scope.parts();
+    pub fn from_grant(grant: &Grant) -> Self {
+        let (kind, name) = grant.scope.to_parts();
         let (scope_kind, scope_name) = (kind.to_owned(), name.to_owned());
-        Self::of(GrantRow { scope_kind, scope_name, role: grant.role.as_str().to_owned() })
+        Self::from_row(GrantRow { scope_kind, scope_name, role: grant.role.as_str().to_owned() })
     }
 }
 
@@ -77,11 +77,11 @@ impl RoleView {
 ///
 /// # Errors
 /// Returns an error that names the invalid role.
-pub fn grants(roles: Vec<RoleRequest>) -> Result<Vec<Grant>> {
-    roles.into_iter().enumerate().map(|(at, role)| grant(at, role)).collect()
+pub fn parse_grants(roles: Vec<RoleRequest>) -> Result<Vec<Grant>> {
+    roles.into_iter().enumerate().map(|(at, role)| parse_grant(at, role)).collect()
 }
 
-fn grant(at: usize, request: RoleRequest) -> Result<Grant> {
+fn parse_grant(at: usize, request: RoleRequest) -> Result<Grant> {
     let role = Role::from(request.role);
     let scope = match (request.ship, request.family) {
         (None, None) => Scope::Server,

@@ -3,8 +3,8 @@
 use std::str::FromStr;
 
 use serde::Deserialize;
-use sistership_priors::similarity::Definition;
-use sistership_store::{FactRange, MAX_RANGES, Page, ShipKey};
+use sistership_priors::similarity::VectorDefinition;
+use sistership_store::{FactRange, MAX_RANGES, PageRequest, ShipKey};
 use utoipa::IntoParams;
 use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, Type};
@@ -12,13 +12,13 @@ use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, Type};
 use crate::field::{Cursor, Limit, Name, Word, one_of};
 use crate::page;
 use crate::problem::{Fault, Problem, Result};
-use sistership_jobs::search::{self, Search, metric, particular};
+use sistership_jobs::search::{self, SearchCriteria, metric, particular};
 
 /// Query of the list of ships. All conditions must hold.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[allow(dead_code, reason = "it only describes the query, whose parameters may come several times")]
-pub struct Query {
+pub struct ShipSearchQuery {
     /// Maximum number of items to return.
     #[param(inline)]
     limit: Option<Limit>,
@@ -46,94 +46,101 @@ pub struct Query {
     similar_to: Option<Name>,
     /// The vector by which ships are similar: `mei-2019` or `kanazawa-2023`.
     #[param(schema_with = vectors)]
-    vector: Option<Definition>,
+    vector: Option<VectorDefinition>,
 }
 
 /// Parses the query, parameter by parameter.
 ///
 /// # Errors
 /// Returns an error that names the invalid parameter.
-pub fn read(pairs: Vec<(String, String)>) -> Result<(Search, Page<ShipKey>)> {
+pub fn parse_query(pairs: Vec<(String, String)>) -> Result<(SearchCriteria, PageRequest<ShipKey>)> {
     // Parsed by hand, because `particular` and `metric` may occur several times.
-    let (mut search, mut limit, mut after) = (Search::default(), None, None);
+    let (mut search, mut limit, mut after) = (SearchCriteria::default(), None, None);
     for (name, value) in pairs {
         match name.as_str() {
-            "limit" => once(&name, &mut limit, parsed::<Limit>(&name, &value)?)?,
-            "after" => once(&name, &mut after, parsed::<Cursor>(&name, &value)?)?,
-            "category" => once(
+            "limit" => set_once(&name, &mut limit, parse_value::<Limit>(&name, &value)?)?,
+            "after" => set_once(&name, &mut after, parse_value::<Cursor>(&name, &value)?)?,
+            "category" => set_once(
                 &name,
                 &mut search.ships.category,
-                parsed::<Name>(&name, &value)?.into_string(),
+                parse_value::<Name>(&name, &value)?.into_string(),
             )?,
-            "tag" => {
-                once(&name, &mut search.ships.tag, parsed::<Word>(&name, &value)?.into_string())?
-            }
-            "particular" => add(&name, &mut search.ships.ranges, particular(&value))?,
-            "metric" => add(&name, &mut search.ships.ranges, metric(&value))?,
-            "similar_to" => {
-                once(&name, &mut search.similar_to, parsed::<Name>(&name, &value)?.into_string())?
-            }
-            "vector" => once(&name, &mut search.vector, definition(&value)?)?,
-            _ => return Err(unknown(&name)),
+            "tag" => set_once(
+                &name,
+                &mut search.ships.tag,
+                parse_value::<Word>(&name, &value)?.into_string(),
+            )?,
+            "particular" => add_range(&name, &mut search.ships.ranges, particular(&value))?,
+            "metric" => add_range(&name, &mut search.ships.ranges, metric(&value))?,
+            "similar_to" => set_once(
+                &name,
+                &mut search.similar_to,
+                parse_value::<Name>(&name, &value)?.into_string(),
+            )?,
+            "vector" => set_once(&name, &mut search.vector, parse_definition(&value)?)?,
+            _ => return Err(unknown_parameter(&name)),
         }
     }
-    Ok((search, page::page(limit, after.as_ref())?))
+    Ok((search, page::parse_page(limit, after.as_ref())?))
 }
 
-fn parsed<T: FromStr<Err = String>>(name: &str, value: &str) -> Result<T> {
-    value.parse().map_err(|message: String| wrong(name, message))
+fn parse_value<T: FromStr<Err = String>>(name: &str, value: &str) -> Result<T> {
+    value.parse().map_err(|message: String| parameter_problem(name, message))
 }
 
 /// Returns the schema of the names of the vectors.
 pub fn vectors() -> RefOr<Schema> {
-    one_of(Definition::ALL.map(Definition::name))
+    one_of(VectorDefinition::ALL.map(VectorDefinition::name))
 }
 
 fn particulars() -> RefOr<Schema> {
-    ranges(search::particulars())
+    range_schema(search::particular_names())
 }
 
 fn metrics() -> RefOr<Schema> {
-    ranges(search::metrics())
+    range_schema(search::searchable_metrics())
 }
 
 /// Returns the schema of ranges of facts with these names.
-fn ranges(names: impl Iterator<Item = &'static str>) -> RefOr<Schema> {
+fn range_schema(names: impl Iterator<Item = &'static str>) -> RefOr<Schema> {
     let range = ObjectBuilder::new()
         .schema_type(Type::String)
-        .pattern(Some(search::pattern(names)))
+        .pattern(Some(search::range_pattern(names)))
         .build();
     ArrayBuilder::new().items(range).min_items(Some(1)).max_items(Some(MAX_RANGES)).build().into()
 }
 
-fn once<T>(name: &str, slot: &mut Option<T>, value: T) -> Result<()> {
+fn set_once<T>(name: &str, slot: &mut Option<T>, value: T) -> Result<()> {
     // A repeated parameter is refused: it is unclear which value is meant.
     match slot.replace(value) {
         None => Ok(()),
-        Some(_) => Err(wrong(name, "may be given once only")),
+        Some(_) => Err(parameter_problem(name, "may be given once only")),
     }
 }
 
-fn add(
+fn add_range(
     name: &str,
     ranges: &mut Vec<FactRange>,
     range: std::result::Result<FactRange, String>,
 ) -> Result<()> {
-    ranges.push(range.map_err(|message| wrong(name, message))?);
+    ranges.push(range.map_err(|message| parameter_problem(name, message))?);
     match ranges.len() <= MAX_RANGES {
         true => Ok(()),
-        false => Err(wrong(name, format!("at most {MAX_RANGES} ranges can be asked for at once"))),
+        false => Err(parameter_problem(
+            name,
+            format!("at most {MAX_RANGES} ranges can be asked for at once"),
+        )),
     }
 }
 
-fn definition(value: &str) -> Result<Definition> {
-    let known = Definition::ALL.map(Definition::name).join(" and ");
-    Definition::by_name(value)
-        .ok_or_else(|| wrong("vector", format!("there are {known}, not `{value}`")))
+fn parse_definition(value: &str) -> Result<VectorDefinition> {
+    let known = VectorDefinition::ALL.map(VectorDefinition::name).join(" and ");
+    VectorDefinition::by_name(value)
+        .ok_or_else(|| parameter_problem("vector", format!("there are {known}, not `{value}`")))
 }
 
-fn unknown(name: &str) -> Problem {
-    wrong(
+fn unknown_parameter(name: &str) -> Problem {
+    parameter_problem(
         name,
         "is no parameter here; there are limit, after, category, tag, particular, metric, \
          similar_to, vector",
@@ -141,9 +148,9 @@ fn unknown(name: &str) -> Problem {
 }
 
 /// Returns the problem of an invalid parameter.
-pub fn wrong(name: &str, message: impl Into<String>) -> Problem {
+pub fn parameter_problem(name: &str, message: impl Into<String>) -> Problem {
     let message = message.into();
-    Problem::bad_request(format!("{name}: {message}")).with(Fault::at(name, message))
+    Problem::bad_request(format!("{name}: {message}")).with_fault(Fault::at_field(name, message))
 }
 
 #[cfg(test)]
@@ -161,10 +168,10 @@ mod tests {
     #[test]
     fn every_parameter_is_read() {
         let text = "category=tanker&tag=own&particular=lpp_m:1..2&metric=initial_turning_m:..9&similar_to=kcs&vector=mei-2019&limit=7";
-        let (search, page) = read(pairs(text)).unwrap();
+        let (search, page) = parse_query(pairs(text)).unwrap();
         assert_eq!(
             (page.limit, search.ships.ranges.len(), search.vector),
-            (7, 2, Some(Definition::Mei2019))
+            (7, 2, Some(VectorDefinition::Mei2019))
         );
         assert_eq!(search.ships.category.as_deref(), Some("tanker"));
         assert_eq!(
@@ -186,7 +193,7 @@ mod tests {
             ("vector=other", "vector"),
             ("categorie=tanker", "categorie"),
         ] {
-            let problem = read(pairs(text)).unwrap_err();
+            let problem = parse_query(pairs(text)).unwrap_err();
             assert_eq!(
                 (problem.status, problem.errors[0].field.as_deref()),
                 (400, Some(field)),

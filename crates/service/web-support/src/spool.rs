@@ -12,11 +12,11 @@ use tokio::io::{AsyncWriteExt as _, BufWriter};
 
 use crate::problem::{Problem, Result};
 
-pub use crate::spool_folder::Spool;
+pub use crate::spool_folder::SpoolFolder;
 
 /// A received file, which is removed when this is dropped.
 #[derive(Debug)]
-pub struct Spooled {
+pub struct SpooledFile {
     /// Path.
     pub path: TempPath,
     /// SHA-256 of its bytes, hexadecimal.
@@ -24,33 +24,33 @@ pub struct Spooled {
 }
 
 /// Writes a stream to a temporary file.
-pub async fn spool<E: Into<Problem>>(
-    place: &Spool,
+pub async fn spool_stream<E: Into<Problem>>(
+    place: &SpoolFolder,
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
-) -> Result<Spooled> {
-    let (file, path) = temporary(place)?.into_parts();
+) -> Result<SpooledFile> {
+    let (file, path) = temporary_file(place)?.into_parts();
     let (mut file, mut hash) = (BufWriter::new(File::from_std(file)), Sha256::new());
     while let Some(chunk) = stream.next().await {
         let chunk = chunk.map_err(Into::into)?;
         hash.update(&chunk);
-        file.write_all(&chunk).await.map_err(unwritten)?;
+        file.write_all(&chunk).await.map_err(write_problem)?;
     }
-    file.flush().await.map_err(unwritten)?;
-    Ok(Spooled { path, sha256: hex(&hash.finalize()) })
+    file.flush().await.map_err(write_problem)?;
+    Ok(SpooledFile { path, sha256: hex_digits(&hash.finalize()) })
 }
 
 /// Returns a hash in lower-case hexadecimal.
-pub fn hex(hash: &[u8]) -> String {
+pub fn hex_digits(hash: &[u8]) -> String {
     hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Creates a temporary file, which is removed when it is dropped.
-pub fn temporary(place: &Spool) -> Result<NamedTempFile> {
-    place.temporary().map_err(unwritten)
+pub fn temporary_file(place: &SpoolFolder) -> Result<NamedTempFile> {
+    place.temporary_file().map_err(write_problem)
 }
 
 /// Returns the problem of an upload that could not be written.
-pub fn unwritten(error: io::Error) -> Problem {
+pub fn write_problem(error: io::Error) -> Problem {
     let reason = format!("an upload cannot be written: {error}");
     if is_out_of_space(&error) { Problem::no_room(reason) } else { Problem::internal(reason) }
 }
@@ -66,7 +66,7 @@ mod tests {
             (io::ErrorKind::QuotaExceeded, 507),
             (io::ErrorKind::Other, 500),
         ] {
-            assert_eq!(unwritten(kind.into()).status, status);
+            assert_eq!(write_problem(kind.into()).status, status);
         }
     }
 }

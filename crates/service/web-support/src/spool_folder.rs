@@ -21,40 +21,40 @@ const FOLDER: &str = "process-";
 /// Temporary files of this process: a folder with a lock, which the system releases when the
 /// process ends.
 #[derive(Debug)]
-pub struct Spool {
+pub struct SpoolFolder {
     root: PathBuf,
-    held: Mutex<Option<Held>>,
+    held: Mutex<Option<LockedFolder>>,
 }
 
 #[derive(Debug)]
-struct Held {
+struct LockedFolder {
     folder: PathBuf,
     /// Lock on the folder; closing the file releases it.
     _lock: Option<fs::File>,
 }
 
-impl Spool {
+impl SpoolFolder {
     /// Creates the spool of this process below a folder that processes share; nothing is created on
     /// the disk before the first file.
-    pub fn below(root: PathBuf) -> Self {
+    pub fn with_root(root: PathBuf) -> Self {
         Self { root, held: Mutex::default() }
     }
 
     /// Returns the folder of this process, created if absent.
-    fn folder(&self) -> io::Result<PathBuf> {
+    fn process_folder(&self) -> io::Result<PathBuf> {
         let mut held = self.held.lock().unwrap_or_else(PoisonError::into_inner);
         // The folder may have been removed by another program; then a new one is made.
         if let Some(held) = held.as_ref().filter(|held| held.folder.is_dir()) {
             return Ok(held.folder.clone());
         }
-        Ok(held.insert(Held::make(&self.root)?).folder.clone())
+        Ok(held.insert(LockedFolder::create_locked(&self.root)?).folder.clone())
     }
 
     /// Removes the leftovers of processes that have ended.
     ///
     /// # Errors
     /// Returns an error if a folder cannot be read or removed.
-    pub fn clear(&self) -> io::Result<()> {
+    pub fn clear_ended(&self) -> io::Result<()> {
         let entries = match fs::read_dir(&self.root) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
             entries => entries?,
@@ -75,16 +75,16 @@ impl Spool {
     ///
     /// # Errors
     /// Returns an error if it cannot be created.
-    pub fn temporary(&self) -> io::Result<NamedTempFile> {
-        Builder::new().prefix(PREFIX).tempfile_in(self.folder()?)
+    pub fn temporary_file(&self) -> io::Result<NamedTempFile> {
+        Builder::new().prefix(PREFIX).tempfile_in(self.process_folder()?)
     }
 
     /// Creates a temporary folder, which is removed with its files when it is dropped.
     ///
     /// # Errors
     /// Returns an error if it cannot be created.
-    pub fn folder_under_way(&self) -> io::Result<TempDir> {
-        Builder::new().prefix(PREFIX).tempdir_in(self.folder()?)
+    pub fn temporary_folder(&self) -> io::Result<TempDir> {
+        Builder::new().prefix(PREFIX).tempdir_in(self.process_folder()?)
     }
 
     /// Returns true if there is space for a file of this many bytes.
@@ -92,8 +92,9 @@ impl Spool {
     /// # Errors
     /// Returns an error if writing fails for another reason than a full disk.
     pub fn has_room(&self, bytes: usize) -> io::Result<bool> {
-        let written =
-            self.temporary().and_then(|mut file| io::Write::write_all(&mut file, &vec![0; bytes]));
+        let written = self
+            .temporary_file()
+            .and_then(|mut file| io::Write::write_all(&mut file, &vec![0; bytes]));
         match written {
             Err(error) if is_out_of_space(&error) => Ok(false),
             other => other.map(|()| true),
@@ -101,7 +102,7 @@ impl Spool {
     }
 }
 
-impl Drop for Spool {
+impl Drop for SpoolFolder {
     fn drop(&mut self) {
         if let Some(held) = self.held.get_mut().unwrap_or_else(PoisonError::into_inner) {
             // A folder with a file that is still in use stays; the next process removes it.
@@ -110,12 +111,12 @@ impl Drop for Spool {
     }
 }
 
-impl Held {
-    fn make(root: &Path) -> io::Result<Self> {
+impl LockedFolder {
+    fn create_locked(root: &Path) -> io::Result<Self> {
         loop {
             let folder = root.join(format!("{FOLDER}{}", Uuid::now_v7()));
             fs::create_dir_all(&folder)?;
-            let lock = locked(&folder);
+            let lock = lock_folder(&folder);
             // Another process may have cleared the folder before it was locked: try again.
             if folder.is_dir() {
                 return Ok(Self { folder, _lock: lock });
@@ -126,7 +127,7 @@ impl Held {
 
 /// Locks a folder; none if the file system has no locks, and then no process can lock it to clear
 /// it either.
-fn locked(folder: &Path) -> Option<fs::File> {
+fn lock_folder(folder: &Path) -> Option<fs::File> {
     let file = fs::File::open(folder).ok()?;
     file.lock().ok().map(|()| file)
 }
@@ -138,7 +139,7 @@ fn clear_folder(folder: &Path) -> io::Result<()> {
         file => file?,
     };
     match file.try_lock() {
-        Ok(()) => gone(fs::remove_dir_all(folder)),
+        Ok(()) => ignore_missing(fs::remove_dir_all(folder)),
         Err(TryLockError::WouldBlock) => Ok(()),
         // A file system without locks: what is there stays.
         Err(TryLockError::Error(_)) => Ok(()),
@@ -150,11 +151,15 @@ fn clear_stale(file: &Path) -> io::Result<()> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
         about => about?.modified()?,
     };
-    if modified < SystemTime::now() - STALE { gone(fs::remove_file(file)) } else { Ok(()) }
+    if modified < SystemTime::now() - STALE {
+        ignore_missing(fs::remove_file(file))
+    } else {
+        Ok(())
+    }
 }
 
 /// Ignores that a file to be removed is already absent.
-fn gone(removed: io::Result<()>) -> io::Result<()> {
+fn ignore_missing(removed: io::Result<()>) -> io::Result<()> {
     removed
         .or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })
 }
@@ -169,13 +174,15 @@ mod tests {
     #[test]
     fn what_no_living_process_holds_is_removed() {
         let root = tempfile::tempdir().unwrap();
-        let (alive, next) =
-            (Spool::below(root.path().to_owned()), Spool::below(root.path().to_owned()));
-        let kept = alive.temporary().unwrap();
+        let (alive, next) = (
+            SpoolFolder::with_root(root.path().to_owned()),
+            SpoolFolder::with_root(root.path().to_owned()),
+        );
+        let kept = alive.temporary_file().unwrap();
         let dead = root.path().join(format!("{FOLDER}dead"));
         fs::create_dir(&dead).unwrap();
         fs::write(dead.join("upload-cut"), b"t_s").unwrap();
-        next.clear().unwrap();
+        next.clear_ended().unwrap();
         assert!(kept.path().exists() && !dead.exists());
         drop(kept);
         drop(alive);

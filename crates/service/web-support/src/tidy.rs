@@ -3,27 +3,27 @@
 use serde_json::{Map, Value, json};
 
 /// Applies all corrections to the document.
-pub fn tidy(document: &mut Value) {
+pub fn tidy_document(document: &mut Value) {
     match document {
         Value::Object(object) => {
-            described(object);
-            parameter(object);
-            events(object);
-            yaml(object);
+            merge_description(object);
+            remove_null(object);
+            set_event_schema(object);
+            set_yaml_schema(object);
             // The library has no keyword `not`; types write it as an extension.
             if let Some(not) = object.remove("x-not") {
                 object.insert("not".to_owned(), not);
             }
-            object.values_mut().for_each(tidy);
+            object.values_mut().for_each(tidy_document);
         }
-        Value::Array(items) => items.iter_mut().for_each(tidy),
+        Value::Array(items) => items.iter_mut().for_each(tidy_document),
         _ => {}
     }
 }
 
 /// Merges a schema and the description of its field into one schema: the library writes two that
 /// both must hold, and the second would be an object.
-fn described(object: &mut Map<String, Value>) {
+fn merge_description(object: &mut Map<String, Value>) {
     let Some([Value::Object(schema), Value::Object(about)]) =
         object.get("allOf").and_then(Value::as_array).map(Vec::as_slice)
     else {
@@ -43,7 +43,7 @@ fn described(object: &mut Map<String, Value>) {
 }
 
 /// Removes null from the types of parameters: a parameter is present or absent, never null.
-fn parameter(object: &mut Map<String, Value>) {
+fn remove_null(object: &mut Map<String, Value>) {
     if !object.contains_key("in") || !object.contains_key("name") {
         return;
     }
@@ -64,14 +64,14 @@ fn parameter(object: &mut Map<String, Value>) {
 
 /// Sets the schema of YAML bodies to an object: the schema describes the content, not the text, and
 /// all documents here are maps.
-fn yaml(object: &mut Map<String, Value>) {
+fn set_yaml_schema(object: &mut Map<String, Value>) {
     if let Some(media) = object.get_mut("application/yaml").and_then(Value::as_object_mut) {
         media.insert("schema".to_owned(), json!({ "type": "object" }));
     }
 }
 
 /// Sets the schema of an event stream to that of the data of one event.
-fn events(object: &mut Map<String, Value>) {
+fn set_event_schema(object: &mut Map<String, Value>) {
     let Some(stream) = object.get_mut("text/event-stream").and_then(Value::as_object_mut) else {
         return;
     };
@@ -91,11 +91,11 @@ mod tests {
     fn what_is_said_of_a_field_is_no_schema_of_its_own() {
         let mut document = json!({ "allOf": [{ "type": "string", "maxLength": 3 },
             { "type": "object", "description": "a" }] });
-        tidy(&mut document);
+        tidy_document(&mut document);
         assert_eq!(document, json!({ "type": "string", "maxLength": 3, "description": "a" }));
         let both = json!({ "allOf": [{ "$ref": "#/a" }, { "type": "object", "properties": { "b": {} } }] });
         let mut kept = both.clone();
-        tidy(&mut kept);
+        tidy_document(&mut kept);
         assert_eq!(kept, both);
     }
 
@@ -105,7 +105,7 @@ mod tests {
             { "in": "query", "name": "a", "schema": { "type": ["string", "null"], "x-not": { "const": "b" } } },
             { "in": "query", "name": "b", "schema": { "oneOf": [{ "type": "null" }, { "type": "integer" }] } },
         ], "content": { "text/event-stream": { "schema": { "type": "object" } } } });
-        tidy(&mut document);
+        tidy_document(&mut document);
         assert_eq!(
             document["parameters"][0]["schema"],
             json!({ "type": "string", "not": { "const": "b" } })

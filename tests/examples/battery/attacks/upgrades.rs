@@ -34,10 +34,10 @@ async fn run(field: &Field) -> Result<(), Failure> {
     let server = today.serve().await?;
     let ledger = filled(&server.client, &field.tally).await?;
     server.process.kill();
-    let migrations = sistership_store::testing::migrations();
+    let migrations = sistership_store::testing::migration_numbers();
     for &migration in &migrations {
         field.tally.tried(1);
-        let earlier = field.database.empty().await?.migrated(migration).await;
+        let earlier = field.database.empty().await?.migrate_to(migration).await;
         earlier.fill_from(&today.database).await;
         let place = Place::of(earlier, std::sync::Arc::clone(&field.tally));
         copy(&today.data, &place.data)?;

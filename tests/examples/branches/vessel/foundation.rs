@@ -23,7 +23,7 @@ const INERTIA: [&str; 8] = ["m", "I_z", "X_udot", "Y_vdot", "Y_rdot", "N_vdot", 
 
 /// A vessel's model of the zoo with the wind, and figures shifted.
 pub fn model(zoo: &Zoo, vessel: &str, shift: Shift) -> Model {
-    let mut model = zoo.model(vessel).unwrap_or_else(|error| panic!("{error}"));
+    let mut model = zoo.find_model(vessel).unwrap_or_else(|error| panic!("{error}"));
     let mut rng = ChaCha12Rng::seed_from_u64(shift.seed);
     let mut shifted = |value: f64, by: f64| value * (1.0 + by * rng.random_range(-1.0..1.0));
     for quantity in model.coefficients.values_mut() {

@@ -3,11 +3,11 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
-use sistership_model::hybrid::derive;
+use sistership_model::hybrid::derive_law;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Law, Model, Zoo};
 use sistership_simulation::Ship;
-use sistership_simulation::plant::{Inputs, MAX_INPUTS, Work};
+use sistership_simulation::plant::{LawInputs, MAX_INPUTS, PlantWorkspace};
 use sistership_simulation::state::{StateVector, at};
 
 /// Two thrusters under one order, as one.
@@ -90,11 +90,11 @@ type Motion = [f64; 5];
 
 impl Hull {
     pub fn new(zoo: &Zoo) -> Self {
-        let law = derive("azimuth-hybrid.yaml", DECLARATION)
+        let law = derive_law("azimuth-hybrid.yaml", DECLARATION)
             .unwrap_or_else(|error| panic!("{error}"))
             .law;
         let vessel = zoo.vessel(VESSEL).expect("in the zoo");
-        let like = zoo.model(VESSEL).unwrap_or_else(|error| panic!("{error}"));
+        let like = zoo.find_model(VESSEL).unwrap_or_else(|error| panic!("{error}"));
         let own = ship(&like, zoo.law(&like.law).expect("its law"));
         assert!((own.lpp_m() - LENGTH_M).abs() < 1e-9, "the ship of the ranges");
         let mut model = empty(&like, &law);
@@ -108,7 +108,7 @@ impl Hull {
 
     /// A ship of the zoo by its own model.
     pub fn of_zoo(zoo: &Zoo, name: &str) -> Self {
-        let model = zoo.model(name).unwrap_or_else(|error| panic!("{error}"));
+        let model = zoo.find_model(name).unwrap_or_else(|error| panic!("{error}"));
         let vessel = zoo.vessel(&model.ship).expect("in the zoo");
         let own = ship(&model, zoo.law(&model.law).expect("its law"));
         let of = |name: &str| vessel.particular(name).expect("a particular of its own");
@@ -174,7 +174,7 @@ fn ship(model: &Model, law: &Law) -> Ship {
 fn accelerations(ship: &Ship, &[u, v, r, n, delta]: &Motion) -> [f64; 3] {
     let mut state = StateVector::zeros();
     (state[at::U], state[at::V], state[at::R], state[at::DELTA]) = (u, v, r, delta);
-    let mut inputs: Inputs = [0.0; MAX_INPUTS];
+    let mut inputs: LawInputs = [0.0; MAX_INPUTS];
     for (place, (name, default)) in ship.law_inputs().enumerate() {
         inputs[place] = match name {
             "n" | "n_pod" => n,
@@ -183,7 +183,7 @@ fn accelerations(ship: &Ship, &[u, v, r, n, delta]: &Motion) -> [f64; 3] {
             _ => default.unwrap_or_default(),
         };
     }
-    let rate = ship.rate_with(&state, &inputs, &mut Work::default());
+    let rate = ship.rate_with(&state, &inputs, &mut PlantWorkspace::default());
     [rate[at::U], rate[at::V], rate[at::R]]
 }
 

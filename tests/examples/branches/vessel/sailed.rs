@@ -59,7 +59,8 @@ pub fn sail(
         };
         n_rps = towards(n_order, n_rps, hull.revolutions() * REV_RPS_S);
         state[at::DELTA] = towards(delta_order, state[at::DELTA], TURN_RAD_S);
-        state = Method::Rk4.step(&state, time * STEP_S, |_, at| rate(hull, weather, at, n_rps));
+        state = Method::Rk4
+            .advance_state(&state, time * STEP_S, |_, at| rate(hull, weather, at, n_rps));
     }
     log.trial(weather, seed)
 }

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
-use sistership_learned::seakeeping::{DirectionalSpectrum, Motion, WaveHull};
+use sistership_learned::seakeeping::{DirectionalSpectrum, WaveHull, WaveMotion};
 
 use super::scenarios::normal;
 use super::seas::jonswap;
@@ -128,11 +128,11 @@ fn read(sea: &DirectionalSpectrum, rng: &mut ChaCha12Rng) -> DirectionalSpectrum
 /// What it does, with the scatter of so few waves: 1/sqrt(2 n) of n of them.
 fn moved(sea: &DirectionalSpectrum, rng: &mut ChaCha12Rng) -> [f64; 3] {
     let truth = TrueShip::new();
-    let heave = truth.deviation(sea, Motion::Heave, 0.0);
-    let pitch = truth.deviation(sea, Motion::Pitch, 0.0);
+    let heave = truth.deviation(sea, WaveMotion::Heave, 0.0);
+    let pitch = truth.deviation(sea, WaveMotion::Pitch, 0.0);
     // Damping and motion depend on each other.
     let roll =
-        (0..20).fold(0.05, |roll, _| 0.5 * (roll + truth.deviation(sea, Motion::Roll, roll)));
+        (0..20).fold(0.05, |roll, _| 0.5 * (roll + truth.deviation(sea, WaveMotion::Roll, roll)));
     let waves = WATCH_S / 5.0;
     [heave, pitch, roll].map(|deviation| deviation * (1.0 + normal(rng) / f64::sqrt(2.0 * waves)))
 }
@@ -161,7 +161,7 @@ impl TrueShip {
         Self { strips: (0..20).map(strip).collect() }
     }
 
-    fn deviation(&self, sea: &DirectionalSpectrum, motion: Motion, roll: f64) -> f64 {
+    fn deviation(&self, sea: &DirectionalSpectrum, motion: WaveMotion, roll: f64) -> f64 {
         let (rows, step) = (sea.omegas.iter().zip(&sea.density), TAU * STEP_HZ);
         let of_row = |(omega, row): (&f64, &Vec<f64>)| {
             let cells = sea.betas.iter().zip(row);
@@ -172,7 +172,7 @@ impl TrueShip {
         (step * TAU / DIRECTIONS as f64 * rows.map(of_row).sum::<f64>()).sqrt()
     }
 
-    fn response(&self, motion: Motion, omega: f64, beta: f64, roll: f64) -> f64 {
+    fn response(&self, motion: WaveMotion, omega: f64, beta: f64, roll: f64) -> f64 {
         let k = omega * omega / 9.80665;
         let (sin, cos) = beta.sin_cos();
         let mean = |of: &dyn Fn(f64) -> f64, weight: &dyn Fn(f64) -> f64| {
@@ -183,9 +183,9 @@ impl TrueShip {
         };
         let pressed = (-k * DEPTH_M).exp();
         let (axis, force) = match motion {
-            Motion::Heave => (0, pressed * mean(&|x| (k * x * cos).cos(), &|_| 1.0)),
-            Motion::Pitch => (1, pressed * mean(&|x| x * (k * x * cos).sin(), &|x| x * x)),
-            Motion::Roll => (2, SLOPE * k * sin * mean(&|x| (k * x * cos).cos(), &|_| 1.0)),
+            WaveMotion::Heave => (0, pressed * mean(&|x| (k * x * cos).cos(), &|_| 1.0)),
+            WaveMotion::Pitch => (1, pressed * mean(&|x| x * (k * x * cos).sin(), &|x| x * x)),
+            WaveMotion::Roll => (2, SLOPE * k * sin * mean(&|x| (k * x * cos).cos(), &|_| 1.0)),
         };
         let damping = DAMPINGS[axis] + if axis == 2 { ROLL_BY_MOTION * roll } else { 0.0 };
         let ratio = omega * PERIODS_S[axis] / (2.0 * PI);

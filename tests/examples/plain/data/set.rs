@@ -36,7 +36,7 @@ impl DataSet {
         restart_s: f64,
     ) -> Self {
         let deviations = standard_deviations(&unseen.iter().collect::<Vec<_>>());
-        let zoo = Zoo::embedded().unwrap_or_else(|error| panic!("{error}"));
+        let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
         Self { ship, trials, seen, unseen, restart_s, deviations, zoo, folder }
     }
 
@@ -51,6 +51,6 @@ impl DataSet {
         let name = model.split(' ').next().unwrap_or_default();
         // A law without coefficients has the ship's name, too, where the trials alone make the
         // model.
-        name.split('/').next() == Some(self.ship.as_str()) && self.zoo.model(name).is_ok()
+        name.split('/').next() == Some(self.ship.as_str()) && self.zoo.find_model(name).is_ok()
     }
 }

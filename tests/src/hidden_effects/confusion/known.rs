@@ -8,7 +8,7 @@ use sistership_model::Trial;
 use sistership_model::effect::AppliedEffect;
 use sistership_simulation::Ship;
 use sistership_simulation::error::SquaredError;
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 
 use super::super::baseline::BASELINE;
 
@@ -50,8 +50,9 @@ fn errors(
     let settings = ReplaySettings { restart_s: Some(restart_s), ..ReplaySettings::default() };
     let mut total = SquaredError::default();
     for trial in trials {
-        let replay = replay(&ship, trial, &settings).unwrap_or_else(|error| panic!("{error}"));
-        total.add(&SquaredError::of(trial, &replay));
+        let replay =
+            replay_trial(&ship, trial, &settings).unwrap_or_else(|error| panic!("{error}"));
+        total.add(&SquaredError::from_trial(trial, &replay));
     }
-    total.rmse()
+    total.rmse_by_channel()
 }

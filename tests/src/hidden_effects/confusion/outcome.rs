@@ -1,7 +1,8 @@
 //! What a diagnosis made of a case.
 
 use sistership_diagnosis::{
-    Diagnosis, Found, RemainderDependence, Unexplained, Value, VariableDependence, Verdict,
+    Diagnosis, MissingEffect, RemainderDependence, UnexplainedSegment, ValueWithError,
+    VariableDependence, Verdict,
 };
 use sistership_model::Trial;
 use sistership_model::effect::AppliedEffect;
@@ -12,7 +13,7 @@ use super::known;
 /// A parameter of an effect that was found.
 pub struct Estimate {
     name: String,
-    value: Value,
+    value: ValueWithError,
     truth: f64,
 }
 
@@ -42,7 +43,7 @@ pub struct Outcome {
     /// What was named, first things first.
     pub named: Vec<String>,
     pub verdict: Verdict,
-    pub unexplained: Vec<Unexplained>,
+    pub unexplained: Vec<UnexplainedSegment>,
     /// On what depends what is left.
     pub depends_on: Vec<RemainderDependence>,
     pub parameters: Vec<Estimate>,
@@ -58,7 +59,7 @@ impl Outcome {
         let effects = &case.hidden.effects;
         let hides = matches!(case.kind, Kind::Single(_) | Kind::Pair);
         let evidence =
-            |found: &Found| format!("{}/{} {:.0}", found.name, found.form, found.evidence);
+            |found: &MissingEffect| format!("{}/{} {:.0}", found.name, found.form, found.evidence);
         Self {
             label: case.label.clone(),
             kind: case.kind,
@@ -93,7 +94,7 @@ impl Outcome {
         let Kind::Unlisted(channel, from_s, to_s) = self.kind else { return false };
         let strongest =
             self.unexplained.iter().max_by(|a, b| a.rms_over_noise.total_cmp(&b.rms_over_noise));
-        let holds = |found: &Unexplained| {
+        let holds = |found: &UnexplainedSegment| {
             let middle_s = 0.5 * (found.from_s + found.to_s);
             found.channel == channel && from_s <= middle_s && middle_s <= to_s
         };
@@ -103,7 +104,7 @@ impl Outcome {
     /// The share of the strength, the pair, the unlisted effect.
     pub fn line(&self) -> String {
         let off: Vec<String> = self.parameters.iter().map(Estimate::line).collect();
-        let open = |u: &Unexplained| {
+        let open = |u: &UnexplainedSegment| {
             format!("{} {:.1} {:.0}-{:.0} s", u.channel, u.rms_over_noise, u.from_s, u.to_s)
         };
         let open: Vec<String> = self.unexplained.iter().take(3).map(open).collect();
@@ -135,7 +136,7 @@ fn left(of: &RemainderDependence) -> String {
 
 /// How far the parameters of an effect that was found in its true form are from the truth, in
 /// standard errors.
-fn deviations(effect: &AppliedEffect, found: &[Found]) -> Vec<Estimate> {
+fn deviations(effect: &AppliedEffect, found: &[MissingEffect]) -> Vec<Estimate> {
     let Some(found) =
         found.iter().find(|found| found.name == effect.name && found.form == effect.form.name)
     else {

@@ -2,7 +2,7 @@
 
 use crate::shared;
 use sistership_simulation::Trajectory;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
 use sistership_simulation::state::at;
 use sistership_simulation::{Ship, StateVector};
 
@@ -31,8 +31,8 @@ fn a_clean_ship_sails_as_the_library_does() {
     };
     let truth = TrueShip::new(&Hidden::default());
     let own = |manoeuvre| truth.sail(&sailing(manoeuvre, 0.0, 60.0), &[]);
-    let turned = turn(&ship, 12.0, &settings).unwrap().track;
-    let zigzagged = zigzag(&ship, -10.0, 5.0, &settings).unwrap().track;
+    let turned = simulate_turn(&ship, 12.0, &settings).unwrap().track;
+    let zigzagged = simulate_zigzag(&ship, -10.0, 5.0, &settings).unwrap().track;
     assert!(largest_difference(&own(Manoeuvre::Turn(12.0)), &turned) < 1e-6);
     assert!(largest_difference(&own(Manoeuvre::Zigzag(-10.0, 5.0)), &zigzagged) < 1e-6);
 }
@@ -44,7 +44,7 @@ fn against_example(hidden: &Hidden, file: &str, sailing: &Sailing) -> Option<f64
     let said = said(&ship, &ship.sail(sailing, &[]), &[]);
     let of = |&(channel, place, deviation): &(sistership_model::trial::Channel, usize, f64)| {
         let name = channel
-            .column()
+            .column_name()
             .replace("_m_s", "_mps")
             .replace("r_rad_s", "r_radps")
             .replace("p_rad_s", "p_radps");

@@ -9,7 +9,7 @@ use sistership_model::Trial;
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::Channel;
 use sistership_simulation::Trajectory;
-use sistership_simulation::plant::Work;
+use sistership_simulation::plant::PlantWorkspace;
 use sistership_simulation::state::{StateVector, at};
 
 use super::sailing::{N_RPS, STEP_S, Sailing, TrueShip};
@@ -69,7 +69,7 @@ pub fn record(ship: &TrueShip, sailing: &Sailing, seed: u64) -> Trial {
 
 /// What the instruments say without noise, sample by sample.
 pub fn said(ship: &TrueShip, track: &Trajectory, wind: &[f64]) -> Vec<StateVector> {
-    let mut work = Work::default();
+    let mut work = PlantWorkspace::default();
     let mut one = |k: usize| {
         let mut said = ship.says(track.t_s[k], &track.states[k], wind.get(k).copied(), &mut work);
         if ship.delay_s != 0.0 {

@@ -1,11 +1,11 @@
 //! How the true ship sails: its bridge, its rudder, and what is hidden in either.
 
-use sistership_model::effect::{AppliedEffect, TIME};
+use sistership_model::effect::{AppliedEffect, TIME_INPUT};
 use sistership_model::quantity::Quantity;
 use sistership_model::{Law, Model};
-use sistership_simulation::gear::Gear;
-use sistership_simulation::plant::{Inputs, Work};
-use sistership_simulation::state::{StateVector, at, straight};
+use sistership_simulation::gear::SteeringGear;
+use sistership_simulation::plant::{LawInputs, PlantWorkspace};
+use sistership_simulation::state::{StateVector, at, straight_state};
 use sistership_simulation::{Ship, Trajectory};
 
 use super::{Hidden, Unlisted, Weather, ZOO, published};
@@ -41,7 +41,7 @@ pub struct TrueShip {
     ship: Ship,
     /// From half time on, where the propeller fails.
     later: Option<Ship>,
-    gear: Gear,
+    gear: SteeringGear,
     lag_s: Option<f64>,
     /// Steady speed through the water, m/s.
     approach_m_s: f64,
@@ -87,7 +87,7 @@ impl TrueShip {
         let ship = Ship::new(&model, law).unwrap_or_else(|error| panic!("{error}"));
         Self {
             later: failing(&model, law, hidden.unlisted),
-            gear: Gear::new(&model.steering),
+            gear: SteeringGear::new(&model.steering),
             lag_s: of("rudder-lag", "time_constant_s"),
             approach_m_s: N_RPS / ship.revolutions_at(1.0),
             current_m_s: of("current", "north_m_s")
@@ -105,13 +105,13 @@ impl TrueShip {
     pub fn sail(&self, sailing: &Sailing, wind_m_s: &[f64]) -> Trajectory {
         let mut motion =
             Motion { state: self.start(sailing.heading_deg.to_radians()), rudder_rad: 0.0 };
-        let (mut track, mut work) = (Trajectory::default(), Work::default());
+        let (mut track, mut work) = (Trajectory::default(), PlantWorkspace::default());
         let mut bridge = sailing.bridge();
         for k in 0..=(DURATION_S / STEP_S).round() as usize {
             let t_s = k as f64 * STEP_S;
             self.ship
                 .envelope()
-                .check(t_s, &motion.state)
+                .check_state(t_s, &motion.state)
                 .unwrap_or_else(|stopped| panic!("the true ship {stopped}"));
             track.push(t_s, self.over_ground(&motion.state), N_RPS);
             let order_rad = bridge(t_s, &motion.state);
@@ -126,15 +126,20 @@ impl TrueShip {
         t_s: f64,
         state: &StateVector,
         wind_m_s: Option<f64>,
-        work: &mut Work,
+        work: &mut PlantWorkspace,
     ) -> StateVector {
         let inputs = self.inputs(t_s, state[at::DELTA], wind_m_s);
-        self.ship.says(sistership_model::manifest::VelocityFrame::Ground, state, &inputs, work)
+        self.ship.instrument_readings(
+            sistership_model::manifest::VelocityFrame::Ground,
+            state,
+            &inputs,
+            work,
+        )
     }
 
     /// Steady through the water.
     fn start(&self, heading_rad: f64) -> StateVector {
-        let mut state = straight(self.approach_m_s);
+        let mut state = straight_state(self.approach_m_s);
         state[at::PSI] = heading_rad;
         state
     }
@@ -150,12 +155,12 @@ impl TrueShip {
         state
     }
 
-    fn inputs(&self, t_s: f64, rudder_rad: f64, wind_m_s: Option<f64>) -> Inputs {
-        let mut inputs = self.ship.inputs(rudder_rad, N_RPS);
+    fn inputs(&self, t_s: f64, rudder_rad: f64, wind_m_s: Option<f64>) -> LawInputs {
+        let mut inputs = self.ship.inputs_for(rudder_rad, N_RPS);
         let wind = self.wind_over_water(wind_m_s.unwrap_or(0.0));
         for (value, (name, _)) in inputs.iter_mut().zip(self.ship.law_inputs()) {
             match name {
-                TIME => *value = t_s,
+                TIME_INPUT => *value = t_s,
                 "wind_speed" => *value = wind.0.hypot(wind.1),
                 "wind_from" => *value = wind.1.atan2(wind.0),
                 _ => {}
@@ -177,7 +182,7 @@ impl TrueShip {
         motion: Motion,
         order_rad: f64,
         wind_m_s: Option<f64>,
-        work: &mut Work,
+        work: &mut PlantWorkspace,
     ) -> Motion {
         let mut rate = |fraction: f64, m: Motion| {
             self.rate(t_s + fraction * STEP_S, m, order_rad, wind_m_s, work)
@@ -197,7 +202,7 @@ impl TrueShip {
         motion: Motion,
         order_rad: f64,
         wind_m_s: Option<f64>,
-        work: &mut Work,
+        work: &mut PlantWorkspace,
     ) -> Motion {
         let state = &motion.state;
         let rudder_rad = if self.lag_s.is_some() { motion.rudder_rad } else { state[at::DELTA] };
@@ -205,7 +210,7 @@ impl TrueShip {
         let mut rate = ship.rate_with(state, &self.inputs(t_s, rudder_rad, wind_m_s), work);
         rate[at::X] += self.current_m_s.0;
         rate[at::Y] += self.current_m_s.1;
-        rate[at::DELTA] = self.gear.rate(order_rad, state[at::DELTA], STEP_S);
+        rate[at::DELTA] = self.gear.rudder_rate(order_rad, state[at::DELTA], STEP_S);
         match self.unlisted {
             Some(Unlisted::OscillatingMoment { amplitude_rad_s2 }) => {
                 rate[at::R] += amplitude_rad_s2 * (std::f64::consts::TAU * t_s / 60.0).sin();

@@ -1,6 +1,6 @@
 //! Forces that a ship's law does not have.
 
-use sistership_simulation::state::{StateVector, at, straight};
+use sistership_simulation::state::{StateVector, at, straight_state};
 
 use super::super::motion::Truth;
 use super::depth::Depth;
@@ -77,6 +77,6 @@ impl Force {
 
 /// Resistance at the approach speed, N: by how the ship slows down when its propeller stops.
 pub fn resistance_n(ship: &dyn Truth) -> f64 {
-    let state = straight(ship.dimensions().speed_m_s);
+    let state = straight_state(ship.dimensions().speed_m_s);
     -ship.accelerations(&state, 0.0)[0] * ship.inertia().surge_kg
 }

@@ -6,7 +6,7 @@ use rand_distr::StandardNormal;
 use sistership_model::Trial;
 use sistership_model::trial::Channel;
 use sistership_simulation::Method;
-use sistership_simulation::state::{StateVector, Trajectory, at, straight};
+use sistership_simulation::state::{StateVector, Trajectory, at, straight_state};
 
 use super::super::instruments::Instruments;
 use super::super::manoeuvre::{APPROACH, Helm, Manoeuvre};
@@ -100,7 +100,7 @@ struct Sea<'a> {
 impl Sea<'_> {
     /// Straight running through the water at the approach speed.
     fn begun(&self, heading_rad: f64) -> StateVector {
-        let mut state = straight(self.ship.dimensions().speed_m_s);
+        let mut state = straight_state(self.ship.dimensions().speed_m_s);
         state[at::PSI] = heading_rad;
         if let Some(current) = self.hidden.current {
             let [along, across] = current.seen(0.0, heading_rad);
@@ -113,7 +113,7 @@ impl Sea<'_> {
     /// What the gear adds to the recorded rudder stays within a step, not where the rudder is:
     /// held for a step it would follow by half a step late in trials without any gear.
     fn step(&self, t_s: f64, state: &StateVector, order_rad: f64, added_rad: f64) -> StateVector {
-        Method::Rk4.step(state, STEP_S, |fraction, at| {
+        Method::Rk4.advance_state(state, STEP_S, |fraction, at| {
             let accelerations = self.accelerations(t_s + fraction * STEP_S, at, added_rad);
             rate_under(self.ship, at, order_rad, accelerations)
         })

@@ -1,7 +1,7 @@
 //! State and orders of a craft.
 
 use sistership_simulation::StateVector;
-use sistership_simulation::state::{at, straight};
+use sistership_simulation::state::{at, straight_state};
 
 /// Shafts of a craft at most.
 pub const SHAFTS: usize = 2;
@@ -28,7 +28,7 @@ pub struct Orders {
 impl Motion {
     /// Straight running at a speed (m/s) and revolutions.
     pub fn straight(speed_m_s: f64, n_rps: [f64; SHAFTS]) -> Self {
-        Self { body: straight(speed_m_s), n_rps }
+        Self { body: straight_state(speed_m_s), n_rps }
     }
 
     /// Surge, sway (m/s) and yaw (rad/s) velocity.

@@ -7,7 +7,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
 use sistership_model::trial::Channel;
-use sistership_simulation::state::{RECORDED, at};
+use sistership_simulation::state::{RECORDED_CHANNELS, at};
 
 use super::craft::Craft;
 use super::motion::Motion;
@@ -76,12 +76,12 @@ impl Instruments {
     pub fn columns(&self, craft: &Craft, track: &Track, rng: &mut ChaCha12Rng) -> Columns {
         let every = (self.interval_s / craft.step_s()).round() as usize;
         let kept: Vec<&Motion> = track.motions.iter().step_by(every).collect();
-        let recorded = &RECORDED[..if craft.rolls() { 8 } else { 6 }];
+        let recorded = &RECORDED_CHANNELS[..if craft.rolls() { 8 } else { 6 }];
         let mut columns: Columns =
             vec![("t_s", track.t_s.iter().step_by(every).copied().collect())];
         for &(channel, place) in recorded {
             let values = kept.iter().map(|motion| motion.body[place]);
-            columns.push((channel.column(), noisy(values, self.deviation(channel), rng)));
+            columns.push((channel.column_name(), noisy(values, self.deviation(channel), rng)));
         }
         let scatter = self.revolutions * craft.rated_rps();
         if craft.steers_by_difference() {
@@ -92,9 +92,9 @@ impl Instruments {
             return columns;
         }
         let angles = kept.iter().map(|motion| motion.body[at::DELTA]);
-        columns.push((Channel::Delta.column(), noisy(angles, self.steering_rad, rng)));
+        columns.push((Channel::Delta.column_name(), noisy(angles, self.steering_rad, rng)));
         let turns = kept.iter().map(|motion| mean_rps(motion, craft.shafts()));
-        columns.push((Channel::N.column(), noisy(turns, scatter, rng)));
+        columns.push((Channel::N.column_name(), noisy(turns, scatter, rng)));
         columns
     }
 

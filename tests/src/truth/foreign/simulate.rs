@@ -110,7 +110,7 @@ pub fn turning(craft: &Craft, angle_deg: f64) -> TurningMetrics {
     let duration_s = TURN_LENGTHS * craft.size().length_time_s();
     let orders = craft.orders(1.0, angle_deg.to_radians());
     let track = simulate(craft, start(craft, 1.0), duration_s, |_, _| orders);
-    TurningMetrics::of(&track.trajectory(craft.shafts()), angle_deg).expect("a track")
+    TurningMetrics::from_track(&track.trajectory(craft.shafts()), angle_deg).expect("a track")
 }
 
 /// Growth rate of a small yaw rate with the steering amidships, by `U/L`: negative for craft that

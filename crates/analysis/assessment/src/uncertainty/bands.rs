@@ -8,15 +8,15 @@ use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{
-    Figure, ManoeuvreSettings, StandardManoeuvres, standard_of_sisters,
+    ManoeuvreSettings, NamedFigure, StandardManoeuvres, simulate_standard_ensemble,
 };
 
-use crate::uncertainty::next_trial::{Drawn, NextTrial, next_trial};
+use crate::uncertainty::next_trial::{DrawFigures, NextTrial, next_trial};
 use crate::uncertainty::physical::physical_value;
-use crate::uncertainty::sampling::{Sampling, draws};
+use crate::uncertainty::sampling::{Sampling, draw_from_posterior};
 
 /// Draws that are simulated in lockstep.
-const TOGETHER: usize = 10;
+const LOCKSTEP_DRAWS: usize = 10;
 /// Steps in units of the time in which the ship travels its own length: `STEP` for draws that
 /// reverse the rudder at the end of a step, `EXACT_STEP` for those that do so within it and are
 /// corrected by the estimate at the fine step. Bands at the latter's step differ from those at the
@@ -27,21 +27,21 @@ const EXACT_STEP: f64 = 0.05;
 
 /// Uncertainty bands of a model's standard manoeuvres.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Bands {
+pub struct UncertaintyBands {
     /// Sampling of the posterior.
     pub sampling: Sampling,
     /// Number of draws that left the physical range in some manoeuvre.
     pub failed: usize,
     /// Bands by figure.
-    pub figures: Vec<Band>,
+    pub figures: Vec<UncertaintyBand>,
     /// Trial that would narrow the bands most.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next_trial: Option<NextTrial>,
 }
 
-impl Bands {
+impl UncertaintyBands {
     /// Returns the band of a figure.
-    pub fn of(&self, figure: &str) -> Option<&Band> {
+    pub fn figure_band(&self, figure: &str) -> Option<&UncertaintyBand> {
         self.figures.iter().find(|band| band.figure == figure)
     }
 }
@@ -49,7 +49,7 @@ impl Bands {
 /// The band of a figure: 95 % of the draws that reached it are inside. A draw with an impossible
 /// figure, such as a tactical diameter below zero, counts as one that has not reached it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Band {
+pub struct UncertaintyBand {
     /// Name of the figure.
     pub figure: String,
     /// Its unit.
@@ -68,29 +68,29 @@ pub struct Band {
 /// Returns the bands of the standard manoeuvres; `None` if the model has no posterior of its
 /// present coefficients. The default step is [`STEP`] or [`EXACT_STEP`] of the time of a ship
 /// length. `depth_m` is for laws that depend on it.
-pub fn bands(
+pub fn uncertainty_bands(
     model: &Model,
     law: &Law,
     settings: &ManoeuvreSettings,
     depth_m: Option<f64>,
     sampling: Sampling,
-) -> Option<Bands> {
-    let draws = draws(model, sampling)?;
+) -> Option<UncertaintyBands> {
+    let draws = draw_from_posterior(model, sampling)?;
     let within_steps = sampling.within_steps;
-    let (ship, fast) = prepared(model, law, settings, depth_m, sampling)?;
-    let sailed = sailed(&ship, &draws, &fast)?;
+    let (ship, fast) = prepare_ship(model, law, settings, depth_m, sampling)?;
+    let sailed = simulate_draws(&ship, &draws, &fast)?;
     // A draw that fails one manoeuvre still gives the figures of the others.
     let failed = sailed.iter().filter(|sailed| !sailed.failures.is_empty()).count();
     // Draws run at a coarse step; the estimate, simulated at both, gives the correction for it.
     let by_step = match within_steps {
-        true => errors_by_step(&ship, &ship.sister(model)?, settings, &fast),
+        true => errors_by_step(&ship, &ship.open_coefficient_values(model)?, settings, &fast),
         false => BTreeMap::new(),
     };
-    let mut figures: BTreeMap<String, Vec<Figure>> = BTreeMap::new();
+    let mut figures: BTreeMap<String, Vec<NamedFigure>> = BTreeMap::new();
     let mut order = Vec::new();
-    let mut drawn = vec![Drawn::new(); sailed.len()];
+    let mut drawn = vec![DrawFigures::new(); sailed.len()];
     for (draw, sailed) in sailed.into_iter().enumerate() {
-        for mut figure in sailed.figures() {
+        for mut figure in sailed.list_figures() {
             // Impossible figures are removed before the quantiles are taken.
             let by_step = by_step.get(&figure.name).copied().unwrap_or(0.0);
             figure.value =
@@ -102,43 +102,44 @@ pub fn bands(
             figures.entry(figure.name.clone()).or_default().push(figure);
         }
     }
-    let figures = order.iter().filter_map(|name| band(&figures[name], draws.len())).collect();
+    let figures =
+        order.iter().filter_map(|name| band_of_draws(&figures[name], draws.len())).collect();
     // The most informative trial is part of the request for reversals within steps.
     let next_trial = next_trial(&drawn).filter(|_| within_steps);
-    Some(Bands { sampling, failed, figures, next_trial })
+    Some(UncertaintyBands { sampling, failed, figures, next_trial })
 }
 
 /// Returns the bands of figures over simulated standard manoeuvres, in the order in which the
 /// figures first occur.
-pub fn bands_over(sailed: Vec<StandardManoeuvres>) -> Vec<Band> {
+pub fn bands_over(sailed: Vec<StandardManoeuvres>) -> Vec<UncertaintyBand> {
     let draws = sailed.len();
     let mut order: Vec<String> = Vec::new();
-    let mut figures: BTreeMap<String, Vec<Figure>> = BTreeMap::new();
-    for mut figure in sailed.into_iter().flat_map(|sailed| sailed.figures()) {
+    let mut figures: BTreeMap<String, Vec<NamedFigure>> = BTreeMap::new();
+    for mut figure in sailed.into_iter().flat_map(|sailed| sailed.list_figures()) {
         figure.value = figure.value.and_then(|value| physical_value(&figure.name, value, 0.0));
         if !figures.contains_key(&figure.name) {
             order.push(figure.name.clone());
         }
         figures.entry(figure.name.clone()).or_default().push(figure);
     }
-    order.iter().filter_map(|name| band(&figures[name], draws)).collect()
+    order.iter().filter_map(|name| band_of_draws(&figures[name], draws)).collect()
 }
 
 /// The ship whose coefficients draws replace, and the settings of their simulations, at a coarse
 /// step.
-fn prepared(
+fn prepare_ship(
     model: &Model,
     law: &Law,
     settings: &ManoeuvreSettings,
     depth_m: Option<f64>,
     sampling: Sampling,
 ) -> Option<(Ship, ManoeuvreSettings)> {
-    let mut ship = Ship::sisters(model, law).ok()?;
+    let mut ship = Ship::with_open_coefficients(model, law).ok()?;
     let speed_m_s = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
     // The physical range is set once by the approach speed, since draws share the ship.
     ship.set_envelope_speed(speed_m_s);
     // Draws are simulated outside the range of the trials, too.
-    ship.forget_validity();
+    ship.disable_excursions();
     depth_m.into_iter().for_each(|depth_m| ship.set_depth(depth_m));
     let Sampling { within_steps: reversals_within_steps, figures_only, .. } = sampling;
     let share = if reversals_within_steps { EXACT_STEP } else { STEP };
@@ -149,34 +150,34 @@ fn prepared(
 
 /// Standard manoeuvres of several models, simulated in lockstep; `None` if one of them differs in
 /// more than its coefficients.
-fn sailed(
+fn simulate_draws(
     ship: &Ship,
     models: &[Model],
     settings: &ManoeuvreSettings,
 ) -> Option<Vec<StandardManoeuvres>> {
     let sisters: Vec<Vec<f64>> =
-        models.iter().map(|model| ship.sister(model)).collect::<Option<_>>()?;
+        models.iter().map(|model| ship.open_coefficient_values(model)).collect::<Option<_>>()?;
     let together = |sisters: &[Vec<f64>]| {
         let sisters: Vec<&[f64]> = sisters.iter().map(Vec::as_slice).collect();
-        standard_of_sisters(ship, &sisters, settings)
+        simulate_standard_ensemble(ship, &sisters, settings)
     };
-    Some(sisters.par_chunks(TOGETHER).flat_map_iter(together).collect())
+    Some(sisters.par_chunks(LOCKSTEP_DRAWS).flat_map_iter(together).collect())
 }
 
 /// Returns the figures of the standard manoeuvres, by their names, of models with the law and
 /// particulars of a model; `None` if the law does not fit.
-pub fn figures(
+pub fn figures_by_name(
     model: &Model,
     law: &Law,
     models: &[Model],
     sampling: Sampling,
-) -> Option<Vec<Drawn>> {
-    let (ship, fast) = prepared(model, law, &ManoeuvreSettings::default(), None, sampling)?;
+) -> Option<Vec<DrawFigures>> {
+    let (ship, fast) = prepare_ship(model, law, &ManoeuvreSettings::default(), None, sampling)?;
     let named = |sailed: StandardManoeuvres| {
-        let figures = sailed.figures().into_iter();
+        let figures = sailed.list_figures().into_iter();
         figures.filter_map(|figure| Some((figure.name, figure.value?))).collect()
     };
-    Some(sailed(&ship, models, &fast)?.into_iter().map(named).collect())
+    Some(simulate_draws(&ship, models, &fast)?.into_iter().map(named).collect())
 }
 
 /// Error of the draws' coarse step in each figure, from the estimate at both steps.
@@ -187,26 +188,26 @@ fn errors_by_step(
     fast: &ManoeuvreSettings,
 ) -> BTreeMap<String, f64> {
     let figures = |settings: &ManoeuvreSettings| {
-        let sailed = standard_of_sisters(ship, &[estimate], settings).into_iter();
-        sailed.flat_map(|sailed| sailed.figures()).collect::<Vec<_>>()
+        let sailed = simulate_standard_ensemble(ship, &[estimate], settings).into_iter();
+        sailed.flat_map(|sailed| sailed.list_figures()).collect::<Vec<_>>()
     };
     let settings = ManoeuvreSettings { figures_only: fast.figures_only, ..*settings };
     let fine: BTreeMap<String, f64> =
         figures(&settings).into_iter().filter_map(|fine| Some((fine.name, fine.value?))).collect();
-    let of = |fast: Figure| Some((fine.get(&fast.name)?, fast.value?, fast.name));
+    let of = |fast: NamedFigure| Some((fine.get(&fast.name)?, fast.value?, fast.name));
     let fast = figures(fast).into_iter().filter_map(of);
     fast.map(|(fine, fast, name)| (name, fast - fine)).collect()
 }
 
 /// The band of a figure over draws.
-fn band(figures: &[Figure], draws: usize) -> Option<Band> {
+fn band_of_draws(figures: &[NamedFigure], draws: usize) -> Option<UncertaintyBand> {
     let mut values: Vec<f64> = figures.iter().filter_map(|figure| figure.value).collect();
     values.sort_by(f64::total_cmp);
     let first = figures.first()?;
     let reached = figures.iter().filter(|figure| figure.value.is_some());
     let judged: Vec<bool> = reached.filter_map(|figure| figure.pass).collect();
     let share = |count: usize, all: usize| count as f64 / all as f64;
-    Some(Band {
+    Some(UncertaintyBand {
         figure: first.name.clone(),
         unit: first.unit.clone(),
         low: quantile(&values, 0.025)?,
@@ -236,12 +237,12 @@ mod tests {
     use sistership_model::posterior::Posterior;
 
     fn mariner(deviation: f64) -> (Model, std::sync::Arc<Law>) {
-        let zoo = Zoo::embedded().unwrap();
-        let mut model = zoo.model("mariner").unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let mut model = zoo.find_model("mariner").unwrap();
         let names: Vec<String> = ["N_delta", "Y_delta"].map(str::to_owned).to_vec();
         let values: Vec<f64> = names.iter().map(|name| model.coefficient(name)).collect();
         let deviations = values.iter().map(|value| deviation * value.abs()).collect();
-        let root_correlation = Posterior::rows(2, &|i, j| [[1.0, 0.0], [-0.6, 0.8]][i][j]);
+        let root_correlation = Posterior::format_rows(2, &|i, j| [[1.0, 0.0], [-0.6, 0.8]][i][j]);
         model.posterior = Some(Posterior { names, values, deviations, root_correlation });
         (model, zoo.law("abkowitz").unwrap().clone())
     }
@@ -250,7 +251,8 @@ mod tests {
     fn draws_have_the_posterior_s_covariance_and_the_estimate_in_their_midst() {
         let (model, _) = mariner(0.1);
         let draws =
-            draws(&model, Sampling { samples: 4000, seed: 3, ..Sampling::default() }).unwrap();
+            draw_from_posterior(&model, Sampling { samples: 4000, seed: 3, ..Sampling::default() })
+                .unwrap();
         let moved = |name: &str| {
             draws
                 .iter()
@@ -271,7 +273,7 @@ mod tests {
     fn bands_widen_with_the_posterior_and_follow_from_the_seed() {
         let width = |deviation: f64, seed: u64| {
             let (model, law) = mariner(deviation);
-            let bands = bands(
+            let bands = uncertainty_bands(
                 &model,
                 &law,
                 &ManoeuvreSettings::default(),
@@ -298,11 +300,11 @@ mod tests {
         let (model, law) = mariner(1e-3);
         let settings = ManoeuvreSettings::default();
         let sampling = Sampling { samples: 40, seed: 2, within_steps: true, figures_only: true };
-        let bands = bands(&model, &law, &settings, None, sampling).unwrap();
-        let ship = Ship::sisters(&model, &law).unwrap();
-        let own = ship.sister(&model).unwrap();
-        for figure in standard_of_sisters(&ship, &[&own], &settings)[0].figures() {
-            let band = bands.of(&figure.name).unwrap_or_else(|| panic!("{}", figure.name));
+        let bands = uncertainty_bands(&model, &law, &settings, None, sampling).unwrap();
+        let ship = Ship::with_open_coefficients(&model, &law).unwrap();
+        let own = ship.open_coefficient_values(&model).unwrap();
+        for figure in simulate_standard_ensemble(&ship, &[&own], &settings)[0].list_figures() {
+            let band = bands.figure_band(&figure.name).unwrap_or_else(|| panic!("{}", figure.name));
             let value = figure.value.unwrap();
             let slack = 1e-3 * (band.high - band.low);
             let inside = (band.low - slack..=band.high + slack).contains(&value);
@@ -316,7 +318,13 @@ mod tests {
         let (mut model, law) = mariner(0.1);
         model.coefficients.get_mut("N_delta").unwrap().value *= 1.1;
         assert_eq!(
-            bands(&model, &law, &ManoeuvreSettings::default(), None, Sampling::default()),
+            uncertainty_bands(
+                &model,
+                &law,
+                &ManoeuvreSettings::default(),
+                None,
+                Sampling::default()
+            ),
             None
         );
     }

@@ -10,9 +10,9 @@
 use sistership_model::Model;
 use sistership_model::law::Law;
 
-use crate::uncertainty::bands::figures;
-use crate::uncertainty::next_trial::Drawn;
-use crate::uncertainty::sampling::{Sampling, draws};
+use crate::uncertainty::bands::figures_by_name;
+use crate::uncertainty::next_trial::DrawFigures;
+use crate::uncertainty::sampling::{Sampling, draw_from_posterior};
 
 /// Draws that estimate the posterior's own scatter.
 const DRAWS: usize = 40;
@@ -42,8 +42,8 @@ pub fn fold_factor(
 ) -> f64 {
     let sampling =
         Sampling { samples: DRAWS, within_steps: true, figures_only, ..Sampling::default() };
-    let of = |models: &[Model]| figures(model, law, models, sampling);
-    let drawn = draws(model, sampling).and_then(|draws| of(&draws));
+    let of = |models: &[Model]| figures_by_name(model, law, models, sampling);
+    let drawn = draw_from_posterior(model, sampling).and_then(|draws| of(&draws));
     let left_out = of(folds).filter(|left_out| left_out.len() > 2);
     let (Some(drawn), Some(left_out)) = (drawn, left_out) else { return 1.0 };
     let ratios: Vec<f64> = left_out[0]
@@ -53,14 +53,14 @@ pub fn fold_factor(
         .filter_map(|name| {
             let count = left_out.len() as f64;
             // Sum of squares about the folds' mean, times `(g - 1)/g`.
-            let jackknife = (count - 1.0) / count * squares(&left_out, name)?;
-            let own = squares(&drawn, name)? / drawn.len() as f64;
+            let jackknife = (count - 1.0) / count * sum_of_squares(&left_out, name)?;
+            let own = sum_of_squares(&drawn, name)? / drawn.len() as f64;
             (own > 0.0).then(|| jackknife / own)
         })
         .collect();
     let mean = ratios.iter().sum::<f64>() / ratios.len().max(1) as f64;
     let wider = match quantile {
-        FoldQuantile::Student => student(left_out.len() - 1) / NORMAL,
+        FoldQuantile::Student => student_quantile(left_out.len() - 1) / NORMAL,
         FoldQuantile::Normal => 1.0,
     };
     (wider * mean.sqrt()).max(1.0)
@@ -69,7 +69,7 @@ pub fn fold_factor(
 /// Returns Student's quantile of 97.5 % for some degrees of freedom (Abramowitz and Stegun 1964,
 /// Handbook of mathematical functions, Eq. 26.7.5, two terms: 10 % low for two degrees, 4 % for
 /// three, 1 % for five).
-pub fn student(degrees: usize) -> f64 {
+pub fn student_quantile(degrees: usize) -> f64 {
     let (x, degrees) = (NORMAL, degrees as f64);
     let first = (x.powi(3) + x) / 4.0;
     let second = (5.0 * x.powi(5) + 16.0 * x.powi(3) + 3.0 * x) / 96.0;
@@ -77,7 +77,7 @@ pub fn student(degrees: usize) -> f64 {
 }
 
 /// Sum of squares about the mean; `None` if not all reach the figure.
-fn squares(figures: &[Drawn], name: &str) -> Option<f64> {
+fn sum_of_squares(figures: &[DrawFigures], name: &str) -> Option<f64> {
     let values: Vec<f64> =
         figures.iter().map(|one| one.get(name).copied()).collect::<Option<_>>()?;
     let mean = values.iter().sum::<f64>() / values.len() as f64;
@@ -94,12 +94,12 @@ mod tests {
 
     /// Folds whose rudder coefficients lie so many deviations to either side.
     fn factor(apart: f64, quantile: FoldQuantile) -> f64 {
-        let zoo = Zoo::embedded().unwrap();
-        let mut model = zoo.model("mariner").unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let mut model = zoo.find_model("mariner").unwrap();
         let names = vec!["N_delta".to_owned()];
         let value = model.coefficient("N_delta");
         let deviations = vec![0.02 * value.abs()];
-        let root_correlation = Posterior::rows(1, &|_, _| 1.0);
+        let root_correlation = Posterior::format_rows(1, &|_, _| 1.0);
         let values = vec![value];
         model.posterior = Some(Posterior { names, values, deviations, root_correlation });
         let fold = |side: f64| {
@@ -115,7 +115,8 @@ mod tests {
     #[test]
     fn folds_that_lie_wider_than_the_posterior_widen_it() {
         // Of four folds at one deviation, the jackknife's variance is three times the posterior's.
-        let cases = [(FoldQuantile::Normal, 1.0), (FoldQuantile::Student, student(3) / NORMAL)];
+        let cases =
+            [(FoldQuantile::Normal, 1.0), (FoldQuantile::Student, student_quantile(3) / NORMAL)];
         for (quantile, wider) in cases {
             let (expected, at) = (wider * 3.0_f64.sqrt(), |apart| factor(apart, quantile));
             assert!((at(1.0) / expected - 1.0).abs() < 0.25, "{} by {expected}", at(1.0));
@@ -127,7 +128,7 @@ mod tests {
     #[test]
     fn students_quantile_is_the_tables() {
         for (degrees, table) in [(3, 3.182), (5, 2.571), (10, 2.228), (30, 2.042)] {
-            assert!((student(degrees) / table - 1.0).abs() < 0.04, "{degrees}");
+            assert!((student_quantile(degrees) / table - 1.0).abs() < 0.04, "{degrees}");
         }
     }
 }

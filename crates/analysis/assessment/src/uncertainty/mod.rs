@@ -7,7 +7,9 @@ mod next_trial;
 mod physical;
 mod sampling;
 
-pub use bands::{Band, Bands, bands, bands_over, figures, quantile};
-pub use fold_scatter::{FoldQuantile, fold_factor, student};
-pub use next_trial::{Drawn, NextTrial};
-pub use sampling::{Sampling, TooManySamples, draws};
+pub use bands::{
+    UncertaintyBand, UncertaintyBands, bands_over, figures_by_name, quantile, uncertainty_bands,
+};
+pub use fold_scatter::{FoldQuantile, fold_factor, student_quantile};
+pub use next_trial::{DrawFigures, NextTrial};
+pub use sampling::{Sampling, TooManySamples, draw_from_posterior};

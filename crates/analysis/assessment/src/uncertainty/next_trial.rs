@@ -29,7 +29,7 @@ pub struct NextTrial {
 
 impl NextTrial {
     /// Returns the advice as a sentence.
-    pub fn words(&self) -> String {
+    pub fn as_sentence(&self) -> String {
         let Self { manoeuvre, narrower } = self;
         let percent = 100.0 * narrower;
         format!(
@@ -40,30 +40,36 @@ impl NextTrial {
 }
 
 /// Figures of a draw by name.
-pub type Drawn = BTreeMap<String, f64>;
+pub type DrawFigures = BTreeMap<String, f64>;
 
 /// Returns the most informative manoeuvre; `None` if fewer draws than twice the number of figures
 /// reached all of them, or if no figure scatters.
-pub(crate) fn next_trial(draws: &[Drawn]) -> Option<NextTrial> {
+pub(crate) fn next_trial(draws: &[DrawFigures]) -> Option<NextTrial> {
     let most = draws.iter().max_by_key(|draw| draw.len())?;
-    let mut names: Vec<&String> = most.keys().filter(|name| manoeuvre(name).is_some()).collect();
+    let mut names: Vec<&String> =
+        most.keys().filter(|name| figure_manoeuvre(name).is_some()).collect();
     // A covariance needs draws that reached every figure.
-    let complete: Vec<&Drawn> =
+    let complete: Vec<&DrawFigures> =
         draws.iter().filter(|draw| names.iter().all(|name| draw.contains_key(*name))).collect();
     // With fewer draws the covariance of the figures is too uncertain, or singular.
     if complete.len() < 2 * names.len().max(1) {
         return None;
     }
     names.retain(|name| relative_scatter(&complete, name) > LEAST_SCATTER);
-    let columns: Vec<DVector<f64>> = names.iter().map(|name| centred(&complete, name)).collect();
+    let columns: Vec<DVector<f64>> =
+        names.iter().map(|name| centred_figure(&complete, name)).collect();
     let weights: Vec<f64> = names.iter().map(|name| relative_scatter(&complete, name)).collect();
     let told = |of: &str| {
         let own: Vec<&DVector<f64>> = (names.iter().zip(&columns))
-            .filter_map(|(name, column)| (manoeuvre(name) == Some(of)).then_some(column))
+            .filter_map(|(name, column)| (figure_manoeuvre(name) == Some(of)).then_some(column))
             .collect();
-        Some(NextTrial { manoeuvre: of.to_owned(), narrower: narrower(&own, &columns, &weights)? })
+        Some(NextTrial {
+            manoeuvre: of.to_owned(),
+            narrower: mean_narrowing(&own, &columns, &weights)?,
+        })
     };
-    let mut manoeuvres: Vec<&str> = names.iter().filter_map(|name| manoeuvre(name)).collect();
+    let mut manoeuvres: Vec<&str> =
+        names.iter().filter_map(|name| figure_manoeuvre(name)).collect();
     // Figures are in the order of their names, so that those of a manoeuvre are neighbours.
     manoeuvres.dedup();
     let tried = manoeuvres.into_iter().filter_map(told).filter(|one| one.narrower > 0.0);
@@ -71,29 +77,33 @@ pub(crate) fn next_trial(draws: &[Drawn]) -> Option<NextTrial> {
 }
 
 /// The manoeuvre of a figure; `None` for criteria.
-fn manoeuvre(figure: &str) -> Option<&str> {
+fn figure_manoeuvre(figure: &str) -> Option<&str> {
     let (manoeuvre, _) = figure.split_once(": ")?;
     (manoeuvre != "IMO").then_some(manoeuvre)
 }
 
-fn mean(draws: &[&Drawn], name: &str) -> f64 {
+fn mean(draws: &[&DrawFigures], name: &str) -> f64 {
     draws.iter().map(|draw| draw[name]).sum::<f64>() / draws.len() as f64
 }
 
 /// A figure over draws, less its mean.
-fn centred(draws: &[&Drawn], name: &str) -> DVector<f64> {
+fn centred_figure(draws: &[&DrawFigures], name: &str) -> DVector<f64> {
     let mean = mean(draws, name);
     DVector::from_iterator(draws.len(), draws.iter().map(|draw| draw[name] - mean))
 }
 
 /// Standard deviation divided by the mean, so that metres, degrees and seconds can be averaged.
-fn relative_scatter(draws: &[&Drawn], name: &str) -> f64 {
-    let scatter = (centred(draws, name).norm_squared() / draws.len() as f64).sqrt();
+fn relative_scatter(draws: &[&DrawFigures], name: &str) -> f64 {
+    let scatter = (centred_figure(draws, name).norm_squared() / draws.len() as f64).sqrt();
     scatter / mean(draws, name).abs().max(f64::MIN_POSITIVE)
 }
 
 /// Reduction of the width of the figures, as a share, in the weighted mean, if some are measured.
-fn narrower(told: &[&DVector<f64>], figures: &[DVector<f64>], weights: &[f64]) -> Option<f64> {
+fn mean_narrowing(
+    told: &[&DVector<f64>],
+    figures: &[DVector<f64>],
+    weights: &[f64],
+) -> Option<f64> {
     let scaled: Vec<DVector<f64>> = told.iter().map(|column| column.normalize()).collect();
     let svd = DMatrix::from_columns(&scaled).svd(true, false);
     let largest = svd.singular_values.max();
@@ -124,7 +134,7 @@ mod tests {
     use super::*;
 
     /// `a` is wide and follows `b` but for a share; `c` is narrow.
-    fn draws(share: f64) -> Vec<Drawn> {
+    fn draws(share: f64) -> Vec<DrawFigures> {
         let mut rng = ChaCha12Rng::seed_from_u64(4);
         let mut one = |_| {
             let [x, y, z]: [f64; 3] = std::array::from_fn(|_| rng.sample(StandardNormal));
@@ -149,7 +159,7 @@ mod tests {
 
     #[test]
     fn nothing_is_said_where_nothing_scatters() {
-        let same: Vec<Drawn> = vec![draws(0.5)[0].clone(); 50];
+        let same: Vec<DrawFigures> = vec![draws(0.5)[0].clone(); 50];
         assert_eq!(next_trial(&same), None);
         assert_eq!(next_trial(&draws(0.5)[..4]), None);
     }

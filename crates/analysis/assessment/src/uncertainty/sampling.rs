@@ -53,9 +53,9 @@ pub struct TooManySamples;
 
 /// Returns models drawn from the posterior of a model; `None` if it has none of its present
 /// coefficients, or if no sample is requested.
-pub fn draws(model: &Model, sampling: Sampling) -> Option<Vec<Model>> {
-    let posterior = model.posterior().filter(|_| sampling.samples > 0)?;
-    let root = posterior.root().ok()?;
+pub fn draw_from_posterior(model: &Model, sampling: Sampling) -> Option<Vec<Model>> {
+    let posterior = model.valid_posterior().filter(|_| sampling.samples > 0)?;
+    let root = posterior.covariance_root().ok()?;
     // The range of the trials is checked for the estimate, not for every draw.
     let bare = Model { posterior: None, uncertainty: None, validity: None, ..model.clone() };
     let mut rng = ChaCha12Rng::seed_from_u64(sampling.seed);
@@ -64,13 +64,13 @@ pub fn draws(model: &Model, sampling: Sampling) -> Option<Vec<Model>> {
         let moved: Vec<f64> =
             root.iter().map(|row| row.iter().zip(&normal).map(|(r, z)| r * z).sum()).collect();
         // Antithetic pairs: the mean of the draws is the estimate.
-        [1.0, -1.0].map(|side| shifted(&bare, &posterior.names, &moved, side))
+        [1.0, -1.0].map(|side| shift_coefficients(&bare, &posterior.names, &moved, side))
     };
     Some((0..sampling.samples.div_ceil(2)).flat_map(one).collect())
 }
 
 /// A model with coefficients shifted to one side of the estimate.
-fn shifted(model: &Model, names: &[String], moved: &[f64], side: f64) -> Model {
+fn shift_coefficients(model: &Model, names: &[String], moved: &[f64], side: f64) -> Model {
     let mut model = model.clone();
     for (name, by) in names.iter().zip(moved) {
         model

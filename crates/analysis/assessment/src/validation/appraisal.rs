@@ -4,16 +4,18 @@ use serde::Serialize;
 use sistership_model::law::Law;
 use sistership_model::vessel::Status;
 use sistership_model::{FileError, Model, Vessel, Zoo};
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
+use sistership_simulation::manoeuvre::{
+    ManoeuvreSettings, StandardManoeuvres, simulate_standard_manoeuvres,
+};
 use sistership_simulation::metrics::TurningMetrics;
 use sistership_simulation::{PlantError, Ship};
 
-use crate::validation::comparison::{Comparison, compare};
-use crate::validation::standing::Standing;
+use crate::validation::comparison::{FigureComparison, compare_published};
+use crate::validation::standing::ValidationStatus;
 
 /// A model's standard manoeuvres, the published trials of its ship, and what follows.
 #[derive(Debug, Clone, Serialize)]
-pub struct Appraisal {
+pub struct ModelAppraisal {
     /// `ship/model`.
     pub model: String,
     /// The law of motion.
@@ -21,7 +23,7 @@ pub struct Appraisal {
     /// Origin of its figures.
     pub origin: Status,
     /// Validation status.
-    pub standing: Standing,
+    pub standing: ValidationStatus,
     /// Length between perpendiculars, m.
     pub lpp_m: f64,
     /// Approach speed, m/s.
@@ -29,12 +31,12 @@ pub struct Appraisal {
     /// Keys of the sources of its coefficients and parameters.
     pub sources: Vec<String>,
     /// Published figures compared with the model's.
-    pub comparisons: Vec<Comparison>,
+    pub comparisons: Vec<FigureComparison>,
     /// The standard manoeuvres.
     pub manoeuvres: StandardManoeuvres,
 }
 
-impl Appraisal {
+impl ModelAppraisal {
     /// Returns a length of the turn to starboard, in ship lengths.
     pub fn turn_lengths(&self, of: impl Fn(&TurningMetrics) -> Option<f64>) -> Option<f64> {
         let starboard = self.manoeuvres.turns.iter().find(|turn| turn.rudder_deg > 0.0)?;
@@ -53,19 +55,23 @@ impl Appraisal {
 ///
 /// # Errors
 /// Returns an error with the quantity that the model lacks.
-pub fn appraise(vessel: &Vessel, model: &Model, law: &Law) -> Result<Appraisal, PlantError> {
+pub fn appraise_model(
+    vessel: &Vessel,
+    model: &Model,
+    law: &Law,
+) -> Result<ModelAppraisal, PlantError> {
     let ship = Ship::new(model, law)?;
-    let comparisons = compare(&ship, &vessel.file.free_running);
-    Ok(Appraisal {
+    let comparisons = compare_published(&ship, &vessel.file.free_running);
+    Ok(ModelAppraisal {
         model: model.name.clone(),
         law: model.law.clone(),
         origin: model.status,
-        standing: Standing::of(model.status, &comparisons),
+        standing: ValidationStatus::from_comparisons(model.status, &comparisons),
         lpp_m: ship.lpp_m(),
         speed_m_s: ship.approach_speed_m_s(),
-        sources: sources(model),
+        sources: cited_sources(model),
         comparisons,
-        manoeuvres: standard(&ship, &ManoeuvreSettings::default()),
+        manoeuvres: simulate_standard_manoeuvres(&ship, &ManoeuvreSettings::default()),
     })
 }
 
@@ -73,9 +79,9 @@ pub fn appraise(vessel: &Vessel, model: &Model, law: &Law) -> Result<Appraisal, 
 ///
 /// # Errors
 /// Returns an error with the model and the quantity that it lacks.
-pub fn appraise_vessel(zoo: &Zoo, vessel: &Vessel) -> Result<Vec<Appraisal>, FileError> {
+pub fn appraise_vessel(zoo: &Zoo, vessel: &Vessel) -> Result<Vec<ModelAppraisal>, FileError> {
     let one = |name: &str| {
-        let model = zoo.published(vessel, Some(name))?;
+        let model = zoo.published_model(vessel, Some(name))?;
         let refused = |message: String| FileError {
             file: vessel.name().to_owned(),
             line: None,
@@ -84,13 +90,13 @@ pub fn appraise_vessel(zoo: &Zoo, vessel: &Vessel) -> Result<Vec<Appraisal>, Fil
             further: Vec::new(),
         };
         let law = zoo.law(&model.law).ok_or_else(|| refused("its law is missing".into()))?;
-        appraise(vessel, &model, law).map_err(|error| refused(error.to_string()))
+        appraise_model(vessel, &model, law).map_err(|error| refused(error.to_string()))
     };
     vessel.file.models.iter().map(|model| one(&model.name)).collect()
 }
 
 /// The sources of coefficients and parameters that are in the vessel's list.
-fn sources(model: &Model) -> Vec<String> {
+fn cited_sources(model: &Model) -> Vec<String> {
     let values = model.coefficients.values().chain(model.parameters.values());
     let mut keys: Vec<String> = values
         .map(|quantity| quantity.source.clone())

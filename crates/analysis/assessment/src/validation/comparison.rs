@@ -3,13 +3,13 @@
 use serde::Serialize;
 use sistership_model::free_running::{FreeRunning, PublishedTurn, PublishedZigzag};
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
 
 use crate::validation::limits::{OVERSHOOT_DEG, OVERSHOOT_SHARE, TURN_SHARE};
 
 /// One published figure, compared with the model's.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Comparison {
+pub struct FigureComparison {
     /// The figure: `turn 35 deg: advance`.
     pub figure: String,
     /// `L` for ship lengths, or `deg`.
@@ -26,7 +26,7 @@ pub struct Comparison {
     pub limit: f64,
 }
 
-impl Comparison {
+impl FigureComparison {
     /// Returns the model's figure less the published one.
     pub fn error(&self) -> Option<f64> {
         self.sailed.map(|sailed| sailed - self.published)
@@ -39,33 +39,37 @@ impl Comparison {
 }
 
 /// Simulates published manoeuvres at the published speed, and compares the figures.
-pub fn compare(ship: &Ship, trials: &[FreeRunning]) -> Vec<Comparison> {
-    compare_at(ship, trials, 1.0)
+pub fn compare_published(ship: &Ship, trials: &[FreeRunning]) -> Vec<FigureComparison> {
+    compare_with_steps(ship, trials, 1.0)
 }
 
 /// Simulates published manoeuvres with steps of `steps` times the usual ones, and compares the
 /// figures.
-pub(crate) fn compare_at(ship: &Ship, trials: &[FreeRunning], steps: f64) -> Vec<Comparison> {
-    trials.iter().flat_map(|trial| of_trial(ship, trial, steps)).collect()
+pub(crate) fn compare_with_steps(
+    ship: &Ship,
+    trials: &[FreeRunning],
+    steps: f64,
+) -> Vec<FigureComparison> {
+    trials.iter().flat_map(|trial| trial_comparisons(ship, trial, steps)).collect()
 }
 
-fn of_trial(ship: &Ship, trial: &FreeRunning, steps: f64) -> Vec<Comparison> {
+fn trial_comparisons(ship: &Ship, trial: &FreeRunning, steps: f64) -> Vec<FigureComparison> {
     let usual = ManoeuvreSettings {
         speed_m_s: trial.speed_m_s,
         reversals_within_steps: true,
         ..ManoeuvreSettings::default()
     };
     // A ratio of 1 leaves the step to the settings.
-    let step_s = (steps != 1.0).then(|| steps * usual.step(ship));
+    let step_s = (steps != 1.0).then(|| steps * usual.step_length_s(ship));
     let settings = ManoeuvreSettings { step_s, ..usual };
     let turns = trial.turns.iter().flat_map(|published| {
-        let sailed = sides(published.rudder_deg, published.both_sides, |rudder| {
+        let sailed = side_means(published.rudder_deg, published.both_sides, |rudder| {
             turn_figures(ship, rudder, &settings)
         });
         turn_comparisons(&trial.source, published, sailed)
     });
     let zigzags = trial.zigzags.iter().flat_map(|published| {
-        let sailed = sides(published.rudder_deg, published.both_sides, |rudder| {
+        let sailed = side_means(published.rudder_deg, published.both_sides, |rudder| {
             zigzag_figures(ship, rudder, published.switch_deg, &settings)
         });
         zigzag_comparisons(&trial.source, published, sailed)
@@ -74,7 +78,7 @@ fn of_trial(ship: &Ship, trial: &FreeRunning, steps: f64) -> Vec<Comparison> {
 }
 
 /// Figures of a manoeuvre, or their means over both sides.
-fn sides<const N: usize>(
+fn side_means<const N: usize>(
     rudder_deg: f64,
     both: bool,
     sail: impl Fn(f64) -> [Option<f64>; N],
@@ -89,7 +93,7 @@ fn sides<const N: usize>(
 
 fn turn_figures(ship: &Ship, rudder_deg: f64, settings: &ManoeuvreSettings) -> [Option<f64>; 4] {
     // A manoeuvre that stops early has no figures; this is reported, not an error.
-    let Ok(sailed) = turn(ship, rudder_deg, settings) else { return [None; 4] };
+    let Ok(sailed) = simulate_turn(ship, rudder_deg, settings) else { return [None; 4] };
     let of = sailed.metrics;
     [of.advance_m, of.transfer_m, of.tactical_diameter_m, of.steady_radius_m]
         .map(|figure| figure.map(|metres| metres / ship.lpp_m()))
@@ -101,7 +105,7 @@ fn zigzag_figures(
     switch_deg: f64,
     settings: &ManoeuvreSettings,
 ) -> [Option<f64>; 2] {
-    match zigzag(ship, rudder_deg, switch_deg, settings) {
+    match simulate_zigzag(ship, rudder_deg, switch_deg, settings) {
         Ok(sailed) => [sailed.metrics.first_overshoot_deg, sailed.metrics.second_overshoot_deg],
         Err(_) => [None; 2],
     }
@@ -111,10 +115,10 @@ fn turn_comparisons(
     source: &str,
     turn: &PublishedTurn,
     sailed: [Option<f64>; 4],
-) -> Vec<Comparison> {
+) -> Vec<FigureComparison> {
     let one = |((name, published), sailed): ((&str, Option<f64>), Option<f64>)| {
         let published = published?;
-        Some(Comparison {
+        Some(FigureComparison {
             figure: format!("turn {} deg: {name}", turn.rudder_deg),
             unit: "L",
             source: source.to_owned(),
@@ -124,18 +128,18 @@ fn turn_comparisons(
             limit: TURN_SHARE * published.abs() + turn.uncertainty,
         })
     };
-    turn.figures().into_iter().zip(sailed).filter_map(one).collect()
+    turn.named_figures().into_iter().zip(sailed).filter_map(one).collect()
 }
 
 fn zigzag_comparisons(
     source: &str,
     zigzag: &PublishedZigzag,
     sailed: [Option<f64>; 2],
-) -> Vec<Comparison> {
+) -> Vec<FigureComparison> {
     let one = |((name, published), sailed): ((&str, Option<f64>), Option<f64>)| {
         let published = published?;
         let allowed = OVERSHOOT_DEG.max(OVERSHOOT_SHARE * published.abs());
-        Some(Comparison {
+        Some(FigureComparison {
             figure: format!("zigzag {}/{}: {name}", zigzag.rudder_deg, zigzag.switch_deg),
             unit: "deg",
             source: source.to_owned(),
@@ -145,5 +149,5 @@ fn zigzag_comparisons(
             limit: allowed + zigzag.uncertainty_deg,
         })
     };
-    zigzag.figures().into_iter().zip(sailed).filter_map(one).collect()
+    zigzag.named_figures().into_iter().zip(sailed).filter_map(one).collect()
 }

@@ -11,7 +11,7 @@ const NONE_STATED: &str = "none stated";
 
 /// A ship as a `Dataset` of schema.org (<https://schema.org/Dataset>).
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Dataset {
+pub struct CatalogueEntry {
     #[serde(rename = "@context")]
     context: &'static str,
     #[serde(rename = "@type")]
@@ -31,12 +31,12 @@ pub struct Dataset {
     pub models: Vec<String>,
     /// Sources of the figures.
     #[serde(rename = "isBasedOn")]
-    pub sources: Vec<Work>,
+    pub sources: Vec<CitedWork>,
 }
 
 /// A source of figures as a `CreativeWork`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Work {
+pub struct CitedWork {
     #[serde(rename = "@type")]
     kind: &'static str,
     /// Its key in the file.
@@ -55,9 +55,9 @@ pub struct Work {
     pub usage: Option<&'static str>,
 }
 
-impl Dataset {
+impl CatalogueEntry {
     /// Creates the entry of a vessel.
-    pub fn of(vessel: &Vessel) -> Self {
+    pub fn from_vessel(vessel: &Vessel) -> Self {
         let file = &vessel.file;
         let keywords = [Some(file.category.clone()), file.ship_type.clone()];
         Self {
@@ -65,20 +65,20 @@ impl Dataset {
             kind: "Dataset",
             identifier: file.name.clone(),
             name: file.title.clone(),
-            description: description(vessel),
+            description: vessel_description(vessel),
             keywords: keywords.into_iter().flatten().collect(),
             license: OWN_LICENCE,
             models: file.models.iter().map(|one| format!("{} ({})", one.name, one.law)).collect(),
             sources: file
                 .sources
                 .iter()
-                .map(|(key, source)| Work::of(key, source, file.licences.get(key)))
+                .map(|(key, source)| CitedWork::from_source(key, source, file.licences.get(key)))
                 .collect(),
         }
     }
 }
 
-fn description(vessel: &Vessel) -> String {
+fn vessel_description(vessel: &Vessel) -> String {
     let file = &vessel.file;
     let counted = |count: usize, one: &str, many: &str| match count {
         0 => format!("no {many}"),
@@ -97,8 +97,8 @@ fn description(vessel: &Vessel) -> String {
     )
 }
 
-impl Work {
-    fn of(key: &str, source: &Source, licence: Option<&String>) -> Self {
+impl CitedWork {
+    fn from_source(key: &str, source: &Source, licence: Option<&String>) -> Self {
         let stated = licence.filter(|licence| *licence != NONE_STATED);
         Self {
             kind: "CreativeWork",
@@ -109,7 +109,7 @@ impl Work {
                 .doi
                 .as_ref()
                 .map(|doi| format!("https://doi.org/{doi}"))
-                .or_else(|| repository(&source.citation)),
+                .or_else(|| repository_url(&source.citation)),
             license: stated.cloned(),
             usage: licence.filter(|licence| *licence == NONE_STATED).map(|_| NONE_STATED),
         }
@@ -117,7 +117,7 @@ impl Work {
 }
 
 /// The address of the repository in a citation.
-fn repository(citation: &str) -> Option<String> {
+fn repository_url(citation: &str) -> Option<String> {
     let place = &citation[citation.find("github.com/")?..];
     // The address ends at the first character that separates it from the rest of the citation.
     let end = place.find([',', ' ', ';', ')']).unwrap_or(place.len());
@@ -132,12 +132,12 @@ mod tests {
 
     #[test]
     fn an_entry_names_its_sources_and_their_terms() {
-        let zoo = Zoo::embedded().unwrap();
-        let entry = Dataset::of(zoo.vessel("tanker-173m").unwrap());
+        let zoo = Zoo::load_embedded().unwrap();
+        let entry = CatalogueEntry::from_vessel(zoo.vessel("tanker-173m").unwrap());
         assert_eq!(entry.sources[0].license.as_deref(), Some("MIT"));
         let url = entry.sources[0].url.as_deref();
         assert_eq!(url, Some("https://github.com/martinlarsalbert/VesselManoeuvringModels"));
-        let without = Dataset::of(zoo.vessel("fs-bitumen-1").unwrap());
+        let without = CatalogueEntry::from_vessel(zoo.vessel("fs-bitumen-1").unwrap());
         assert!(without.sources.iter().all(|work| work.license.is_none()));
         assert!(without.sources.iter().all(|work| work.usage == Some(NONE_STATED)));
         let trials = "1 manoeuvring model and 1 set of free-running trials";
@@ -151,9 +151,12 @@ mod tests {
             doi: Some("10.1/2".into()),
             note: None,
         };
-        assert_eq!(Work::of("a", &source, None).url.as_deref(), Some("https://doi.org/10.1/2"));
+        assert_eq!(
+            CitedWork::from_source("a", &source, None).url.as_deref(),
+            Some("https://doi.org/10.1/2")
+        );
         let apart = Source { doi: None, ..source };
-        let url = Work::of("a", &apart, None).url;
+        let url = CitedWork::from_source("a", &apart, None).url;
         assert_eq!(url.as_deref(), Some("https://github.com/some/where"));
     }
 }

@@ -14,7 +14,7 @@ pub enum Severity {
 
 /// One finding.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-pub struct Finding {
+pub struct ReviewFinding {
     /// Severity.
     pub severity: Severity,
     /// Field or model at fault.
@@ -23,14 +23,14 @@ pub struct Finding {
     pub message: String,
 }
 
-impl Finding {
+impl ReviewFinding {
     /// Creates a finding by which the file cannot be accepted as it is.
     pub fn refused(about: impl Into<String>, message: impl Into<String>) -> Self {
         Self { severity: Severity::Refused, about: about.into(), message: message.into() }
     }
 
     /// Creates a finding that a reviewer should check.
-    pub fn look(about: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn for_review(about: impl Into<String>, message: impl Into<String>) -> Self {
         Self { severity: Severity::Look, about: about.into(), message: message.into() }
     }
 }

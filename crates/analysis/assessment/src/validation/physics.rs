@@ -3,12 +3,14 @@
 //! alike on both sides.
 
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{Manoeuvre, ManoeuvreSettings, Sailed, sail_together};
+use sistership_simulation::manoeuvre::{
+    Manoeuvre, ManoeuvreSettings, SimulatedManoeuvre, simulate_manoeuvre_batch,
+};
 use sistership_simulation::metrics::TurningMetrics;
-use sistership_simulation::state::{at, speed};
+use sistership_simulation::state::{at, horizontal_speed};
 
-use crate::validation::appraisal::Appraisal;
-use crate::validation::finding::Finding;
+use crate::validation::appraisal::ModelAppraisal;
+use crate::validation::finding::ReviewFinding;
 use crate::validation::limits::{
     FIRST_OVERSHOOTS_DEG, HEADING_KEPT_DEG, SIDES_SHARE, SPEED_KEPT_SHARE, TACTICAL_DIAMETERS,
 };
@@ -17,27 +19,29 @@ use crate::validation::limits::{
 const STRAIGHT_LENGTHS: f64 = 10.0;
 
 /// Checks the behaviour of a model; `appraisal` has its standard manoeuvres.
-pub fn check(ship: &Ship, appraisal: &Appraisal) -> Vec<Finding> {
-    let about = format!("models.{}", short(&appraisal.model));
+pub fn check_physics(ship: &Ship, appraisal: &ModelAppraisal) -> Vec<ReviewFinding> {
+    let about = format!("models.{}", model_name(&appraisal.model));
     let failures = appraisal.manoeuvres.failures.iter();
-    let mut found: Vec<Finding> = failures
-        .map(|failure| Finding::refused(&about, format!("does not sail: {failure}")))
+    let mut found: Vec<ReviewFinding> = failures
+        .map(|failure| ReviewFinding::refused(&about, format!("does not sail: {failure}")))
         .collect();
-    found.extend(straight(ship, &about));
-    found.extend(drag(ship, &about));
-    found.extend(appraisal.manoeuvres.turns.iter().flat_map(|turn| turning(ship, turn, &about)));
-    found.extend(sides(&appraisal.manoeuvres.turns, &about));
-    found.extend(overshoots(appraisal, &about));
+    found.extend(straight_findings(ship, &about));
+    found.extend(drag_finding(ship, &about));
+    found.extend(
+        appraisal.manoeuvres.turns.iter().flat_map(|turn| turning_findings(ship, turn, &about)),
+    );
+    found.extend(side_finding(&appraisal.manoeuvres.turns, &about));
+    found.extend(overshoot_findings(appraisal, &about));
     found
 }
 
-fn short(model: &str) -> &str {
+fn model_name(model: &str) -> &str {
     model.split_once('/').map_or(model, |(_, name)| name)
 }
 
 /// A run with the rudder amidships at the model's own revolutions, from a share of its approach
 /// speed.
-fn run(ship: &Ship, share_of_speed: f64) -> Result<Sailed, String> {
+fn straight_run(ship: &Ship, share_of_speed: f64) -> Result<SimulatedManoeuvre, String> {
     let own = ship.approach_speed_m_s();
     let settings = ManoeuvreSettings {
         speed_m_s: Some(share_of_speed * own),
@@ -46,18 +50,22 @@ fn run(ship: &Ship, share_of_speed: f64) -> Result<Sailed, String> {
         ..ManoeuvreSettings::default()
     };
     let ahead = (Manoeuvre::Turn { rudder: 0.0 }, &[][..]);
-    sail_together(ship, &[ahead], &settings).remove(0).map_err(|stopped| stopped.to_string())
+    simulate_manoeuvre_batch(ship, &[ahead], &settings)
+        .remove(0)
+        .map_err(|stopped| stopped.to_string())
 }
 
-fn straight(ship: &Ship, about: &str) -> Vec<Finding> {
-    let sailed = match run(ship, 1.0) {
+fn straight_findings(ship: &Ship, about: &str) -> Vec<ReviewFinding> {
+    let sailed = match straight_run(ship, 1.0) {
         Ok(sailed) => sailed,
-        Err(stopped) => return vec![Finding::refused(about, format!("straight on: {stopped}"))],
+        Err(stopped) => {
+            return vec![ReviewFinding::refused(about, format!("straight on: {stopped}"))];
+        }
     };
     let Some(last) = sailed.after.last() else { return Vec::new() };
     let own = ship.approach_speed_m_s();
     let mut found = Vec::new();
-    let changed = speed(last) / own - 1.0;
+    let changed = horizontal_speed(last) / own - 1.0;
     // At its own revolutions a balanced model keeps its approach speed.
     if changed.abs() > SPEED_KEPT_SHARE {
         let message = format!(
@@ -65,7 +73,7 @@ fn straight(ship: &Ship, about: &str) -> Vec<Finding> {
              do revolutions, thrust and resistance balance at {own} m/s?",
             100.0 * changed
         );
-        found.push(Finding::look(about, message));
+        found.push(ReviewFinding::for_review(about, message));
     }
     let turned = last[at::PSI].to_degrees();
     if turned.abs() > HEADING_KEPT_DEG {
@@ -73,17 +81,17 @@ fn straight(ship: &Ship, about: &str) -> Vec<Finding> {
             "with the rudder amidships the heading changes by {turned:.1} deg in \
              {STRAIGHT_LENGTHS} lengths: is that meant?"
         );
-        found.push(Finding::look(about, message));
+        found.push(ReviewFinding::for_review(about, message));
     }
     found
 }
 
 /// Finding if a ship above its approach speed, at the revolutions of the approach, does not slow
 /// down.
-fn drag(ship: &Ship, about: &str) -> Option<Finding> {
-    let fast = run(ship, 1.1).ok()?;
-    let slow = run(ship, 0.9).ok()?;
-    let ended = |sailed: &Sailed| sailed.after.last().map(speed);
+fn drag_finding(ship: &Ship, about: &str) -> Option<ReviewFinding> {
+    let fast = straight_run(ship, 1.1).ok()?;
+    let slow = straight_run(ship, 0.9).ok()?;
+    let ended = |sailed: &SimulatedManoeuvre| sailed.after.last().map(horizontal_speed);
     let (from_fast, from_slow) = (ended(&fast)?, ended(&slow)?);
     let own = ship.approach_speed_m_s();
     let apart = from_fast - from_slow;
@@ -96,15 +104,15 @@ fn drag(ship: &Ship, about: &str) -> Option<Finding> {
         "runs begun at 1.1 and 0.9 of {own} m/s are {apart:.3} m/s apart after {STRAIGHT_LENGTHS} \
          lengths: resistance does not grow with speed (is X_u of the right sign?)"
     );
-    Some(Finding::refused(about, message))
+    Some(ReviewFinding::refused(about, message))
 }
 
-fn turning(ship: &Ship, turn: &TurningMetrics, about: &str) -> Vec<Finding> {
+fn turning_findings(ship: &Ship, turn: &TurningMetrics, about: &str) -> Vec<ReviewFinding> {
     let mut found = Vec::new();
     let name = format!("turn {} deg", turn.rudder_deg);
     // A turn to the wrong side never reaches 180 deg to the side of the rudder.
     match turn.tactical_diameter_m {
-        None => found.push(Finding::refused(
+        None => found.push(ReviewFinding::refused(
             about,
             format!(
                 "{name}: the heading does not change by 180 deg to the side of the rudder; \
@@ -115,18 +123,18 @@ fn turning(ship: &Ship, turn: &TurningMetrics, about: &str) -> Vec<Finding> {
             let lengths = diameter / ship.lpp_m();
             if !TACTICAL_DIAMETERS.contains(&lengths) {
                 let message = format!("{name}: tactical diameter {lengths:.2} L");
-                found.push(Finding::look(about, message));
+                found.push(ReviewFinding::for_review(about, message));
             }
         }
     }
     if turn.speed_loss_m_s < 0.0 {
         let message = format!("{name}: the ship gains {:.3} m/s in the turn", -turn.speed_loss_m_s);
-        found.push(Finding::refused(about, message));
+        found.push(ReviewFinding::refused(about, message));
     }
     found
 }
 
-fn sides(turns: &[TurningMetrics], about: &str) -> Option<Finding> {
+fn side_finding(turns: &[TurningMetrics], about: &str) -> Option<ReviewFinding> {
     let diameter = |starboard: bool| {
         let side = |turn: &&TurningMetrics| (turn.rudder_deg > 0.0) == starboard;
         turns.iter().find(side)?.tactical_diameter_m
@@ -139,11 +147,11 @@ fn sides(turns: &[TurningMetrics], about: &str) -> Option<Finding> {
             "tactical diameter {starboard:.1} m to starboard, {port:.1} m to port: {:.0} % apart",
             100.0 * apart
         );
-        Finding::look(about, message)
+        ReviewFinding::for_review(about, message)
     })
 }
 
-fn overshoots(appraisal: &Appraisal, about: &str) -> Vec<Finding> {
+fn overshoot_findings(appraisal: &ModelAppraisal, about: &str) -> Vec<ReviewFinding> {
     let odd = |zigzag: &&sistership_simulation::metrics::ZigzagMetrics| {
         zigzag.first_overshoot_deg.is_none_or(|angle| !FIRST_OVERSHOOTS_DEG.contains(&angle))
     };
@@ -151,7 +159,7 @@ fn overshoots(appraisal: &Appraisal, about: &str) -> Vec<Finding> {
         let angle =
             zigzag.first_overshoot_deg.map_or("none".into(), |angle| format!("{angle:.1} deg"));
         let name = format!("zigzag {}/{}", zigzag.rudder_deg, zigzag.switch_deg);
-        Finding::look(about, format!("{name}: first overshoot {angle}"))
+        ReviewFinding::for_review(about, format!("{name}: first overshoot {angle}"))
     };
     appraisal.manoeuvres.zigzags.iter().filter(odd).map(said).collect()
 }

@@ -7,7 +7,7 @@ use sistership_model::{Model, Vessel};
 use sistership_simulation::{PlantError, Ship};
 use utoipa::ToSchema;
 
-use crate::validation::quantity::{Evidence, ValidatedQuantity, Verdict};
+use crate::validation::quantity::{QuantityEvidence, ValidatedQuantity, Verdict};
 use crate::validation::trial_of_ship::TrialOfShip;
 use crate::validation::{published, recorded};
 
@@ -30,7 +30,7 @@ pub struct Validation {
 
 impl Validation {
     /// Returns the number of quantities with a verdict.
-    pub fn count(&self, verdict: Verdict) -> usize {
+    pub fn count_verdicts(&self, verdict: Verdict) -> usize {
         self.quantities.iter().filter(|one| one.verdict == verdict).count()
     }
 }
@@ -47,29 +47,34 @@ pub fn validate(
     draws: &[Model],
     trials: &[TrialOfShip<'_>],
 ) -> Result<Validation, PlantError> {
-    let ship = ready(model, law)?;
-    let sisters = draws.iter().map(|draw| ready(draw, law)).collect::<Result<Vec<_>, _>>()?;
+    let ship = unrestricted_ship(model, law)?;
+    let sisters =
+        draws.iter().map(|draw| unrestricted_ship(draw, law)).collect::<Result<Vec<_>, _>>()?;
     // Published figures first, then recorded trials.
-    let mut evidence = published::evidence(&ship, &sisters, &vessel.file.free_running);
-    evidence.extend(recorded::evidence(&ship, &sisters, trials));
+    let mut evidence = published::published_evidence(&ship, &sisters, &vessel.file.free_running);
+    evidence.extend(recorded::recorded_evidence(&ship, &sisters, trials));
     Ok(Validation {
         procedure: "ITTC 7.5-02-06-03".to_owned(),
         model: model.name.clone(),
         law: law.name.clone(),
         draws: draws.len(),
-        remarks: remarks(&evidence, draws, trials),
+        remarks: validation_remarks(&evidence, draws, trials),
         quantities: evidence.into_iter().map(ValidatedQuantity::from).collect(),
     })
 }
 
 /// The ship without the range of its trials: trials outside it are validated, too.
-fn ready(model: &Model, law: &Law) -> Result<Ship, PlantError> {
+fn unrestricted_ship(model: &Model, law: &Law) -> Result<Ship, PlantError> {
     let mut ship = Ship::new(model, law)?;
-    ship.forget_validity();
+    ship.disable_excursions();
     Ok(ship)
 }
 
-fn remarks(evidence: &[Evidence], draws: &[Model], trials: &[TrialOfShip<'_>]) -> Vec<String> {
+fn validation_remarks(
+    evidence: &[QuantityEvidence],
+    draws: &[Model],
+    trials: &[TrialOfShip<'_>],
+) -> Vec<String> {
     let mut remarks = Vec::new();
     if evidence.is_empty() {
         remarks.push(

@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 /// Data, simulation and uncertainties of a quantity before its verdict. Uncertainties are half the
 /// width of intervals of 95 %, in the unit of the quantity.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Evidence {
+pub struct QuantityEvidence {
     /// The quantity: `turn 35 deg: advance`.
     pub quantity: String,
     /// Its unit: `L`, `m`, `deg`, `s`.
@@ -80,7 +80,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// Returns the verdict in words.
-    pub fn words(self) -> &'static str {
+    pub fn as_words(self) -> &'static str {
         match self {
             Self::Validated => "validated at U_V",
             Self::NotValidated => "not validated: an error of the model",
@@ -90,8 +90,8 @@ impl Verdict {
     }
 }
 
-impl From<Evidence> for ValidatedQuantity {
-    fn from(of: Evidence) -> Self {
+impl From<QuantityEvidence> for ValidatedQuantity {
+    fn from(of: QuantityEvidence) -> Self {
         let error = of.simulated.map(|simulated| of.data - simulated);
         let parts = [of.data_uncertainty, of.step_uncertainty, of.input_uncertainty];
         let squares: f64 = parts.iter().flatten().map(|part| part * part).sum();
@@ -176,8 +176,8 @@ mod tests {
     /// step within 0.02 L, the posterior within 0.09 L. E = 0.20, U_V^2 = 0.0100 + 0.0004 + 0.0081
     /// =
     /// 0.0185, U_V = 0.13601; in % of D: 6.154 and 4.185. |E| > U_V.
-    fn by_hand() -> Evidence {
-        Evidence {
+    fn by_hand() -> QuantityEvidence {
+        QuantityEvidence {
             quantity: "turn 35 deg: tactical diameter".into(),
             unit: "L",
             data_from: "by hand".into(),
@@ -202,20 +202,23 @@ mod tests {
         assert!(close(judged.comparison_error_percent, 6.153_846));
         assert!(close(judged.validation_uncertainty_percent, 4.185_068));
         assert_eq!(judged.verdict, Verdict::NotValidated);
-        let nearer = ValidatedQuantity::from(Evidence { simulated: Some(3.38), ..by_hand() });
+        let nearer =
+            ValidatedQuantity::from(QuantityEvidence { simulated: Some(3.38), ..by_hand() });
         assert!(close(nearer.comparison_error, -0.13));
         assert_eq!(nearer.verdict, Verdict::Validated);
     }
 
     #[test]
     fn what_is_not_known_is_not_claimed() {
-        let bare = Evidence { input_uncertainty: None, ..by_hand() };
+        let bare = QuantityEvidence { input_uncertainty: None, ..by_hand() };
         assert_eq!(ValidatedQuantity::from(bare.clone()).verdict, Verdict::AboveWhatIsKnown);
-        let near = ValidatedQuantity::from(Evidence { simulated: Some(3.20), ..bare.clone() });
+        let near =
+            ValidatedQuantity::from(QuantityEvidence { simulated: Some(3.20), ..bare.clone() });
         assert_eq!(near.verdict, Verdict::Validated);
-        let alone = ValidatedQuantity::from(Evidence { data_uncertainty: None, ..bare.clone() });
+        let alone =
+            ValidatedQuantity::from(QuantityEvidence { data_uncertainty: None, ..bare.clone() });
         assert_eq!((alone.verdict, alone.validation_uncertainty), (Verdict::Undecided, None));
-        let unsailed = ValidatedQuantity::from(Evidence { simulated: None, ..bare });
+        let unsailed = ValidatedQuantity::from(QuantityEvidence { simulated: None, ..bare });
         assert_eq!((unsailed.verdict, unsailed.comparison_error), (Verdict::Undecided, None));
     }
 

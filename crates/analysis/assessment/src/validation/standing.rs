@@ -3,12 +3,12 @@
 use serde::Serialize;
 use sistership_model::vessel::Status;
 
-use crate::validation::comparison::Comparison;
+use crate::validation::comparison::FigureComparison;
 
 /// Validation status of a model, by the origin of its figures and the published trials of its ship.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Standing {
+pub enum ValidationStatus {
     /// Every published free-running figure of the ship is within [`crate::validation::limits`].
     Validated,
     /// The coefficients are measured or computed, and no free-running figure of the ship is known.
@@ -20,10 +20,10 @@ pub enum Standing {
     Estimated,
 }
 
-impl Standing {
+impl ValidationStatus {
     /// Returns the status for an origin of the figures and the comparisons.
-    pub fn of(origin: Status, comparisons: &[Comparison]) -> Self {
-        match (comparisons.is_empty(), comparisons.iter().all(Comparison::is_within)) {
+    pub fn from_comparisons(origin: Status, comparisons: &[FigureComparison]) -> Self {
+        match (comparisons.is_empty(), comparisons.iter().all(FigureComparison::is_within)) {
             (false, true) => Self::Validated,
             (false, false) => Self::Disputed,
             (true, _) if matches!(origin, Status::Estimated | Status::Transferred) => {
@@ -34,7 +34,7 @@ impl Standing {
     }
 
     /// Returns the word for reports.
-    pub fn word(self) -> &'static str {
+    pub fn as_word(self) -> &'static str {
         match self {
             Self::Validated => "validated",
             Self::Published => "published",
@@ -48,8 +48,8 @@ impl Standing {
 mod tests {
     use super::*;
 
-    fn figure(sailed: f64) -> Comparison {
-        Comparison {
+    fn figure(sailed: f64) -> FigureComparison {
+        FigureComparison {
             figure: "turn 35 deg: advance".into(),
             unit: "L",
             source: "a".into(),
@@ -62,12 +62,27 @@ mod tests {
 
     #[test]
     fn a_standing_follows_from_origin_and_trials() {
-        assert_eq!(Standing::of(Status::Published, &[]), Standing::Published);
-        assert_eq!(Standing::of(Status::Estimated, &[]), Standing::Estimated);
-        assert_eq!(Standing::of(Status::Estimated, &[figure(3.3)]), Standing::Validated);
+        assert_eq!(
+            ValidationStatus::from_comparisons(Status::Published, &[]),
+            ValidationStatus::Published
+        );
+        assert_eq!(
+            ValidationStatus::from_comparisons(Status::Estimated, &[]),
+            ValidationStatus::Estimated
+        );
+        assert_eq!(
+            ValidationStatus::from_comparisons(Status::Estimated, &[figure(3.3)]),
+            ValidationStatus::Validated
+        );
         let mixed = [figure(3.3), figure(3.5)];
-        assert_eq!(Standing::of(Status::Published, &mixed), Standing::Disputed);
-        let unsailed = [Comparison { sailed: None, ..figure(3.0) }];
-        assert_eq!(Standing::of(Status::Published, &unsailed), Standing::Disputed);
+        assert_eq!(
+            ValidationStatus::from_comparisons(Status::Published, &mixed),
+            ValidationStatus::Disputed
+        );
+        let unsailed = [FigureComparison { sailed: None, ..figure(3.0) }];
+        assert_eq!(
+            ValidationStatus::from_comparisons(Status::Published, &unsailed),
+            ValidationStatus::Disputed
+        );
     }
 }

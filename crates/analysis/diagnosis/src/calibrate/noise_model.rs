@@ -4,18 +4,18 @@ use rayon::prelude::*;
 use sistership_model::trial::Channel;
 
 use super::super::coefficient_prior::CoefficientPrior;
-use super::super::evidence::not_positive;
+use super::super::evidence::not_positive_error;
 use super::super::linearised_trials::LinearisedTrials;
 use super::super::thresholds::THRESHOLDS;
-use super::trial_information::{TrialInformation, shift};
-use sistership_filtering::{Discrepancies, Linearised, Noise, deviances};
+use super::trial_information::{TrialInformation, expected_columns};
+use sistership_filtering::{AxisDiscrepancies, InstrumentNoise, LinearisedPart, part_deviances};
 use sistership_identification::refine::RefineError;
 
 /// Discrepancies of accelerations and noise of instruments.
 #[derive(Debug, Clone)]
 pub(super) struct NoiseModel {
-    pub discrepancies: Discrepancies,
-    pub noise: Noise,
+    pub discrepancies: AxisDiscrepancies,
+    pub noise: InstrumentNoise,
 }
 
 /// One parameter of a noise model.
@@ -28,9 +28,9 @@ enum NoiseParameter {
 }
 
 impl NoiseModel {
-    fn times(&self, number: NoiseParameter, factor: f64) -> Self {
+    fn with_scaled_parameter(&self, number: NoiseParameter, factor: f64) -> Self {
         let mut changed = self.clone();
-        let instrument = |noise: &mut Noise, channel| {
+        let instrument = |noise: &mut InstrumentNoise, channel| {
             noise.remove(&channel).map(|instrument| (channel, instrument))
         };
         match number {
@@ -52,7 +52,7 @@ impl NoiseModel {
         changed
     }
 
-    fn numbers(&self) -> Vec<NoiseParameter> {
+    fn parameter_list(&self) -> Vec<NoiseParameter> {
         let axes = 0..self.discrepancies.len();
         let of_axes =
             axes.flat_map(|axis| [NoiseParameter::Deviation(axis), NoiseParameter::White(axis)]);
@@ -72,7 +72,7 @@ impl NoiseModel {
 ///
 /// # Errors
 /// Returns an error if the information is not positive.
-pub(super) fn most_probable(
+pub(super) fn most_probable_noise(
     workspace: &LinearisedTrials<'_>,
     fixed: &CoefficientPrior,
     (start, economical): (Option<NoiseModel>, bool),
@@ -85,102 +85,108 @@ pub(super) fn most_probable(
     let first = if start.is_some() { rounds.len() - 1 } else { 0 };
     let mut best = match start {
         Some(start) => start,
-        None => coarse(workspace)?,
+        None => coarse_noise_model(workspace)?,
     };
     for factors in &rounds[first..] {
-        let coefficients = coefficients(workspace, fixed, &best)?.ok_or_else(not_positive)?;
-        best = refined(workspace, best, &coefficients, factors)?;
+        let coefficients =
+            coefficients_per_trial(workspace, fixed, &best)?.ok_or_else(not_positive_error)?;
+        best = refine_noise_model(workspace, best, &coefficients, factors)?;
     }
     Ok(best)
 }
 
 /// Best of a few levels of discrepancy, the same for all axes.
-fn coarse(workspace: &LinearisedTrials<'_>) -> Result<NoiseModel, RefineError> {
+fn coarse_noise_model(workspace: &LinearisedTrials<'_>) -> Result<NoiseModel, RefineError> {
     // Coefficients are not shifted yet: the first level needs no fit.
     let as_it_is = vec![vec![0.0; workspace.columns().len()]; workspace.trials.len()];
-    let (scales, parts) = (workspace.scales(), along(workspace, &as_it_is));
+    let (scales, parts) = (workspace.motion_scales(), combine_parts(workspace, &as_it_is));
     let at = |level: &f64| NoiseModel {
-        discrepancies: scales.discrepancies(*level),
+        discrepancies: scales.level_discrepancies(*level),
         noise: workspace.noise.clone(),
     };
-    let scored = |tried: NoiseModel| Ok((deviance(&parts, &tried)?, tried));
+    let scored = |tried: NoiseModel| Ok((total_deviance(&parts, &tried)?, tried));
     let levels = THRESHOLDS.calibration.first_levels.iter();
-    let all: Vec<Scored> = levels.map(at).map(scored).collect::<Result<_, RefineError>>()?;
+    let all: Vec<ScoredNoiseModel> =
+        levels.map(at).map(scored).collect::<Result<_, RefineError>>()?;
     let best = all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
-    best.map(|(_, best)| best).ok_or_else(not_positive)
+    best.map(|(_, best)| best).ok_or_else(not_positive_error)
 }
 
 /// Coefficients of each trial by the others; those of a single trial, by itself.
-fn coefficients(
+fn coefficients_per_trial(
     workspace: &LinearisedTrials<'_>,
     fixed: &CoefficientPrior,
     scatter: &NoiseModel,
 ) -> Result<Option<Vec<Vec<f64>>>, RefineError> {
-    let grams = workspace.coefficients_under(&scatter.noise, &scatter.discrepancies)?;
+    let grams = workspace.coefficient_products_under(&scatter.noise, &scatter.discrepancies)?;
     let known = TrialInformation { fixed, grams: &grams, scatter: 1.0 };
-    let others = if grams.len() == 1 { vec![known.all()] } else { known.but_one() };
-    Ok(others.iter().map(|others| shift(others, workspace.columns().len())).collect())
+    let others =
+        if grams.len() == 1 { vec![known.total_information()] } else { known.leave_one_out() };
+    Ok(others.iter().map(|others| expected_columns(others, workspace.columns().len())).collect())
 }
 
 /// Parts of trials with all columns combined into one.
-type LinearisedParts = Vec<Vec<Linearised>>;
+type LinearisedParts = Vec<Vec<LinearisedPart>>;
 
-fn along(workspace: &LinearisedTrials<'_>, parameters: &[Vec<f64>]) -> LinearisedParts {
-    let along = |(parts, of): (&Vec<Linearised>, &Vec<f64>)| {
-        parts.iter().map(|part| part.along(of)).collect()
+fn combine_parts(workspace: &LinearisedTrials<'_>, parameters: &[Vec<f64>]) -> LinearisedParts {
+    let along = |(parts, of): (&Vec<LinearisedPart>, &Vec<f64>)| {
+        parts.iter().map(|part| part.combine_columns(of)).collect()
     };
-    workspace.linear().par_iter().zip(parameters).map(along).collect()
+    workspace.linearised_parts().par_iter().zip(parameters).map(along).collect()
 }
 
 /// Minus twice the logarithm of the likelihood.
-fn deviance(parts: &LinearisedParts, scatter: &NoiseModel) -> Result<f64, RefineError> {
-    let all: Vec<&Linearised> = parts.iter().flatten().collect();
-    let mut each = deviances(&all, &scatter.noise, &scatter.discrepancies)?.into_iter();
+fn total_deviance(parts: &LinearisedParts, scatter: &NoiseModel) -> Result<f64, RefineError> {
+    let all: Vec<&LinearisedPart> = parts.iter().flatten().collect();
+    let mut each = part_deviances(&all, &scatter.noise, &scatter.discrepancies)?.into_iter();
     // Summed in order: the same on any number of threads.
     let trials = parts.iter().map(|parts| each.by_ref().take(parts.len()).sum::<f64>());
     Ok(trials.collect::<Vec<_>>().iter().sum())
 }
 
 /// Improves each parameter alone while the deviance falls.
-fn refined(
+fn refine_noise_model(
     workspace: &LinearisedTrials<'_>,
     start: NoiseModel,
     coefficients: &[Vec<f64>],
     factors: &[f64],
 ) -> Result<NoiseModel, RefineError> {
-    let parts = along(workspace, coefficients);
+    let parts = combine_parts(workspace, coefficients);
     let scored =
         |tried: NoiseModel, number: NoiseParameter| match is_possible(workspace, &tried, number) {
-            true => Ok(Some((deviance(&parts, &tried)?, tried))),
+            true => Ok(Some((total_deviance(&parts, &tried)?, tried))),
             false => Ok(None),
         };
-    let mut best = (deviance(&parts, &start)?, start);
+    let mut best = (total_deviance(&parts, &start)?, start);
     // Coordinate descent: coarse factors first, every parameter in turn.
     for factor in factors {
-        for number in best.1.numbers() {
-            best = multiplied(best, number, *factor, &scored)?;
+        for number in best.1.parameter_list() {
+            best = descend_parameter(best, number, *factor, &scored)?;
         }
     }
     Ok(best.1)
 }
 
 /// A noise model with its deviance.
-type Scored = (f64, NoiseModel);
+type ScoredNoiseModel = (f64, NoiseModel);
 
 /// Multiplies or divides one parameter by a factor while that improves the deviance. Both
 /// directions are evaluated together; after a step in one direction, the other would lead back.
-fn multiplied(
-    best: Scored,
+fn descend_parameter(
+    best: ScoredNoiseModel,
     number: NoiseParameter,
     factor: f64,
-    scored: &(dyn Fn(NoiseModel, NoiseParameter) -> Result<Option<Scored>, RefineError> + Sync),
-) -> Result<Scored, RefineError> {
-    let better = |from: &Scored, by: f64| -> Result<Option<Scored>, RefineError> {
-        let most = from.0 - THRESHOLDS.calibration.least_gain;
-        // A deviance that is not a number fails the comparison.
-        let tried = scored(from.1.times(number, by), number)?;
-        Ok(tried.filter(|(deviance, _)| *deviance <= most))
-    };
+    scored: &(
+         dyn Fn(NoiseModel, NoiseParameter) -> Result<Option<ScoredNoiseModel>, RefineError> + Sync
+     ),
+) -> Result<ScoredNoiseModel, RefineError> {
+    let better =
+        |from: &ScoredNoiseModel, by: f64| -> Result<Option<ScoredNoiseModel>, RefineError> {
+            let most = from.0 - THRESHOLDS.calibration.least_gain;
+            // A deviance that is not a number fails the comparison.
+            let tried = scored(from.1.with_scaled_parameter(number, by), number)?;
+            Ok(tried.filter(|(deviance, _)| *deviance <= most))
+        };
     let (more, less) = rayon::join(|| better(&best, factor), || better(&best, factor.recip()));
     let (by, mut best) = match (more?, less?) {
         (Some(more), _) => (factor, more),

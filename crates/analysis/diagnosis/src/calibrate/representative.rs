@@ -17,17 +17,17 @@ const PLACE: [Channel; 3] = [Channel::X, Channel::Y, Channel::Psi];
 
 /// Indices, in order, of trials that together have about `samples` samples; all of them where they
 /// have no more than that, and at least [`LEAST`].
-pub(super) fn representative(trials: &[&Trial], samples: usize) -> Vec<usize> {
+pub(super) fn representative_trials(trials: &[&Trial], samples: usize) -> Vec<usize> {
     let all = 0..trials.len();
     if trials.iter().map(|trial| trial.len()).sum::<usize>() <= samples {
         return all.collect();
     }
     // Distances are between the standardised moments of the trials.
-    let points = scaled(trials.iter().map(|trial| signature(trial)).collect());
+    let points = standardise_moments(trials.iter().map(|trial| channel_moments(trial)).collect());
     let mut taken: Vec<usize> = Vec::new();
     let mut left: Vec<usize> = all.collect();
     let mut sum = 0;
-    while let Some(next) = farthest(&points, &taken, &left) {
+    while let Some(next) = farthest_trial(&points, &taken, &left) {
         let place = left.swap_remove(next);
         sum += trials[place].len();
         // The limit is passed only as far as the fewest trials need.
@@ -41,7 +41,7 @@ pub(super) fn representative(trials: &[&Trial], samples: usize) -> Vec<usize> {
 }
 
 /// Mean and standard deviation of each channel of the ship's motion and steering.
-fn signature(trial: &Trial) -> BTreeMap<Channel, [f64; 2]> {
+fn channel_moments(trial: &Trial) -> BTreeMap<Channel, [f64; 2]> {
     let recorded = trial.channels.iter().filter(|(channel, _)| !PLACE.contains(channel));
     let moments = |values: &Vec<f64>| {
         let count = values.len().max(1) as f64;
@@ -54,9 +54,9 @@ fn signature(trial: &Trial) -> BTreeMap<Channel, [f64; 2]> {
 
 /// Coordinates of each trial, one per moment, scaled to a standard deviation of one over the
 /// trials; a channel that a trial did not record has the mean of the others.
-fn scaled(signatures: Vec<BTreeMap<Channel, [f64; 2]>>) -> Vec<Vec<f64>> {
+fn standardise_moments(signatures: Vec<BTreeMap<Channel, [f64; 2]>>) -> Vec<Vec<f64>> {
     let mut points = vec![Vec::new(); signatures.len()];
-    for channel in Channel::all() {
+    for channel in Channel::all_channels() {
         // Mean and standard deviation of a channel are separate coordinates.
         for part in 0..2 {
             let of = |of: &BTreeMap<Channel, [f64; 2]>| of.get(&channel).map(|both| both[part]);
@@ -78,7 +78,7 @@ fn scaled(signatures: Vec<BTreeMap<Channel, [f64; 2]>>) -> Vec<Vec<f64>> {
 
 /// Index in `left` of the trial farthest from those selected; of the first, the one nearest to the
 /// mean, which is the origin.
-fn farthest(points: &[Vec<f64>], taken: &[usize], left: &[usize]) -> Option<usize> {
+fn farthest_trial(points: &[Vec<f64>], taken: &[usize], left: &[usize]) -> Option<usize> {
     let square = |point: &[f64]| point.iter().map(|x| x * x).sum::<f64>();
     let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>();
     let worth = |&place: &usize| {
@@ -105,7 +105,7 @@ mod tests {
     fn few_samples_are_all_taken() {
         let trials = [sailed(0.1, 10), sailed(0.2, 10)];
         let trials: Vec<&Trial> = trials.iter().collect();
-        assert_eq!(representative(&trials, 20), [0, 1]);
+        assert_eq!(representative_trials(&trials, 20), [0, 1]);
     }
 
     #[test]
@@ -114,15 +114,15 @@ mod tests {
         let rates = common.chain([-0.5, 0.5]);
         let trials: Vec<Trial> = rates.map(|rate| sailed(rate, 10)).collect();
         let trials: Vec<&Trial> = trials.iter().collect();
-        let taken = representative(&trials, 70);
+        let taken = representative_trials(&trials, 70);
         assert_eq!(taken.len(), 7);
         assert!(taken.contains(&10) && taken.contains(&11), "{taken:?}");
-        assert_eq!(representative(&trials, 10).len(), LEAST);
+        assert_eq!(representative_trials(&trials, 10).len(), LEAST);
     }
 
     #[test]
     fn one_trial_is_taken_however_long() {
         let trial = sailed(0.1, 100);
-        assert_eq!(representative(&[&trial], 10), [0]);
+        assert_eq!(representative_trials(&[&trial], 10), [0]);
     }
 }

@@ -6,12 +6,12 @@ use nalgebra::Cholesky;
 use rayon::prelude::*;
 
 use super::super::coefficient_prior::CoefficientPrior;
-use sistership_filtering::Gram;
+use sistership_filtering::GramMatrix;
 
 /// Information on the coefficients, trial by trial.
 pub(super) struct TrialInformation<'a> {
     pub fixed: &'a CoefficientPrior,
-    pub grams: &'a [Gram],
+    pub grams: &'a [GramMatrix],
     /// Factor by which coefficients differ more from trial to trial than the information of each
     /// trial implies (a variance ratio).
     pub scatter: f64,
@@ -19,26 +19,26 @@ pub(super) struct TrialInformation<'a> {
 
 impl TrialInformation<'_> {
     /// Information of the prior and all trials.
-    pub fn all(&self) -> CoefficientPrior {
-        self.with(self.fixed.clone(), 0..self.grams.len())
+    pub fn total_information(&self) -> CoefficientPrior {
+        self.add_trials(self.fixed.clone(), 0..self.grams.len())
     }
 
     /// Information of the prior and all trials but one, for each of them; of a single trial, the
     /// prior. Trials are added in their order, those before one only once for all that follow.
-    pub fn but_one(&self) -> Vec<CoefficientPrior> {
+    pub fn leave_one_out(&self) -> Vec<CoefficientPrior> {
         let count = self.grams.len();
         // Prefix sums: the information of the prior and all trials before each one.
         let mut before = vec![self.fixed.clone()];
         for trial in 1..count {
-            before.push(self.with(before[trial - 1].clone(), trial - 1..trial));
+            before.push(self.add_trials(before[trial - 1].clone(), trial - 1..trial));
         }
         before.truncate(count);
         let others = before.into_par_iter().enumerate();
-        others.map(|(trial, before)| self.with(before, trial + 1..count)).collect()
+        others.map(|(trial, before)| self.add_trials(before, trial + 1..count)).collect()
     }
 
     /// Adds the information of some trials to a prior.
-    fn with(&self, mut known: CoefficientPrior, trials: Range<usize>) -> CoefficientPrior {
+    fn add_trials(&self, mut known: CoefficientPrior, trials: Range<usize>) -> CoefficientPrior {
         let size = known.weighted_mean.len();
         // In place: as expressions these would be two new matrices a trial.
         for gram in &self.grams[trials] {
@@ -54,10 +54,11 @@ impl TrialInformation<'_> {
     /// Ratio of the residual that a trial's own coefficients explain, after a fit on the others, to
     /// that expected by chance: one where the law is right, more where the information is
     /// overconfident.
-    pub fn scatter(&self) -> f64 {
-        let own = |(gram, others): (&Gram, CoefficientPrior)| own(gram, &others);
+    pub fn variance_ratio(&self) -> f64 {
+        let own =
+            |(gram, others): (&GramMatrix, CoefficientPrior)| explained_by_trial(gram, &others);
         let each: Vec<Option<(f64, f64)>> =
-            self.grams.par_iter().zip(self.but_one()).map(own).collect();
+            self.grams.par_iter().zip(self.leave_one_out()).map(own).collect();
         // Summed in order: the same on any number of threads.
         let sum =
             each.into_iter().flatten().fold((0.0, 0.0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
@@ -68,9 +69,9 @@ impl TrialInformation<'_> {
 
 /// Residual of a trial that its own coefficients would explain after a fit on the others, and the
 /// part expected by chance.
-fn own(gram: &Gram, others: &CoefficientPrior) -> Option<(f64, f64)> {
+fn explained_by_trial(gram: &GramMatrix, others: &CoefficientPrior) -> Option<(f64, f64)> {
     let size = others.weighted_mean.len();
-    let mean = others.mean()?;
+    let mean = others.expected_change()?;
     let products = gram.products.view((1, 1), (size, size));
     // The gradient left by the others' mean, b - A m, and the improvement g' (A + L)^-1 g with the
     // prior L.
@@ -80,8 +81,8 @@ fn own(gram: &Gram, others: &CoefficientPrior) -> Option<(f64, f64)> {
 }
 
 /// Change of the coefficients by an information; all effects absent.
-pub(super) fn shift(known: &CoefficientPrior, width: usize) -> Option<Vec<f64>> {
-    let mut shift = known.mean()?.as_slice().to_vec();
+pub(super) fn expected_columns(known: &CoefficientPrior, width: usize) -> Option<Vec<f64>> {
+    let mut shift = known.expected_change()?.as_slice().to_vec();
     shift.resize(width, 0.0);
     Some(shift)
 }

@@ -13,7 +13,7 @@ mod windows;
 use std::collections::BTreeMap;
 
 use super::hypothesis::JudgedHypothesis;
-use super::outcome::{Change, ChangeCourse, Unexplained};
+use super::outcome::{ChangeCourse, EffectChange, UnexplainedSegment};
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::EffectCandidate;
@@ -30,21 +30,22 @@ use of_trial::ChangeSearch;
 ///
 /// # Errors
 /// Returns an error that names what a trial lacks.
-pub(super) fn changes(
+pub(super) fn find_changes(
     (search, best, listed): (&HypothesisSearch<'_>, &JudgedHypothesis, &[EffectCandidate]),
-    remaining: &[Unexplained],
+    remaining: &[UnexplainedSegment],
     least_evidence: f64,
-) -> Result<Vec<Change>, RefineError> {
+) -> Result<Vec<EffectChange>, RefineError> {
     if remaining.is_empty() {
         return Ok(Vec::new());
     }
-    let workspace = search.workspace(columns(search, best, listed))?;
+    let workspace = search.prepare_trials(change_columns(search, best, listed))?;
     let changing = ChangeSearch::new(search, best, &workspace);
     let place = |name: &String| workspace.trials.iter().position(|trial| trial.name == *name);
     // In the order of the remainders, the largest first.
-    let asked: Vec<usize> = open(remaining).iter().filter_map(place).collect();
+    let asked: Vec<usize> = trials_with_remainder(remaining).iter().filter_map(place).collect();
     let asked = &asked[..asked.len().min(THRESHOLDS.changes.asked)];
-    let found = common(in_turn(&changing, asked, least_evidence)?, least_evidence);
+    let found =
+        select_common_effect(changes_per_trial(&changing, asked, least_evidence)?, least_evidence);
     // A change throughout most trials is a permanent effect of varying size, no change in time.
     let whole = found.iter().filter(|change| change.course == ChangeCourse::Throughout).count();
     let is_change = whole as f64 <= THRESHOLDS.changes.throughout * workspace.trials.len() as f64;
@@ -52,7 +53,7 @@ pub(super) fn changes(
 }
 
 /// Names of trials with a remainder, those with the largest first.
-pub(super) fn open(remaining: &[Unexplained]) -> Vec<String> {
+pub(super) fn trials_with_remainder(remaining: &[UnexplainedSegment]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for stretch in remaining {
         if !names.contains(&stretch.trial) {
@@ -63,21 +64,22 @@ pub(super) fn open(remaining: &[Unexplained]) -> Vec<String> {
 }
 
 /// Changes that explain each trial, of effects that may still explain enough of them.
-fn in_turn(
+fn changes_per_trial(
     changing: &ChangeSearch<'_, '_>,
     asked: &[usize],
     least: f64,
-) -> Result<Vec<Vec<Change>>, RefineError> {
-    let mut each: Vec<Vec<Change>> = Vec::new();
+) -> Result<Vec<Vec<EffectChange>>, RefineError> {
+    let mut each: Vec<Vec<EffectChange>> = Vec::new();
     for &place in asked {
         let to_come = asked.len() - each.len();
         let explained = |effect: &str| {
-            let of_effect = |changes: &&Vec<Change>| changes.iter().any(|one| one.effect == effect);
+            let of_effect =
+                |changes: &&Vec<EffectChange>| changes.iter().any(|one| one.effect == effect);
             each.iter().filter(of_effect).count()
         };
         // An effect is dropped as soon as the trials to come cannot make it explain enough.
         let may_be = |effect: &str| is_enough(explained(effect) + to_come, asked.len());
-        each.push(changing.of_trial(place, least, &may_be)?);
+        each.push(changing.trial_changes(place, least, &may_be)?);
     }
     Ok(each)
 }
@@ -88,7 +90,7 @@ fn is_enough(trials: usize, of: usize) -> bool {
 }
 
 /// Changes of the effect that explains most trials, with the other effects that are as likely.
-fn common(each: Vec<Vec<Change>>, least_evidence: f64) -> Vec<Change> {
+fn select_common_effect(each: Vec<Vec<EffectChange>>, least_evidence: f64) -> Vec<EffectChange> {
     let mut effects: BTreeMap<String, (usize, f64)> = BTreeMap::new();
     for change in each.iter().flatten() {
         let (trials, evidence) = effects.entry(change.effect.clone()).or_default();
@@ -106,14 +108,14 @@ fn common(each: Vec<Vec<Change>>, least_evidence: f64) -> Vec<Change> {
     };
     let or: Vec<String> = effects.iter().filter(is_near).map(|(name, _)| name.clone()).collect();
     let of_taken = each.into_iter().flatten().filter(|change| change.effect == *effect);
-    let mut found: Vec<Change> =
-        of_taken.map(|change| Change { or: or.clone(), ..change }).collect();
+    let mut found: Vec<EffectChange> =
+        of_taken.map(|change| EffectChange { or: or.clone(), ..change }).collect();
     found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     found
 }
 
 /// Effects that are present, at their estimates, and all others at their absence.
-fn columns(
+fn change_columns(
     search: &HypothesisSearch<'_>,
     best: &JudgedHypothesis,
     listed: &[EffectCandidate],

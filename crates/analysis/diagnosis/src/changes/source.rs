@@ -2,10 +2,10 @@
 //! act as a change only.
 
 use super::super::evidence::NormalPrior;
-use super::super::hypothesis::priors;
-use super::super::misfit::of_shape;
+use super::super::hypothesis::candidate_priors;
+use super::super::misfit::shape_error;
 use super::super::search::HypothesisSearch;
-use sistership_filtering::{Columns, EffectCandidate};
+use sistership_filtering::{EffectCandidate, FilterColumns};
 
 /// Columns whose size may change.
 pub(super) struct ChangeSource {
@@ -23,26 +23,29 @@ pub(super) struct ChangeSource {
 }
 
 /// All possible changes, by the columns of a workspace.
-pub(super) fn sources(search: &HypothesisSearch<'_>, columns: &Columns) -> Vec<ChangeSource> {
+pub(super) fn change_sources(
+    search: &HypothesisSearch<'_>,
+    columns: &FilterColumns,
+) -> Vec<ChangeSource> {
     let all = columns.candidates.iter().enumerate();
-    let changing = all.filter(|(_, candidate)| is_seen_at_its_absence(candidate));
+    let changing = all.filter(|(_, candidate)| has_slope_at_absence(candidate));
     let one = |(place, candidate): (usize, &EffectCandidate)| ChangeSource {
-        columns: columns.places(place).collect(),
-        priors: priors(candidate).into_iter().map(about_none).collect(),
+        columns: columns.candidate_columns(place).collect(),
+        priors: candidate_priors(candidate).into_iter().map(with_zero_mean).collect(),
         log_prior: search.log_prior(candidate),
-        discount: search.discount(candidate),
-        misfit: of_shape(candidate),
-        candidate: EffectCandidate::absent(&candidate.effect, &candidate.form),
+        discount: search.candidate_discount(candidate),
+        misfit: shape_error(candidate),
+        candidate: EffectCandidate::at_absence(&candidate.effect, &candidate.form),
     };
     changing.map(one).collect()
 }
 
 /// Returns true if an effect has a slope at its absence. Lags and plays have none, and where they
 /// are present they have a memory, so that no part of a trial can be separated.
-fn is_seen_at_its_absence(candidate: &EffectCandidate) -> bool {
+fn has_slope_at_absence(candidate: &EffectCandidate) -> bool {
     candidate.form.lags.is_empty() && candidate.form.bands.is_empty()
 }
 
-fn about_none(prior: NormalPrior) -> NormalPrior {
+fn with_zero_mean(prior: NormalPrior) -> NormalPrior {
     NormalPrior { mean: 0.0, ..prior }
 }

@@ -7,20 +7,20 @@ use super::super::thresholds::THRESHOLDS;
 
 /// A window of time in which a change is present.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Window {
+pub(super) struct ChangeWindow {
     pub course: ChangeCourse,
     /// Time at which it begins or ends, s of the trial; unused where it does neither.
     pub at_s: f64,
 }
 
-impl Window {
+impl ChangeWindow {
     /// Returns true if the window begins or ends within the trial.
     pub fn is_timed(self) -> bool {
         matches!(self.course, ChangeCourse::Begins | ChangeCourse::Ends)
     }
 
     /// Share of the change that is present at a time of a trial of this span.
-    pub fn share(self, t_s: f64, [begin_s, end_s]: [f64; 2]) -> f64 {
+    pub fn share_at(self, t_s: f64, [begin_s, end_s]: [f64; 2]) -> f64 {
         match self.course {
             ChangeCourse::Throughout => 1.0,
             ChangeCourse::Begins => f64::from(u8::from(t_s >= self.at_s)),
@@ -32,7 +32,7 @@ impl Window {
 
 /// Segments of a trial, of equal length.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Stretches {
+pub(super) struct TrialSegments {
     pub span_s: [f64; 2],
     pub count: usize,
 }
@@ -40,7 +40,7 @@ pub(super) struct Stretches {
 /// Number of courses that a change may have.
 const COURSES: f64 = 4.0;
 
-impl Stretches {
+impl TrialSegments {
     /// Divides a trial from its first to its last sample; `length_s` is the time in which the ship
     /// covers its length. Each segment is a column for each of `parameters`.
     pub fn new(span_s: [f64; 2], length_s: f64, parameters: usize) -> Self {
@@ -57,50 +57,53 @@ impl Stretches {
     }
 
     /// Membership of a time: 1 for its segment, 0 for the others.
-    pub fn hold(self, t_s: f64) -> Vec<f64> {
+    pub fn segment_membership(self, t_s: f64) -> Vec<f64> {
         let own = (((t_s - self.span_s[0]) / self.width_s()) as usize).min(self.count - 1);
         (0..self.count).map(|place| f64::from(u8::from(place == own))).collect()
     }
 
     /// All windows that begin and end at the limits of segments.
-    pub fn windows(self) -> Vec<Window> {
+    pub fn all_windows(self) -> Vec<ChangeWindow> {
         let timed = |course| {
             let times = (1..self.count).map(|k| self.span_s[0] + self.width_s() * k as f64);
-            times.map(move |at_s| Window { course, at_s })
+            times.map(move |at_s| ChangeWindow { course, at_s })
         };
         let whole = [ChangeCourse::Throughout, ChangeCourse::Drifts];
         timed(ChangeCourse::Begins)
             .chain(timed(ChangeCourse::Ends))
-            .chain(whole.map(|course| Window { course, at_s: self.span_s[0] }))
+            .chain(whole.map(|course| ChangeWindow { course, at_s: self.span_s[0] }))
             .collect()
     }
 
     /// Windows of the same course at times between the neighbours of one.
-    pub fn near(self, window: Window) -> Vec<Window> {
+    pub fn neighbouring_windows(self, window: ChangeWindow) -> Vec<ChangeWindow> {
         let half = THRESHOLDS.changes.finer;
-        let at = |k: i32| Window { at_s: window.at_s + f64::from(k) * self.finer_s(), ..window };
+        let at = |k: i32| ChangeWindow {
+            at_s: window.at_s + f64::from(k) * self.refined_step_s(),
+            ..window
+        };
         (1 - half..half).map(at).collect()
     }
 
     /// Distance between refined times, s.
-    pub fn finer_s(self) -> f64 {
+    pub fn refined_step_s(self) -> f64 {
         self.width_s() / f64::from(THRESHOLDS.changes.finer)
     }
 
     /// Logarithm of the prior probability of a window that begins or ends at the limits of
     /// segments: all courses are equally probable, and all times of a course.
-    pub fn log_prior(self, window: Window) -> f64 {
+    pub fn log_prior(self, window: ChangeWindow) -> f64 {
         let times = if window.is_timed() { self.count - 1 } else { 1 };
         -(COURSES * times as f64).ln()
     }
 
     /// Matrix from the size of each of `parameters` in a window to that in every segment: segments
     /// of the first parameter, then those of the next.
-    pub fn spread(self, window: Window, parameters: usize) -> DMatrix<f64> {
+    pub fn window_matrix(self, window: ChangeWindow, parameters: usize) -> DMatrix<f64> {
         // A drift has the share of each segment's middle.
         let middle = |stretch: usize| self.span_s[0] + self.width_s() * (stretch as f64 + 0.5);
         DMatrix::from_fn(parameters * self.count, parameters, |row, column| {
-            let share = window.share(middle(row % self.count), self.span_s);
+            let share = window.share_at(middle(row % self.count), self.span_s);
             if row / self.count == column { share } else { 0.0 }
         })
     }
@@ -108,7 +111,7 @@ impl Stretches {
 
 /// Central interval of a change's time, by times with the evidence of each and the duration that it
 /// represents, s.
-pub(super) fn interval(mut all: Vec<(f64, f64, f64)>) -> [f64; 2] {
+pub(super) fn central_interval(mut all: Vec<(f64, f64, f64)>) -> [f64; 2] {
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     // The largest evidence is subtracted before the exponential, so that it cannot overflow.
     let most = all.iter().map(|one| one.1).fold(f64::NEG_INFINITY, f64::max);
@@ -135,39 +138,42 @@ mod tests {
 
     #[test]
     fn stretches_follow_each_other_from_end_to_end() {
-        let stretches = Stretches::new([100.0, 500.0], 20.0, 1);
+        let stretches = TrialSegments::new([100.0, 500.0], 20.0, 1);
         assert_eq!((stretches.count, stretches.width_s()), (20, 20.0));
-        assert_eq!(Stretches::new([100.0, 500.0], 20.0, 10).count, THRESHOLDS.changes.fewest);
-        let held = |t_s| stretches.hold(t_s).iter().position(|share| *share == 1.0);
+        assert_eq!(TrialSegments::new([100.0, 500.0], 20.0, 10).count, THRESHOLDS.changes.fewest);
+        let held = |t_s| stretches.segment_membership(t_s).iter().position(|share| *share == 1.0);
         assert_eq!([held(100.0), held(121.0), held(500.0)], [Some(0), Some(1), Some(19)]);
     }
 
     #[test]
     fn windows_together_are_as_probable_as_a_change() {
-        let stretches = Stretches::new([0.0, 100.0], 10.0, 1);
-        let all = stretches.windows().into_iter().map(|window| stretches.log_prior(window).exp());
+        let stretches = TrialSegments::new([0.0, 100.0], 10.0, 1);
+        let all =
+            stretches.all_windows().into_iter().map(|window| stretches.log_prior(window).exp());
         assert!((all.sum::<f64>() - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn a_window_is_there_in_its_stretches() {
-        let stretches = Stretches { span_s: [0.0, 40.0], count: 4 };
+        let stretches = TrialSegments { span_s: [0.0, 40.0], count: 4 };
         let shares = |course, at_s| -> Vec<f64> {
-            stretches.spread(Window { course, at_s }, 1).iter().copied().collect()
+            stretches.window_matrix(ChangeWindow { course, at_s }, 1).iter().copied().collect()
         };
         assert_eq!(shares(ChangeCourse::Begins, 30.0), [0.0, 0.0, 0.0, 1.0]);
         assert_eq!(shares(ChangeCourse::Ends, 30.0), [1.0, 1.0, 1.0, 0.0]);
         assert_eq!(shares(ChangeCourse::Throughout, 0.0), [1.0; 4]);
         assert_eq!(shares(ChangeCourse::Drifts, 0.0), [0.125, 0.375, 0.625, 0.875]);
-        let two = Stretches { span_s: [0.0, 20.0], count: 2 };
-        let spread = two.spread(Window { course: ChangeCourse::Begins, at_s: 10.0 }, 2);
+        let two = TrialSegments { span_s: [0.0, 20.0], count: 2 };
+        let spread =
+            two.window_matrix(ChangeWindow { course: ChangeCourse::Begins, at_s: 10.0 }, 2);
         assert_eq!(spread, DMatrix::from_row_slice(4, 2, &[0., 0., 1., 0., 0., 0., 0., 1.]));
     }
 
     #[test]
     fn finer_times_stay_between_the_neighbours() {
-        let stretches = Stretches { span_s: [0.0, 40.0], count: 4 };
-        let near = stretches.near(Window { course: ChangeCourse::Begins, at_s: 20.0 });
+        let stretches = TrialSegments { span_s: [0.0, 40.0], count: 4 };
+        let near = stretches
+            .neighbouring_windows(ChangeWindow { course: ChangeCourse::Begins, at_s: 20.0 });
         assert!(near.iter().all(|window| window.at_s > 10.0 && window.at_s < 30.0));
         assert!(near.iter().any(|window| window.at_s == 20.0));
     }
@@ -176,6 +182,6 @@ mod tests {
     fn an_interval_holds_the_middle_of_the_probability() {
         let at = |time: f64, evidence: f64| (time, evidence, 1.0);
         let all = vec![at(1.0, -50.0), at(3.0, 0.0), at(2.0, -1.0), at(4.0, -1.0), at(5.0, -50.0)];
-        assert_eq!(interval(all), [1.5, 4.5]);
+        assert_eq!(central_interval(all), [1.5, 4.5]);
     }
 }

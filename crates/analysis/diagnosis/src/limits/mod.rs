@@ -20,39 +20,39 @@ use super::filtered_base::FilteredBase;
 use super::outcome::{DetectionLimit, LimitedBy};
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
-use super::values::acts_on;
+use super::values::form_target;
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
-use weighed::{View, WeighedCandidate};
+use weighed::{InformationView, WeighedCandidate};
 
 /// Returns the limits of every listed effect and of each of its parameters whose absence is zero,
 /// from a base without effects at one of its levels.
 ///
 /// # Errors
 /// Returns an error if the information is not positive.
-pub(super) fn limits(
+pub(super) fn detection_limits(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
     level: usize,
     least_evidence: f64,
 ) -> Result<Vec<DetectionLimit>, RefineError> {
-    let all = Detection::new(search, base, level, least_evidence)?;
+    let all = DetectionAnalysis::new(search, base, level, least_evidence)?;
     let listed = (0..all.candidates.len()).into_par_iter().filter(|&at| all.is_listed(at));
-    Ok(listed.flat_map_iter(|place| all.of_candidate(place)).collect())
+    Ok(listed.flat_map_iter(|place| all.candidate_limits(place)).collect())
 }
 
 /// All candidates on these trials, with the coefficients integrated out.
-struct Detection<'a> {
+struct DetectionAnalysis<'a> {
     search: &'a HypothesisSearch<'a>,
     candidates: Vec<&'a EffectCandidate>,
     /// Indices of the columns of each in the information.
     places: Vec<Vec<usize>>,
     /// Information divided by false-alarm levels.
-    discounted: View,
+    discounted: InformationView,
     /// Information of the trials.
-    plain: View,
+    plain: InformationView,
     /// Information if the coefficients were known.
-    of_known: View,
+    of_known: InformationView,
     /// The model alone at each level of the discrepancy.
     alone: Vec<AloneLevel>,
     level: usize,
@@ -68,17 +68,17 @@ struct AloneLevel {
     information: DMatrix<f64>,
 }
 
-impl<'a> Detection<'a> {
+impl<'a> DetectionAnalysis<'a> {
     fn new(
         search: &'a HypothesisSearch<'a>,
         base: &FilteredBase<'_>,
         level: usize,
         least_evidence: f64,
     ) -> Result<Self, RefineError> {
-        let candidates = search.others(&[]);
+        let candidates = search.other_candidates(&[]);
         let columns: Vec<Vec<usize>> = candidates
             .iter()
-            .map(|candidate| base.workspace.columns().showing(candidate))
+            .map(|candidate| base.workspace.columns().matching_columns(candidate))
             .collect();
         let size = search.nuisance.len();
         let select: Vec<usize> = (0..size).chain(columns.iter().flatten().copied()).collect();
@@ -89,11 +89,11 @@ impl<'a> Detection<'a> {
             (first - columns.len()..first).collect()
         };
         let places: Vec<Vec<usize>> = columns.iter().map(place).collect();
-        let total = base.total(level).select(&select);
+        let total = base.total_products(level).select_columns(&select);
         // Without integration: the products of the effects' columns themselves.
         let of_known = total.products.view_range(1 + size.., 1 + size..).into_owned();
         let at = |level: usize| {
-            let total = base.total(level).select(&select);
+            let total = base.total_products(level).select_columns(&select);
             let reduced = MarginalInformation::new(&total, &search.fixed)?;
             let log_evidence = base.levels[level].level.log_prior - 0.5 * reduced.deviance;
             Ok(AloneLevel { log_evidence, information: reduced.information })
@@ -102,10 +102,12 @@ impl<'a> Detection<'a> {
             (0..base.levels.len()).map(at).collect::<Result<_, RefineError>>()?;
         let information = alone[level].information.clone();
         let view = |information: DMatrix<f64>, discount: &dyn Fn(&EffectCandidate) -> f64| {
-            View::new(search, information, (&candidates, &places), discount)
+            InformationView::new(search, information, (&candidates, &places), discount)
         };
         Ok(Self {
-            discounted: view(information.clone(), &|candidate| search.discount(candidate)),
+            discounted: view(information.clone(), &|candidate| {
+                search.candidate_discount(candidate)
+            }),
             plain: view(information, &|_| 1.0),
             of_known: view(of_known, &|_| 1.0),
             search,
@@ -122,7 +124,7 @@ impl<'a> Detection<'a> {
     }
 
     /// Limits of a candidate's parameters.
-    fn of_candidate(&self, place: usize) -> Vec<DetectionLimit> {
+    fn candidate_limits(&self, place: usize) -> Vec<DetectionLimit> {
         let candidate = self.candidates[place];
         let parameters = candidate.form.parameters.iter().enumerate();
         let one = |(own, (name, parameter)): (usize, (&String, &EffectParameter))| {
@@ -130,45 +132,55 @@ impl<'a> Detection<'a> {
                 return None;
             }
             let usual = parameter.prior_mean.abs() + parameter.prior_deviation;
-            let is_discounted = self.search.discount(candidate) > 1.0;
+            let is_discounted = self.search.candidate_discount(candidate) > 1.0;
             let view = if is_discounted { &self.discounted } else { &self.plain };
-            let size = self.limit(view, (place, own));
+            let size = self.smallest_shown_size(view, (place, own));
             Some(DetectionLimit {
                 effect: candidate.effect.clone(),
                 form: candidate.form.file.name.clone(),
                 parameter: name.clone(),
                 size,
                 usual,
-                limited_by: self.cause(place, own, usual, size),
+                limited_by: self.limiting_cause(place, own, usual, size),
             })
         };
         parameters.filter_map(one).collect()
     }
 
     /// Cause that prevents an effect of a usual size from being shown; none where it is shown.
-    fn cause(&self, place: usize, own: usize, usual: f64, size: Option<f64>) -> Option<LimitedBy> {
+    fn limiting_cause(
+        &self,
+        place: usize,
+        own: usize,
+        usual: f64,
+        size: Option<f64>,
+    ) -> Option<LimitedBy> {
         let shows = |size: Option<f64>| size.is_some_and(|size| size <= usual);
         if shows(size) {
             return None;
         }
         // Causes are excluded in turn: without the discount, then with known coefficients.
-        if shows(self.limit(&self.plain, (place, own))) {
+        if shows(self.smallest_shown_size(&self.plain, (place, own))) {
             return Some(LimitedBy::Model);
         }
-        let known = shows(self.limit(&self.of_known, (place, own)));
-        let reads = acts_on(self.candidates[place]) == ActsOn::Measurement;
+        let known = shows(self.smallest_shown_size(&self.of_known, (place, own)));
+        let reads = form_target(self.candidates[place]) == ActsOn::Measurement;
         Some(if known || !reads { LimitedBy::Trials } else { LimitedBy::Sensors })
     }
 
     /// Smallest size of one parameter that is shown, from a grid of equal ratios below the largest
     /// plausible one; none where no size is.
-    fn limit(&self, view: &View, (place, own): (usize, usize)) -> Option<f64> {
+    fn smallest_shown_size(
+        &self,
+        view: &InformationView,
+        (place, own): (usize, usize),
+    ) -> Option<f64> {
         let given = THRESHOLDS.limits;
         let [least, most] = self.candidates[place].form.parameters[own].bounds;
         let largest = least.abs().max(most.abs());
         let sizes = (0..given.steps).map(|k| largest * given.ratio.powi(-(k as i32)));
-        let rivals = self.rivals(view, (place, own));
-        let seen = self.seen(view, place, (place, own));
+        let rivals = self.competing_candidates(view, (place, own));
+        let seen = self.unit_response(view, place, (place, own));
         let is_shown = |size: &f64| {
             self.is_shown((view, place), *size, &seen, &rivals)
                 && self.beats_alone((place, own), *size)
@@ -179,17 +191,17 @@ impl<'a> Detection<'a> {
 
     fn is_shown(
         &self,
-        (view, place): (&View, usize),
+        (view, place): (&InformationView, usize),
         size: f64,
         seen: &DVector<f64>,
         rivals: &[(&WeighedCandidate, DVector<f64>)],
     ) -> bool {
         let Some(own) = &view.weighed[place] else { return false };
-        let expected = own.expected(&(seen * size));
+        let expected = own.expected_evidence(&(seen * size));
         // Evidence that is exceeded with the probability of the quantile.
         let sure = expected.mean - THRESHOLDS.limits.quantile * expected.deviation;
         let is_behind = |(rival, seen): &(&WeighedCandidate, DVector<f64>)| {
-            rival.expected(&(seen * size)).mean < sure
+            rival.expected_evidence(&(seen * size)).mean < sure
         };
         sure > self.least_evidence && rivals.iter().all(is_behind)
     }
@@ -202,9 +214,9 @@ impl<'a> Detection<'a> {
             level.log_evidence - 0.5 * size.powi(2) * level.information[(column, column)]
         };
         let here = &self.alone[self.level];
-        let seen = self.seen(&self.plain, place, (place, own)) * size;
+        let seen = self.unit_response(&self.plain, place, (place, own)) * size;
         self.plain.weighed[place].as_ref().is_some_and(|weighed| {
-            let expected = weighed.expected(&seen);
+            let expected = weighed.expected_evidence(&seen);
             let sure = expected.mean - THRESHOLDS.limits.quantile * expected.deviation;
             let with = alone(here) + sure;
             self.alone.iter().all(|level| with > alone(level) + self.least_evidence)
@@ -212,36 +224,41 @@ impl<'a> Detection<'a> {
     }
 
     /// Response of a candidate's columns to a unit of a parameter.
-    fn seen(&self, view: &View, by: usize, (place, own): (usize, usize)) -> DVector<f64> {
+    fn unit_response(
+        &self,
+        view: &InformationView,
+        by: usize,
+        (place, own): (usize, usize),
+    ) -> DVector<f64> {
         let column = self.places[place][own];
         let rows = self.places[by].iter().map(|&row| view.information[(row, column)]);
         DVector::from_iterator(self.places[by].len(), rows)
     }
 
     /// Other candidates that respond to a parameter, with their response to a unit of it.
-    fn rivals<'v>(
+    fn competing_candidates<'v>(
         &self,
-        view: &'v View,
+        view: &'v InformationView,
         (place, own): (usize, usize),
     ) -> Vec<(&'v WeighedCandidate, DVector<f64>)> {
         let effect = &self.candidates[place].effect;
         let others =
             (0..self.candidates.len()).filter(|&other| self.candidates[other].effect != *effect);
         let one = |other: usize| {
-            Some((view.weighed[other].as_ref()?, self.seen(view, other, (place, own))))
+            Some((view.weighed[other].as_ref()?, self.unit_response(view, other, (place, own))))
         };
         others.filter_map(one).collect()
     }
 }
 
 /// Removes the limits of effects that were found.
-pub(super) fn but(limits: Vec<DetectionLimit>, found: &[String]) -> Vec<DetectionLimit> {
+pub(super) fn excluding(limits: Vec<DetectionLimit>, found: &[String]) -> Vec<DetectionLimit> {
     limits.into_iter().filter(|limit| !found.contains(&limit.effect)).collect()
 }
 
 /// Names of the effects of which a usual size would not have been shown in any of their forms, with
 /// the cause.
-pub(super) fn cannot_tell(limits: &[DetectionLimit]) -> BTreeMap<String, LimitedBy> {
+pub(super) fn undetectable_effects(limits: &[DetectionLimit]) -> BTreeMap<String, LimitedBy> {
     let mut open = BTreeMap::new();
     for limit in limits {
         // An effect is reported only if none of its forms would be shown.

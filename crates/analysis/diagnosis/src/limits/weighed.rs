@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::super::hypothesis::priors;
+use super::super::hypothesis::candidate_priors;
 use super::super::search::HypothesisSearch;
 use sistership_filtering::EffectCandidate;
 
@@ -14,12 +14,12 @@ pub(super) struct ExpectedEvidence {
 }
 
 /// Information on all candidates, with the terms of the evidence for each of them.
-pub(super) struct View {
+pub(super) struct InformationView {
     pub information: DMatrix<f64>,
     pub weighed: Vec<Option<WeighedCandidate>>,
 }
 
-impl View {
+impl InformationView {
     /// Creates a view from candidates and the indices of their columns, each divided by a discount.
     pub fn new(
         search: &HypothesisSearch<'_>,
@@ -62,7 +62,7 @@ impl WeighedCandidate {
         part: &DMatrix<f64>,
         discount: f64,
     ) -> Option<Self> {
-        let fixing = priors(candidate);
+        let fixing = candidate_priors(candidate);
         let precision = DVector::from_iterator(
             fixing.len(),
             fixing.iter().map(|prior| prior.deviation.powi(-2)),
@@ -92,7 +92,7 @@ impl WeighedCandidate {
     /// Expected evidence for a given response of the candidate, as the search would judge it: its
     /// information divided by its false-alarm level, its parameters integrated out, and the
     /// logarithm of its prior odds added.
-    pub fn expected(&self, seen: &DVector<f64>) -> ExpectedEvidence {
+    pub fn expected_evidence(&self, seen: &DVector<f64>) -> ExpectedEvidence {
         let right = seen / self.discount + &self.pulled;
         let mean = self.factor.solve(&right);
         // Variance of a quadratic form in a normal variable: g' S A S g + tr((S A)^2) / 2.

@@ -30,7 +30,7 @@ pub(crate) use trials::PlannedHelm;
 
 /// All thresholds, by the decision that they belong to.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Thresholds {
+pub(crate) struct DiagnosisThresholds {
     /// Calibration on a model's own trials.
     pub calibration: CalibrationThresholds,
     /// The random accelerations that no coefficient explains.
@@ -64,7 +64,7 @@ pub(crate) struct Thresholds {
 }
 
 /// Values in use.
-pub(crate) const THRESHOLDS: Thresholds = Thresholds {
+pub(crate) const THRESHOLDS: DiagnosisThresholds = DiagnosisThresholds {
     calibration: CALIBRATION,
     discrepancy: DISCREPANCY,
     search: SEARCH,

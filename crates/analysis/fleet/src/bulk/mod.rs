@@ -13,13 +13,13 @@ mod sails;
 mod settings;
 mod solved;
 
-pub use outcome::{AxisOutcome, BulkRefinement, Coefficient};
-pub use prior::{AxisPrior, Prior};
-pub use refine::{refine, refined_model, with_balance};
+pub use outcome::{AxisOutcome, BulkRefinement, CoefficientOutcome};
+pub use prior::{AxisPrior, BulkPrior};
+pub use refine::{refine_ship, refined_model, with_balance};
 pub use request::BulkRequest;
-pub use sails::{SailedFigures, sail};
+pub use sails::{ManoeuvreFigures, simulate_check};
 pub use settings::BulkSettings;
-pub use solved::{SolvedPath, solve};
+pub use solved::{ShipRidgePath, solve_path};
 
 #[cfg(test)]
 mod tests;

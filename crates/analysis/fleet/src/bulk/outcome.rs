@@ -3,29 +3,29 @@
 use serde::{Deserialize, Serialize};
 use sistership_model::coefficient::Axis;
 
-use super::sails::SailedFigures;
+use super::sails::ManoeuvreFigures;
 
 /// Result of a refinement from statistics, with the errors before and after.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BulkRefinement {
     /// All coefficients.
-    pub coefficients: Vec<Coefficient>,
+    pub coefficients: Vec<CoefficientOutcome>,
     /// All axes.
     pub axes: Vec<AxisOutcome>,
     /// Number of decades by which the prior had to be stronger than selected until the model
     /// simulated every manoeuvre that the model before does.
     pub pulled: usize,
     /// Manoeuvres of the model before.
-    pub before: SailedFigures,
+    pub before: ManoeuvreFigures,
     /// Manoeuvres of the refined model.
-    pub after: SailedFigures,
+    pub after: ManoeuvreFigures,
     /// Number of trials.
     pub trials: usize,
 }
 
 /// Coefficient before and after.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Coefficient {
+pub struct CoefficientOutcome {
     /// Name of the coefficient.
     pub name: String,
     /// Value of the model before.

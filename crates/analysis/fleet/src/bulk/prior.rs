@@ -8,7 +8,7 @@ use super::settings::BulkSettings;
 
 /// Prior of all axes.
 #[derive(Debug, Clone, Copy)]
-pub enum Prior<'a> {
+pub enum BulkPrior<'a> {
     /// Coefficients of one source, measured in standard deviations of their regressors (Kanazawa
     /// 2023, Eq. 5.11).
     Source(&'a BTreeMap<String, f64>),
@@ -32,20 +32,20 @@ pub struct AxisPrior {
     pub root: DMatrix<f64>,
 }
 
-impl Prior<'_> {
+impl BulkPrior<'_> {
     /// Means of an axis' coefficients. Returns `None` if the family has no such axis.
-    pub(super) fn means(&self, names: &[String]) -> Option<Vec<f64>> {
+    pub(super) fn prior_means(&self, names: &[String]) -> Option<Vec<f64>> {
         match self {
             Self::Source(source) => {
                 // A coefficient that the source lacks has a prior mean of zero.
                 Some(names.iter().map(|name| source.get(name).copied().unwrap_or(0.0)).collect())
             }
-            Self::Family { .. } => self.of_axis(names).map(|axis| axis.mean.clone()),
+            Self::Family { .. } => self.axis_prior(names).map(|axis| axis.mean.clone()),
         }
     }
 
     /// Returns the learned prior of the axis with these coefficients.
-    pub(super) fn of_axis(&self, names: &[String]) -> Option<&AxisPrior> {
+    pub(super) fn axis_prior(&self, names: &[String]) -> Option<&AxisPrior> {
         match self {
             Self::Source(_) => None,
             Self::Family { axes, .. } => axes.iter().find(|axis| axis.names == names),
@@ -55,7 +55,7 @@ impl Prior<'_> {
     /// Limits the strengths to those that the prior allows. A learned covariance is an upper limit:
     /// trials that resemble each other would always select a weaker prior, since each is predicted
     /// well by the others.
-    pub(super) fn allows(&self, settings: &BulkSettings) -> BulkSettings {
+    pub(super) fn limit_settings(&self, settings: &BulkSettings) -> BulkSettings {
         match self {
             Self::Source(_) => *settings,
             Self::Family { .. } => BulkSettings {

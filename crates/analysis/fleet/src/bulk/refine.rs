@@ -7,12 +7,12 @@ use sistership_model::vessel::Status;
 use sistership_model::{Law, Model};
 
 use super::outcome::BulkRefinement;
-use super::report::outcome;
+use super::report::refinement_outcome;
 use super::request::BulkRequest;
-use super::sails::sail;
-use super::solved::solve;
-use sistership_identification::refine::{Fitted, RefineError};
-use sistership_propulsion::{Evidence, balance, needs_balance};
+use super::sails::simulate_check;
+use super::solved::solve_path;
+use sistership_identification::refine::{FittedCoefficient, RefineError};
+use sistership_propulsion::{PropulsionEvidence, model_balance, needs_balance};
 
 /// Refines a ship, and strengthens the prior by one decade at a time until the model simulates
 /// every manoeuvre that the model before does.
@@ -20,22 +20,23 @@ use sistership_propulsion::{Evidence, balance, needs_balance};
 /// # Errors
 /// Returns the errors of the solution; and an error if even the prior's mean cannot be simulated,
 /// which is then no prior for this ship.
-pub fn refine(request: &BulkRequest<'_>) -> Result<BulkRefinement, RefineError> {
+pub fn refine_ship(request: &BulkRequest<'_>) -> Result<BulkRefinement, RefineError> {
     let BulkRequest { model, law, trials, prior, settings } = *request;
-    let solved = solve(trials, prior, settings)?;
+    let solved = solve_path(trials, prior, settings)?;
     let mut before = None;
     for pulled in 0.. {
-        let (coefficients, moved) = solved.coefficients(pulled);
+        let (coefficients, moved) = solved.coefficients_at(pulled);
         let refined = refined_model(model, &coefficients, "bulk");
         // The model before is simulated with the first attempt, at almost no additional cost.
         let asked = [&refined, model];
-        let mut sailed = sail(&asked[..if before.is_none() { 2 } else { 1 }], law).into_iter();
+        let mut sailed =
+            simulate_check(&asked[..if before.is_none() { 2 } else { 1 }], law).into_iter();
         let Some(after) = sailed.next() else { break };
         // The model before does not change, so it is simulated once.
         let before = before.get_or_insert_with(|| sailed.next().unwrap_or_default());
-        if after.as_well_as(before) {
+        if after.is_no_worse_than(before) {
             let before = before.clone();
-            return outcome(&solved, request, pulled, &coefficients, (before, after));
+            return refinement_outcome(&solved, request, pulled, &coefficients, (before, after));
         }
         // The prior alone is left, and it fails.
         if !moved {
@@ -59,17 +60,17 @@ pub fn with_balance(model: Model, law: &Law) -> Model {
     if model.propulsion.is_some() || !needs_balance(law) {
         return model;
     }
-    let evidence = Evidence { model: &model, law, estimate: None, trials: &[] };
-    Model { propulsion: balance(&evidence), ..model }
+    let evidence = PropulsionEvidence { model: &model, law, estimate: None, trials: &[] };
+    Model { propulsion: model_balance(&evidence), ..model }
 }
 
 /// Returns the model with exactly these coefficients.
 pub fn refined_model(
     model: &Model,
-    coefficients: &BTreeMap<String, Fitted>,
+    coefficients: &BTreeMap<String, FittedCoefficient>,
     source: &str,
 ) -> Model {
-    let quantity = |fitted: &Fitted| Quantity {
+    let quantity = |fitted: &FittedCoefficient| Quantity {
         standard_error: Some(fitted.standard_error),
         ..Quantity::new(fitted.value, format!("refined from {source}"))
     };

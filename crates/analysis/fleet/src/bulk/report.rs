@@ -2,23 +2,23 @@
 
 use std::collections::BTreeMap;
 
-use super::outcome::{AxisOutcome, BulkRefinement, Coefficient};
+use super::outcome::{AxisOutcome, BulkRefinement, CoefficientOutcome};
 use super::request::BulkRequest;
-use super::sails::SailedFigures;
-use super::solved::SolvedPath;
+use super::sails::ManoeuvreFigures;
+use super::solved::ShipRidgePath;
 use crate::statistics::TrialStatistics;
-use sistership_identification::refine::{Fitted, RefineError};
+use sistership_identification::refine::{FittedCoefficient, RefineError};
 
 /// Result of a ship from its path, with the prior `pulled` decades stronger than selected.
 ///
 /// # Errors
 /// Returns an error if the statistics mix axes that cannot be distinguished.
-pub(super) fn outcome(
-    solved: &SolvedPath,
+pub(super) fn refinement_outcome(
+    solved: &ShipRidgePath,
     request: &BulkRequest<'_>,
     pulled: usize,
-    fitted: &BTreeMap<String, Fitted>,
-    (before, after): (SailedFigures, SailedFigures),
+    fitted: &BTreeMap<String, FittedCoefficient>,
+    (before, after): (ManoeuvreFigures, ManoeuvreFigures),
 ) -> Result<BulkRefinement, RefineError> {
     let mut priors = BTreeMap::new();
     for group in &solved.groups {
@@ -35,8 +35,8 @@ pub(super) fn outcome(
         .iter()
         .map(|(name, quantity)| (name.clone(), quantity.value))
         .collect();
-    let axes = axes(solved, request.trials, pulled, &values, &priors)?;
-    let coefficient = |(name, fitted): (&String, &Fitted)| Coefficient {
+    let axes = axis_outcomes(solved, request.trials, pulled, &values, &priors)?;
+    let coefficient = |(name, fitted): (&String, &FittedCoefficient)| CoefficientOutcome {
         name: name.clone(),
         before: request.model.coefficient(name),
         prior: priors.get(name).copied().unwrap_or(0.0),
@@ -49,14 +49,14 @@ pub(super) fn outcome(
 }
 
 /// Errors of all axes, before, of the prior and after.
-fn axes(
-    solved: &SolvedPath,
+fn axis_outcomes(
+    solved: &ShipRidgePath,
     trials: &[TrialStatistics],
     pulled: usize,
     before: &BTreeMap<String, f64>,
     priors: &BTreeMap<String, f64>,
 ) -> Result<Vec<AxisOutcome>, RefineError> {
-    let (before, prior) = (left(trials, before)?, left(trials, priors)?);
+    let (before, prior) = (mean_residuals(trials, before)?, mean_residuals(trials, priors)?);
     // Order of the axes in the residuals: group by group.
     let places = solved
         .groups
@@ -67,23 +67,23 @@ fn axes(
         let (left, target) = before[place];
         AxisOutcome {
             axis: solved.groups[group].axes[axis],
-            strength: solved.strength(group, axis, pulled),
+            strength: solved.strength_at(group, axis, pulled),
             before: (left / target).sqrt(),
             prior: (prior[place].0 / target).sqrt(),
-            after: (solved.error(group, axis, pulled) / target).sqrt(),
+            after: (solved.error_at(group, axis, pulled) / target).sqrt(),
         }
     };
     Ok(places.enumerate().map(one).collect())
 }
 
 /// Mean squared residuals and targets by axis, averaged over the trials.
-fn left(
+fn mean_residuals(
     trials: &[TrialStatistics],
     coefficients: &BTreeMap<String, f64>,
 ) -> Result<Vec<(f64, f64)>, RefineError> {
     let mut all: Vec<(f64, f64)> = Vec::new();
     for trial in trials {
-        let left = trial.left_by(coefficients)?;
+        let left = trial.axis_residuals(coefficients)?;
         // The number of axes is known from the first trial only.
         all.resize(left.len(), (0.0, 0.0));
         let share = 1.0 / trials.len() as f64;

@@ -2,7 +2,7 @@
 
 use sistership_model::{Law, Model};
 
-use super::prior::Prior;
+use super::prior::BulkPrior;
 use super::settings::BulkSettings;
 use crate::statistics::TrialStatistics;
 
@@ -16,7 +16,7 @@ pub struct BulkRequest<'a> {
     /// Statistics of the trials, in the model's frame.
     pub trials: &'a [TrialStatistics],
     /// Prior of the coefficients.
-    pub prior: Prior<'a>,
+    pub prior: BulkPrior<'a>,
     /// Settings of the refinement.
     pub settings: &'a BulkSettings,
 }

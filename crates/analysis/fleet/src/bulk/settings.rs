@@ -55,7 +55,7 @@ impl BulkSettings {
     }
 
     /// Strengths of the path, evenly spaced in their logarithm.
-    pub(super) fn strengths(&self) -> Vec<f64> {
+    pub(super) fn strength_path(&self) -> Vec<f64> {
         let (low, high) = (self.lambda_min.ln(), self.lambda_max.ln());
         // Linear in the logarithm, from the minimum to the maximum.
         let at = |k: usize| (low + (high - low) * k as f64 / (self.lambda_count - 1) as f64).exp();
@@ -63,7 +63,7 @@ impl BulkSettings {
     }
 
     /// Number of strengths per factor of ten.
-    pub(super) fn decade(&self) -> f64 {
+    pub(super) fn strengths_per_decade(&self) -> f64 {
         (self.lambda_count - 1) as f64 / (self.lambda_max / self.lambda_min).log10()
     }
 }

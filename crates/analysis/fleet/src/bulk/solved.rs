@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use super::chosen::strongest_within_one_error;
-use super::group::{AxisGroup, groups};
-use super::prior::Prior;
+use super::group::{AxisGroup, axis_groups};
+use super::prior::BulkPrior;
 use super::settings::BulkSettings;
 use crate::statistics::TrialStatistics;
-use sistership_identification::refine::{Fitted, RefineError};
+use sistership_identification::refine::{FittedCoefficient, RefineError};
 
 /// Full path of a ship, with the selected strength of each axis.
-pub struct SolvedPath {
+pub struct ShipRidgePath {
     pub(super) groups: Vec<AxisGroup>,
     settings: BulkSettings,
     /// Lambda by group and strength.
@@ -24,22 +24,26 @@ pub struct SolvedPath {
 ///
 /// # Errors
 /// Returns an error for invalid settings, and for statistics that do not match or have no sample.
-pub fn solve(
+pub fn solve_path(
     trials: &[TrialStatistics],
-    prior: Prior<'_>,
+    prior: BulkPrior<'_>,
     settings: &BulkSettings,
-) -> Result<SolvedPath, RefineError> {
+) -> Result<ShipRidgePath, RefineError> {
     settings.check()?;
-    let groups = groups(trials, prior)?;
+    let groups = axis_groups(trials, prior)?;
     let (mut lambdas, mut errors, mut chosen) = (Vec::new(), Vec::new(), Vec::new());
     // Limited by the prior first: all strengths below refer to these settings.
-    let settings = &prior.allows(settings);
+    let settings = &prior.limit_settings(settings);
     // Index of strength 1, used if no trial can be held out.
-    let untold = (settings.decade() * (1.0 / settings.lambda_min).log10()).round() as usize;
+    let untold =
+        (settings.strengths_per_decade() * (1.0 / settings.lambda_min).log10()).round() as usize;
     for group in &groups {
-        let path: Vec<f64> =
-            settings.strengths().iter().map(|strength| strength * group.unit(prior)).collect();
-        let folds = group.errors(&path);
+        let path: Vec<f64> = settings
+            .strength_path()
+            .iter()
+            .map(|strength| strength * group.unit_lambda(prior))
+            .collect();
+        let folds = group.held_out_errors(&path);
         let of_axis =
             |axis: usize| folds.iter().map(|fold| fold[axis].as_slice()).collect::<Vec<&[f64]>>();
         let choose = |axis| {
@@ -47,43 +51,43 @@ pub fn solve(
             strongest_within_one_error(&of_axis(axis), path.len(), untold.min(path.len() - 1))
         };
         chosen.push((0..group.axes.len()).map(choose).collect());
-        errors.push((0..group.axes.len()).map(|axis| mean(&of_axis(axis))).collect());
+        errors.push((0..group.axes.len()).map(|axis| mean_errors(&of_axis(axis))).collect());
         lambdas.push(path);
     }
-    Ok(SolvedPath { groups, settings: *settings, lambdas, errors, chosen })
+    Ok(ShipRidgePath { groups, settings: *settings, lambdas, errors, chosen })
 }
 
 /// Mean over the folds, by strength.
-fn mean(folds: &[&[f64]]) -> Vec<f64> {
+fn mean_errors(folds: &[&[f64]]) -> Vec<f64> {
     let strengths = folds.first().map_or(0, |fold| fold.len());
     (0..strengths)
         .map(|k| folds.iter().map(|fold| fold[k]).sum::<f64>() / folds.len() as f64)
         .collect()
 }
 
-impl SolvedPath {
+impl ShipRidgePath {
     /// Index of an axis on the path with the prior `pulled` decades stronger than selected; `None`
     /// beyond the strongest, where the prior alone remains.
-    fn at(&self, group: usize, axis: usize, pulled: usize) -> Option<usize> {
-        let index =
-            self.chosen[group][axis] + (pulled as f64 * self.settings.decade()).round() as usize;
+    fn path_index(&self, group: usize, axis: usize, pulled: usize) -> Option<usize> {
+        let index = self.chosen[group][axis]
+            + (pulled as f64 * self.settings.strengths_per_decade()).round() as usize;
         // The selected strength itself is always on the path.
         (pulled == 0 || index < self.settings.lambda_count).then_some(index)
     }
 
     /// Coefficients with the prior `pulled` decades stronger than selected, and true if any axis
     /// still uses its trials.
-    pub fn coefficients(&self, pulled: usize) -> (BTreeMap<String, Fitted>, bool) {
+    pub fn coefficients_at(&self, pulled: usize) -> (BTreeMap<String, FittedCoefficient>, bool) {
         let mut all = BTreeMap::new();
         let mut moved = false;
         for (index, group) in self.groups.iter().enumerate() {
             // From the eigenbasis to the values of the coefficients.
-            let directions = &group.root * group.whole.basis();
+            let directions = &group.root * group.whole.eigenvector_basis();
             for axis in 0..group.axes.len() {
-                let at = self.at(index, axis, pulled);
+                let at = self.path_index(index, axis, pulled);
                 moved |= at.is_some();
                 let lambda = at.map(|at| self.lambdas[index][at]);
-                let fitted = group.fitted(
+                let fitted = group.fit_axis(
                     axis,
                     &directions,
                     lambda,
@@ -96,17 +100,17 @@ impl SolvedPath {
     }
 
     /// Strength of the prior of an axis with the prior `pulled` decades stronger than selected.
-    pub(super) fn strength(&self, group: usize, axis: usize, pulled: usize) -> f64 {
-        let strengths = self.settings.strengths();
-        self.at(group, axis, pulled)
+    pub(super) fn strength_at(&self, group: usize, axis: usize, pulled: usize) -> f64 {
+        let strengths = self.settings.strength_path();
+        self.path_index(group, axis, pulled)
             .and_then(|at| strengths.get(at).copied())
             .unwrap_or(self.settings.lambda_max)
     }
 
     /// Mean squared error of an axis on held-out trials, likewise.
-    pub(super) fn error(&self, group: usize, axis: usize, pulled: usize) -> f64 {
+    pub(super) fn error_at(&self, group: usize, axis: usize, pulled: usize) -> f64 {
         let errors = &self.errors[group][axis];
-        self.at(group, axis, pulled)
+        self.path_index(group, axis, pulled)
             .and_then(|at| errors.get(at))
             // Beyond the path, the error of the strongest prior.
             .or(errors.last())

@@ -3,12 +3,12 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 
-use super::evidence::{AxisPlace, MemberEvidence};
+use super::evidence::{AxisIndex, MemberEvidence};
 use super::prior::{FORMAT, FamilyAxis, FamilyPrior};
 use super::thresholds::FAMILY;
 use crate::statistics::TrialStatistics;
 use sistership_identification::refine::RefineError;
-use sistership_numerics::Moments;
+use sistership_numerics::RegressionMoments;
 
 /// Error of learning a family.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -39,7 +39,7 @@ pub enum FamilyError {
 
 /// Member with the statistics of its trials.
 #[derive(Debug, Clone, Copy)]
-pub struct Member<'a> {
+pub struct FamilyMember<'a> {
     /// Name of the member.
     pub name: &'a str,
     /// Statistics of its trials.
@@ -52,16 +52,16 @@ pub struct Member<'a> {
 /// # Errors
 /// Returns a [`FamilyError`] if there are too few members, or if their statistics do not match or
 /// cannot be used.
-pub fn learn(members: &[Member<'_>]) -> Result<FamilyPrior, FamilyError> {
-    let members: Vec<&Member<'_>> =
+pub fn learn_family(members: &[FamilyMember<'_>]) -> Result<FamilyPrior, FamilyError> {
+    let members: Vec<&FamilyMember<'_>> =
         members.iter().filter(|member| !member.trials.is_empty()).collect();
     if members.len() < FAMILY.least_members {
         return Err(FamilyError::Few(members.len()));
     }
-    alike(&members)?;
-    let places = places(&members)?;
+    check_coefficients(&members)?;
+    let places = axis_indices(&members)?;
     let evidence: Vec<Vec<MemberEvidence>> =
-        places.iter().map(|place| said(place, &members)).collect::<Result<_, _>>()?;
+        places.iter().map(|place| members_evidence(place, &members)).collect::<Result<_, _>>()?;
     let design_effect = design_effect(&evidence);
     // Share of the correlations that is kept; smaller with fewer members per coefficient.
     let kept = |p: usize| members.len() as f64 / (members.len() + p + 1) as f64;
@@ -76,10 +76,10 @@ pub fn learn(members: &[Member<'_>]) -> Result<FamilyPrior, FamilyError> {
     };
     for (place, evidence) in places.iter().zip(evidence) {
         let regression = &first.regressions[place.regression];
-        let learned = FamilyEstimate::from(discounted(evidence, design_effect))?;
+        let learned = FamilyEstimate::from_evidence(discount_evidence(evidence, design_effect))?;
         prior.steps = prior.steps.max(learned.steps);
         let names = regression.names[place.axis].clone();
-        prior.axes.push(learned.axis(
+        prior.axes.push(learned.family_axis(
             regression.axes[place.axis],
             names,
             &place.units,
@@ -90,8 +90,8 @@ pub fn learn(members: &[Member<'_>]) -> Result<FamilyPrior, FamilyError> {
 }
 
 /// Checks that all members have the same coefficients.
-fn alike(members: &[&Member<'_>]) -> Result<(), FamilyError> {
-    let names = |member: &Member<'_>| -> Vec<Vec<Vec<String>>> {
+fn check_coefficients(members: &[&FamilyMember<'_>]) -> Result<(), FamilyError> {
+    let names = |member: &FamilyMember<'_>| -> Vec<Vec<Vec<String>>> {
         member.trials[0].regressions.iter().map(|regression| regression.names.clone()).collect()
     };
     let first = names(members[0]);
@@ -109,58 +109,66 @@ fn alike(members: &[&Member<'_>]) -> Result<(), FamilyError> {
 ///
 /// # Errors
 /// Returns an error that names a member whose statistics cannot be used.
-fn places(members: &[&Member<'_>]) -> Result<Vec<AxisPlace>, FamilyError> {
+fn axis_indices(members: &[&FamilyMember<'_>]) -> Result<Vec<AxisIndex>, FamilyError> {
     let regressions = &members[0].trials[0].regressions;
     let axes = regressions
         .iter()
         .enumerate()
         .flat_map(|(r, regression)| (0..regression.axes.len()).map(move |axis| (r, axis)));
     let place = |(regression, axis): (usize, usize)| {
-        Ok(AxisPlace { regression, axis, units: units(members, regression, axis)? })
+        Ok(AxisIndex { regression, axis, units: coefficient_units(members, regression, axis)? })
     };
     axes.map(place).collect()
 }
 
 /// Units of the coefficients of an axis: medians over the members of target deviation divided by
 /// regressor deviation, which are robust to a few unusual ships.
-fn units(members: &[&Member<'_>], regression: usize, axis: usize) -> Result<Vec<f64>, FamilyError> {
+fn coefficient_units(
+    members: &[&FamilyMember<'_>],
+    regression: usize,
+    axis: usize,
+) -> Result<Vec<f64>, FamilyError> {
     let p = members[0].trials[0].regressions[regression].moments.regressors();
-    let of_member = |member: &&Member<'_>| -> Result<Option<Vec<f64>>, FamilyError> {
+    let of_member = |member: &&FamilyMember<'_>| -> Result<Option<Vec<f64>>, FamilyError> {
         let own = member.trials.iter().map(|trial| &trial.regressions[regression].moments);
-        let Some(all) = Moments::sum(own) else { return Ok(None) };
+        let Some(all) = RegressionMoments::merge_all(own) else { return Ok(None) };
         let all = all.about_origin();
-        let unmixing = member.trials[0].regressions[regression].unmixing();
-        let unmixing = unmixing.map_err(|reason| unusable(member, &reason))?;
+        let unmixing = member.trials[0].regressions[regression].unmixing_matrix();
+        let unmixing = unmixing.map_err(|reason| statistics_error(member, &reason))?;
         let q = all.targets();
         let target = (0..q)
             .map(|t| unmixing[(axis, t)].powi(2) * all.target_variance(t))
             .sum::<f64>()
             .sqrt();
         // A lower bound relative to the mean, as rounding leaves a constant with a small deviation.
-        let moves = |j: usize| all.variance(j).sqrt().max(1e-12 * all.mean(j).abs());
+        let moves =
+            |j: usize| all.regressor_variance(j).sqrt().max(1e-12 * all.regressor_mean(j).abs());
         Ok(Some((0..p).map(|j| target / moves(j).max(f64::MIN_POSITIVE)).collect()))
     };
     let all: Vec<Option<Vec<f64>>> = members.iter().map(of_member).collect::<Result<_, _>>()?;
-    let unit = |j: usize| median(all.iter().flatten().map(|units| units[j]));
+    let unit = |j: usize| positive_median(all.iter().flatten().map(|units| units[j]));
     // A regressor that varies in no member can have any unit.
     Ok((0..p).map(|j| unit(j).unwrap_or(1.0)).collect())
 }
 
-fn unusable(member: &Member<'_>, reason: &RefineError) -> FamilyError {
+fn statistics_error(member: &FamilyMember<'_>, reason: &RefineError) -> FamilyError {
     FamilyError::Statistics { member: member.name.to_owned(), reason: reason.to_string() }
 }
 
 /// Upper median of the positive finite values.
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+fn positive_median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.filter(|value| value.is_finite() && *value > 0.0).collect();
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
 }
 
 /// Evidence of all members on an axis.
-fn said(place: &AxisPlace, members: &[&Member<'_>]) -> Result<Vec<MemberEvidence>, FamilyError> {
-    let of_member = |member: &&Member<'_>| {
-        place.evidence(member.trials).map_err(|reason| unusable(member, &reason))
+fn members_evidence(
+    place: &AxisIndex,
+    members: &[&FamilyMember<'_>],
+) -> Result<Vec<MemberEvidence>, FamilyError> {
+    let of_member = |member: &&FamilyMember<'_>| {
+        place.member_evidence(member.trials).map_err(|reason| statistics_error(member, &reason))
     };
     let all: Vec<Option<MemberEvidence>> =
         members.par_iter().map(of_member).collect::<Result<_, _>>()?;
@@ -170,13 +178,13 @@ fn said(place: &AxisPlace, members: &[&Member<'_>]) -> Result<Vec<MemberEvidence
 /// Median design effect over members and axes, at least 1: samples never count for more than
 /// independent ones.
 fn design_effect(evidence: &[Vec<MemberEvidence>]) -> f64 {
-    median(evidence.iter().flatten().filter_map(|evidence| evidence.design_effect))
+    positive_median(evidence.iter().flatten().filter_map(|evidence| evidence.design_effect))
         .unwrap_or(1.0)
         .max(1.0)
 }
 
 /// Evidence with its weight divided by the design effect.
-fn discounted(mut evidence: Vec<MemberEvidence>, design_effect: f64) -> Vec<MemberEvidence> {
+fn discount_evidence(mut evidence: Vec<MemberEvidence>, design_effect: f64) -> Vec<MemberEvidence> {
     for one in &mut evidence {
         one.precision /= design_effect;
         one.information /= design_effect;
@@ -195,7 +203,7 @@ struct FamilyEstimate {
 
 impl FamilyEstimate {
     /// Iterates expectation and maximisation until the deviations settle.
-    fn from(evidence: Vec<MemberEvidence>) -> Result<Self, FamilyError> {
+    fn from_evidence(evidence: Vec<MemberEvidence>) -> Result<Self, FamilyError> {
         let p = evidence.first().map_or(0, |one| one.information.len());
         let mut learned = Self {
             mean: DVector::zeros(p),
@@ -206,7 +214,7 @@ impl FamilyEstimate {
         };
         for step in 1..=FAMILY.steps {
             let before = learned.covariance.diagonal();
-            learned.step(&evidence)?;
+            learned.iterate_em(&evidence)?;
             learned.steps = step;
             // Largest relative change of a deviation.
             let changed = before.zip_map(&learned.covariance.diagonal(), |a, b| {
@@ -221,13 +229,13 @@ impl FamilyEstimate {
 
     /// One step of expectation and maximisation: the members given the family, then the family
     /// given the members.
-    fn step(&mut self, evidence: &[MemberEvidence]) -> Result<(), FamilyError> {
+    fn iterate_em(&mut self, evidence: &[MemberEvidence]) -> Result<(), FamilyError> {
         // The prior of every member, in information form.
-        let precision = inverse(&self.covariance)?;
+        let precision = invert_positive(&self.covariance)?;
         // Expectation: posterior of each member, with the family as its prior.
         let pull = &precision * &self.mean;
         let member = |one: &MemberEvidence| -> Result<(DVector<f64>, DMatrix<f64>), FamilyError> {
-            let covariance = inverse(&(&precision + &one.precision))?;
+            let covariance = invert_positive(&(&precision + &one.precision))?;
             Ok((&covariance * (&pull + &one.information), covariance))
         };
         // Collected in order, so that the sums do not depend on the number of cores.
@@ -257,7 +265,7 @@ impl FamilyEstimate {
 
     /// Prior in the law's units, for a ship that is not a member. The deviations are widened
     /// because the mean is uncertain, and because maximum likelihood underestimates variances.
-    fn axis(
+    fn family_axis(
         &self,
         axis: sistership_model::coefficient::Axis,
         names: Vec<String>,
@@ -290,7 +298,7 @@ impl FamilyEstimate {
     }
 }
 
-fn inverse(matrix: &DMatrix<f64>) -> Result<DMatrix<f64>, FamilyError> {
+fn invert_positive(matrix: &DMatrix<f64>) -> Result<DMatrix<f64>, FamilyError> {
     let root: Option<Cholesky<f64, Dyn>> = matrix.clone().cholesky();
     root.map(|root| root.inverse())
         .ok_or_else(|| FamilyError::Numbers("a covariance is not positive".into()))

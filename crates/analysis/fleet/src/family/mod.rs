@@ -11,7 +11,7 @@ mod learn;
 mod prior;
 mod thresholds;
 
-pub use learn::{FamilyError, Member, learn};
+pub use learn::{FamilyError, FamilyMember, learn_family};
 pub use prior::{FORMAT, FamilyAxis, FamilyPrior, FamilyPriorError};
 
 #[cfg(test)]

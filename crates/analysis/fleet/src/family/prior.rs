@@ -64,14 +64,14 @@ impl FamilyPrior {
     ///
     /// # Errors
     /// Returns an error that names the axis whose lists or correlations are invalid.
-    pub fn axes(&self) -> Result<Vec<AxisPrior>, FamilyPriorError> {
-        self.axes.iter().map(FamilyAxis::prior).collect()
+    pub fn axis_priors(&self) -> Result<Vec<AxisPrior>, FamilyPriorError> {
+        self.axes.iter().map(FamilyAxis::axis_prior).collect()
     }
 }
 
 impl FamilyAxis {
     /// Prior of this axis.
-    fn prior(&self) -> Result<AxisPrior, FamilyPriorError> {
+    fn axis_prior(&self) -> Result<AxisPrior, FamilyPriorError> {
         let p = self.names.len();
         let long = |length: usize| length == p;
         // Lists from a document may have any length.

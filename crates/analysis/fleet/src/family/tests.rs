@@ -5,8 +5,8 @@ use rand_distr::{Distribution, StandardNormal};
 use sistership_model::coefficient::Axis;
 
 use super::*;
-use crate::statistics::{self, Regression, TrialStatistics};
-use sistership_numerics::Moments;
+use crate::statistics::{self, RegressionStatistics, TrialStatistics};
+use sistership_numerics::RegressionMoments;
 
 /// Members with two coefficients that go together, `(1, -2)` in the mean, deviations 0.3 and 0.6,
 /// correlation 0.8.
@@ -34,12 +34,12 @@ fn trial(
         columns[1].push(z);
         columns[2].push(own[0] * x + own[1] * z + 0.5 * noise[2]);
     }
-    let regression = Regression {
+    let regression = RegressionStatistics {
         axes: vec![Axis::N],
         names: vec![vec!["N_v".into(), "N_r".into()]],
         shrinkage: vec![1.0; 2],
         mixing: vec![vec![1.0]],
-        moments: Moments::of_columns(&columns, 2),
+        moments: RegressionMoments::from_columns(&columns, 2),
     };
     TrialStatistics {
         format: statistics::FORMAT.into(),
@@ -66,9 +66,9 @@ fn family(
 }
 
 fn learned(family: &[(String, Vec<TrialStatistics>)]) -> Result<FamilyPrior, FamilyError> {
-    let members: Vec<Member<'_>> =
-        family.iter().map(|(name, trials)| Member { name, trials }).collect();
-    learn(&members)
+    let members: Vec<FamilyMember<'_>> =
+        family.iter().map(|(name, trials)| FamilyMember { name, trials }).collect();
+    learn_family(&members)
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn few_members_keep_little_of_their_correlations_and_a_document_comes_back() {
     assert!((few.correlations_kept - 4.0 / 7.0).abs() < 1e-12);
     let read: FamilyPrior = serde_json::from_str(&serde_json::to_string(&few).unwrap()).unwrap();
     assert!(read == few);
-    let axis = &read.axes().unwrap()[0];
+    let axis = &read.axis_priors().unwrap()[0];
     let variance = (&axis.root * axis.root.transpose())[(1, 1)];
     assert!((variance.sqrt() / few.axes[0].deviation[1] - 1.0).abs() < 1e-9);
 }

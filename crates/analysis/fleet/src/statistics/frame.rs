@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use sistership_identification::refine::{Blocks, RefineError};
+use sistership_identification::refine::{RefineError, RegressionBlocks};
 use sistership_model::quantity::Quantity;
-use sistership_model::version::sha256;
+use sistership_model::version::sha256_hex;
 use sistership_model::{Law, Model};
 
-use super::beside::BesideLaw;
+use super::beside::CorrectedLaw;
 
 /// Format of [`TrialStatistics`](super::TrialStatistics).
 pub const FORMAT: &str = "sistership-statistics/1";
@@ -15,17 +15,17 @@ pub const FORMAT: &str = "sistership-statistics/1";
 /// Regressions of a model with its effects, without the values of its coefficients: two models that
 /// differ only in these have the same frame, unless they have a learned correction.
 #[derive(Debug, Clone)]
-pub struct Frame {
+pub struct RegressionFrame {
     /// Time over which accelerations are differenced, s.
     pub difference_s: f64,
-    pub(super) blocks: Blocks,
+    pub(super) blocks: RegressionBlocks,
     /// Learned correction, if the model has one.
-    pub(super) beside: Option<BesideLaw>,
+    pub(super) beside: Option<CorrectedLaw>,
     /// Everything that determines a row, as text.
     shape: String,
 }
 
-impl Frame {
+impl RegressionFrame {
     /// Creates the frame of a model under the law whose file has the hash `law_sha256`. The default
     /// of `difference_s` is a tenth of the time in which the ship travels its length.
     ///
@@ -48,15 +48,15 @@ impl Frame {
         })?;
         Ok(Self {
             difference_s,
-            blocks: Blocks::new(model, &dressed)?,
-            beside: BesideLaw::new(model, law)?,
-            shape: shape(model, law_sha256, difference_s),
+            blocks: RegressionBlocks::new(model, &dressed)?,
+            beside: CorrectedLaw::new(model, law)?,
+            shape: frame_text(model, law_sha256, difference_s),
         })
     }
 
     /// Key of the statistics of a trial, which is named by the hash of its samples.
-    pub fn key(&self, trial_sha256: &str) -> String {
-        sha256(format!("{trial_sha256}\n{}", self.shape).as_bytes())
+    pub fn statistics_key(&self, trial_sha256: &str) -> String {
+        sha256_hex(format!("{trial_sha256}\n{}", self.shape).as_bytes())
     }
 }
 
@@ -67,7 +67,7 @@ fn tenth_of_a_length(model: &Model) -> Option<f64> {
 
 /// Text of everything that determines a row. The debug form of a double is the shortest text that
 /// reads back as the same one.
-fn shape(model: &Model, law_sha256: &str, difference_s: f64) -> String {
+fn frame_text(model: &Model, law_sha256: &str, difference_s: f64) -> String {
     let mut text = format!("{FORMAT}\n{law_sha256}\npublished {difference_s:?}\n");
     let mut write = |title: &str, values: &BTreeMap<String, Quantity>| {
         text.push_str(title);

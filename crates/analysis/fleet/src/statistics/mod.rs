@@ -10,8 +10,8 @@ mod frame;
 mod packed;
 mod trial_statistics;
 
-pub use frame::{FORMAT, Frame};
-pub use trial_statistics::{AxisResidual, Regression, TrialStatistics};
+pub use frame::{FORMAT, RegressionFrame};
+pub use trial_statistics::{AxisResidual, RegressionStatistics, TrialStatistics};
 
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use sistership_numerics::Moments;
+use sistership_numerics::RegressionMoments;
 
 /// Serialised form.
 #[derive(Serialize, Deserialize)]
@@ -21,10 +21,11 @@ struct PackedMoments {
 }
 
 pub(super) fn serialize<S: Serializer>(
-    moments: &Moments,
+    moments: &RegressionMoments,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    let bytes: Vec<u8> = moments.numbers().iter().flat_map(|number| number.to_le_bytes()).collect();
+    let bytes: Vec<u8> =
+        moments.to_numbers().iter().flat_map(|number| number.to_le_bytes()).collect();
     PackedMoments {
         regressors: moments.regressors(),
         targets: moments.targets(),
@@ -33,13 +34,16 @@ pub(super) fn serialize<S: Serializer>(
     .serialize(serializer)
 }
 
-pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Moments, D::Error> {
+pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<RegressionMoments, D::Error> {
     let PackedMoments { regressors, targets, numbers } = PackedMoments::deserialize(deserializer)?;
     let bytes = STANDARD.decode(numbers).map_err(D::Error::custom)?;
     // A remainder of bytes means a damaged document.
     let (doubles, rest) = bytes.as_chunks::<8>();
     let numbers: Vec<f64> = doubles.iter().map(|double| f64::from_le_bytes(*double)).collect();
-    let moments = Moments::from_numbers(&numbers, regressors, targets).filter(|_| rest.is_empty());
+    let moments =
+        RegressionMoments::from_numbers(&numbers, regressors, targets).filter(|_| rest.is_empty());
     moments.ok_or_else(|| {
         D::Error::custom(format!(
             "not the statistics of {regressors} regressors and {targets} targets"

@@ -1,17 +1,18 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use sistership_identification::testing::{mariner, trials};
+use sistership_identification::testing::{mariner_model, simulated_trials};
 use sistership_model::Model;
 
 #[test]
 fn a_document_keeps_every_bit_and_refuses_damage() {
-    let (model, law) = mariner();
-    let frame = Frame::new(&model, &law, "law", None).unwrap();
-    let statistics = TrialStatistics::of(&frame, &trials(&model, &law, 0.0)[0]).unwrap();
+    let (model, law) = mariner_model();
+    let frame = RegressionFrame::new(&model, &law, "law", None).unwrap();
+    let statistics =
+        TrialStatistics::from_trial(&frame, &simulated_trials(&model, &law, 0.0)[0]).unwrap();
     let text = serde_json::to_string(&statistics).unwrap();
     let read: TrialStatistics = serde_json::from_str(&text).unwrap();
     assert!(read == statistics);
-    read.check().unwrap();
+    read.check_consistency().unwrap();
     assert!(
         text.len() < 10_000,
         "{} bytes for {} coefficients",
@@ -24,14 +25,14 @@ fn a_document_keeps_every_bit_and_refuses_damage() {
     );
     let mut short = read.clone();
     short.regressions[1].names[0].pop();
-    assert!(short.check().unwrap_err().to_string().contains("do not go together"));
+    assert!(short.check_consistency().unwrap_err().to_string().contains("do not go together"));
 }
 
 #[test]
 fn the_key_is_of_everything_that_shapes_a_row_and_of_nothing_else() {
-    let (model, law) = mariner();
+    let (model, law) = mariner_model();
     let key = |model: &Model, law_sha256: &str, difference_s: Option<f64>, trial: &str| {
-        Frame::new(model, &law, law_sha256, difference_s).unwrap().key(trial)
+        RegressionFrame::new(model, &law, law_sha256, difference_s).unwrap().statistics_key(trial)
     };
     let own = key(&model, "a", None, "t");
     let mut refined = model.clone();
@@ -53,15 +54,16 @@ fn the_key_is_of_everything_that_shapes_a_row_and_of_nothing_else() {
 
 #[test]
 fn the_true_coefficients_leave_what_the_difference_leaves() {
-    let (model, law) = mariner();
-    let frame = Frame::new(&model, &law, "law", Some(1.0)).unwrap();
-    let statistics = TrialStatistics::of(&frame, &trials(&model, &law, 0.0)[1]).unwrap();
+    let (model, law) = mariner_model();
+    let frame = RegressionFrame::new(&model, &law, "law", Some(1.0)).unwrap();
+    let statistics =
+        TrialStatistics::from_trial(&frame, &simulated_trials(&model, &law, 0.0)[1]).unwrap();
     let values = |factor: f64| {
         model.coefficients.iter().map(|(name, q)| (name.clone(), factor * q.value)).collect()
     };
     let share = |factor: f64| -> Vec<f64> {
         statistics
-            .left_by(&values(factor))
+            .axis_residuals(&values(factor))
             .unwrap()
             .iter()
             .map(|left| (left.residual / left.target).sqrt())

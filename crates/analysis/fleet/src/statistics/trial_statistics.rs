@@ -7,10 +7,12 @@ use serde::{Deserialize, Serialize};
 use sistership_model::coefficient::Axis;
 use sistership_model::trial::Trial;
 
-use super::frame::{FORMAT, Frame};
+use super::frame::{FORMAT, RegressionFrame};
 use super::packed;
-use sistership_identification::refine::{Block, RefineError, trial_moments, trial_tables};
-use sistership_numerics::Moments;
+use sistership_identification::refine::{
+    RefineError, RegressionBlock, trial_moments, trial_tables,
+};
+use sistership_numerics::RegressionMoments;
 
 /// Statistics of one trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -21,13 +23,13 @@ pub struct TrialStatistics {
     /// Time from the first to the last sample, s.
     pub duration_s: f64,
     /// Statistics of each regression of the law.
-    pub regressions: Vec<Regression>,
+    pub regressions: Vec<RegressionStatistics>,
 }
 
 /// Statistics of one regression over a trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Regression {
+pub struct RegressionStatistics {
     /// Axes that have these regressors in common.
     pub axes: Vec<Axis>,
     /// Names of the coefficients by axis; the same index in each is the same regressor.
@@ -38,7 +40,7 @@ pub struct Regression {
     pub mixing: Vec<Vec<f64>>,
     /// Counts, means and products.
     #[serde(with = "packed")]
-    pub moments: Moments,
+    pub moments: RegressionMoments,
 }
 
 /// Residual of an axis on a trial.
@@ -57,17 +59,21 @@ impl TrialStatistics {
     ///
     /// # Errors
     /// Returns an error that names the missing channel.
-    pub fn of(frame: &Frame, trial: &Trial) -> Result<Self, RefineError> {
+    pub fn from_trial(frame: &RegressionFrame, trial: &Trial) -> Result<Self, RefineError> {
         let (blocks, difference_s) = (&frame.blocks, Some(frame.difference_s));
         let moments = match &frame.beside {
             None => trial_moments(blocks, trial, difference_s)?,
             // The law's regressions are for the acceleration that the correction does not add.
             Some(beside) => {
-                let added = beside.along(trial)?;
-                let known = |axis: Axis, sample: usize| added.at(axis, sample);
+                let added = beside.additions_along(trial)?;
+                let known = |axis: Axis, sample: usize| added.value_at(axis, sample);
                 let tables = trial_tables(blocks, trial, difference_s, &known)?;
                 let pairs = blocks.blocks.iter().zip(&tables);
-                pairs.map(|(one, table)| Moments::of_columns(table, one.regressors())).collect()
+                pairs
+                    .map(|(one, table)| {
+                        RegressionMoments::from_columns(table, one.regressor_count())
+                    })
+                    .collect()
             }
         };
         let regressions = frame
@@ -75,7 +81,7 @@ impl TrialStatistics {
             .blocks
             .iter()
             .zip(moments)
-            .map(|(block, moments)| Regression::of(block, moments));
+            .map(|(block, moments)| RegressionStatistics::from_block(block, moments));
         Ok(Self {
             format: FORMAT.to_owned(),
             duration_s: trial.duration_s(),
@@ -87,12 +93,12 @@ impl TrialStatistics {
     ///
     /// # Errors
     /// Returns an error with the fault.
-    pub fn check(&self) -> Result<(), RefineError> {
+    pub fn check_consistency(&self) -> Result<(), RefineError> {
         let refuse = |what: &str| Err(RefineError::Data(format!("statistics: {what}")));
         if self.format != FORMAT {
             return refuse(&format!("the format is `{}`, not `{FORMAT}`", self.format));
         }
-        if self.regressions.iter().all(Regression::is_whole) {
+        if self.regressions.iter().all(RegressionStatistics::is_consistent) {
             Ok(())
         } else {
             refuse("lists and numbers do not go together")
@@ -100,8 +106,8 @@ impl TrialStatistics {
     }
 
     /// True if two trials were regressed in the same frame, so that their statistics may be added.
-    pub fn goes_with(&self, other: &Self) -> bool {
-        let same = |(a, b): (&Regression, &Regression)| {
+    pub fn has_same_frame(&self, other: &Self) -> bool {
+        let same = |(a, b): (&RegressionStatistics, &RegressionStatistics)| {
             (&a.axes, &a.names, &a.mixing) == (&b.axes, &b.names, &b.mixing)
         };
         self.regressions.len() == other.regressions.len()
@@ -113,24 +119,24 @@ impl TrialStatistics {
     ///
     /// # Errors
     /// Returns an error if the statistics mix axes that cannot be distinguished.
-    pub fn left_by(
+    pub fn axis_residuals(
         &self,
         coefficients: &BTreeMap<String, f64>,
     ) -> Result<Vec<AxisResidual>, RefineError> {
         let mut all = Vec::new();
         for regression in &self.regressions {
-            all.extend(regression.left_by(coefficients)?);
+            all.extend(regression.axis_residuals(coefficients)?);
         }
         Ok(all)
     }
 }
 
-impl Regression {
+impl RegressionStatistics {
     /// Matrix from targets to axes: the inverse of the mixing matrix.
     ///
     /// # Errors
     /// Returns an error if the mixing matrix is singular.
-    pub fn unmixing(&self) -> Result<DMatrix<f64>, RefineError> {
+    pub fn unmixing_matrix(&self) -> Result<DMatrix<f64>, RefineError> {
         let q = self.axes.len();
         let mixing = DMatrix::from_fn(q, q, |target, axis| self.mixing[target][axis]);
         mixing.try_inverse().ok_or_else(|| {
@@ -139,7 +145,7 @@ impl Regression {
     }
 
     /// True if the lists have the lengths that the statistics need.
-    fn is_whole(&self) -> bool {
+    fn is_consistent(&self) -> bool {
         let (p, q) = (self.moments.regressors(), self.moments.targets());
         // The mixing matrix is square, with one row for each target.
         let rows = self.mixing.len() == q && self.mixing.iter().all(|row| row.len() == q);
@@ -148,7 +154,7 @@ impl Regression {
     }
 
     /// Statistics of a block of the regression.
-    fn of(block: &Block, moments: Moments) -> Self {
+    fn from_block(block: &RegressionBlock, moments: RegressionMoments) -> Self {
         let row = |target: usize| block.mixing.row(target).iter().copied().collect();
         Self {
             axes: block.axes.clone(),
@@ -156,17 +162,17 @@ impl Regression {
             shrinkage: block.shrinkage.clone(),
             mixing: (0..block.axes.len()).map(row).collect(),
             // Exactly symmetric, so that the document gives the same numbers when it is read back.
-            moments: moments.symmetric(),
+            moments: moments.symmetrize_products(),
         }
     }
 
-    fn left_by(
+    fn axis_residuals(
         &self,
         coefficients: &BTreeMap<String, f64>,
     ) -> Result<Vec<AxisResidual>, RefineError> {
         // With weights (-b, unmixing row) over regressors and targets, the mean squared residual is
         // w' E[z z'] w.
-        let (raw, unmixing) = (self.moments.raw_products(), self.unmixing()?);
+        let (raw, unmixing) = (self.moments.raw_products(), self.unmixing_matrix()?);
         let p = self.moments.regressors();
         let mean_square = |weights: &DVector<f64>| weights.dot(&(&raw * weights)).max(0.0);
         let one = |(index, &axis): (usize, &Axis)| {

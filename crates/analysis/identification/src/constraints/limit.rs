@@ -9,19 +9,19 @@ pub(super) struct AffineFunction {
 
 impl AffineFunction {
     /// Value of the function at coefficients.
-    pub fn at(&self, coefficients: &[f64]) -> f64 {
+    pub fn value_at(&self, coefficients: &[f64]) -> f64 {
         self.constant + self.normal.iter().zip(coefficients).map(|(n, c)| n * c).sum::<f64>()
     }
 
     /// The function `sign (c_k - bound)` of `size` coefficients, `k` being `place`.
-    pub fn of_one(size: usize, place: usize, sign: f64, bound: f64) -> Self {
+    pub fn single_coefficient(size: usize, place: usize, sign: f64, bound: f64) -> Self {
         let mut normal = vec![0.0; size];
         normal[place] = sign;
         Self { normal, constant: -sign * bound }
     }
 
     /// The linear combination `a self + b other`.
-    pub fn with(&self, a: f64, other: &Self, b: f64) -> Self {
+    pub fn linear_combination(&self, a: f64, other: &Self, b: f64) -> Self {
         let normal = self.normal.iter().zip(&other.normal).map(|(x, y)| a * x + b * y).collect();
         Self { normal, constant: a * self.constant + b * other.constant }
     }
@@ -29,16 +29,16 @@ impl AffineFunction {
 
 /// A limit, with the name by which messages refer to it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Limit {
+pub(super) struct CoefficientLimit {
     pub name: String,
     /// One function that is at least 0; or several, the first of which is at least the length of
     /// the others.
     pub cone: Vec<AffineFunction>,
 }
 
-impl Limit {
+impl CoefficientLimit {
     /// The limit that a function is at least 0.
-    pub fn least(name: String, function: AffineFunction) -> Self {
+    pub fn at_least_zero(name: String, function: AffineFunction) -> Self {
         Self { name, cone: vec![function] }
     }
 
@@ -46,8 +46,15 @@ impl Limit {
     /// element `b`, has no negative eigenvalue: `a + c >= |(a - c, 2 b)|` (Alizadeh and Goldfarb
     /// 2003, Mathematical Programming 95, 3-51, section 2.3: such a matrix is a cone of second
     /// order in three dimensions).
-    pub fn matrix(name: String, [a, b, c]: [&AffineFunction; 3]) -> Self {
+    pub fn positive_semidefinite(name: String, [a, b, c]: [&AffineFunction; 3]) -> Self {
         // `2 b` as `2 b + 0 b`, a linear combination of two functions.
-        Self { name, cone: vec![a.with(1.0, c, 1.0), a.with(1.0, c, -1.0), b.with(2.0, b, 0.0)] }
+        Self {
+            name,
+            cone: vec![
+                a.linear_combination(1.0, c, 1.0),
+                a.linear_combination(1.0, c, -1.0),
+                b.linear_combination(2.0, b, 0.0),
+            ],
+        }
     }
 }

@@ -7,12 +7,15 @@ use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_simulation::PlantError;
 
-use super::conflict::conflict;
+use super::conflict::find_conflict;
 use super::error::LimitError;
-use super::limit::{AffineFunction, Limit};
-use super::programme::{NearestPointProblem, Overstepping};
+use super::limit::{AffineFunction, CoefficientLimit};
+use super::programme::{LimitEnforcement, NearestPointProblem};
 use super::settings::{Constraints, StraightLine};
-use super::straight::{affine, fastest, holds, limit, surge, sway_and_yaw};
+use super::straight::{
+    affine_functions, has_stability, spectral_abscissa, stability_limit, surge_derivative,
+    sway_and_yaw,
+};
 use super::thresholds::CONSTRAINTS;
 
 /// Signs that physics determines: 1 for coefficients of at least 0, -1 for coefficients of at most
@@ -26,7 +29,7 @@ pub struct CoefficientLimits {
     names: Vec<String>,
     source: Vec<f64>,
     /// Limits that do not depend on a solution.
-    fixed: Vec<Limit>,
+    fixed: Vec<CoefficientLimit>,
     trust_sd: Option<f64>,
     straight: Option<(StraightLine, [AffineFunction; 4])>,
 }
@@ -47,11 +50,11 @@ impl CoefficientLimits {
         let names: Vec<String> = model.coefficients.keys().cloned().collect();
         let mut fixed = Vec::new();
         if settings.physical_signs {
-            fixed.extend(signs(&names, &SIGNS, "physical sign"));
+            fixed.extend(sign_limits(&names, &SIGNS, "physical sign"));
         }
         if settings.dissipative {
-            fixed.extend(signs(&names, &BRAKES.map(|name| (name, -1.0)), "dissipation"));
-            fixed.extend(damping(model, law, &names, speeds)?);
+            fixed.extend(sign_limits(&names, &BRAKES.map(|name| (name, -1.0)), "dissipation"));
+            fixed.extend(damping_limits(model, law, &names, speeds)?);
         }
         for (name, bound) in &settings.bounds {
             let unknown = || LimitError::Unknown(name.clone());
@@ -59,17 +62,17 @@ impl CoefficientLimits {
             // Both bounds become functions that are at least 0: `c - min` and `-(c - max)`.
             for (sign, bound, word) in [(1.0, bound.min, "least"), (-1.0, bound.max, "greatest")] {
                 let limit = |bound| {
-                    Limit::least(
+                    CoefficientLimit::at_least_zero(
                         format!("bound of {name}: {word} {bound}"),
-                        AffineFunction::of_one(names.len(), place, sign, bound),
+                        AffineFunction::single_coefficient(names.len(), place, sign, bound),
                     )
                 };
                 fixed.extend(bound.map(limit));
             }
         }
-        let straight = settings
-            .straight_line
-            .map(|line| Ok::<_, PlantError>((line, affine(model, law, &names, &sway_and_yaw)?)));
+        let straight = settings.straight_line.map(|line| {
+            Ok::<_, PlantError>((line, affine_functions(model, law, &names, &sway_and_yaw)?))
+        });
         let source = model.coefficients.values().map(|quantity| quantity.value).collect();
         Ok(Self {
             names,
@@ -87,7 +90,7 @@ impl CoefficientLimits {
     /// # Errors
     /// Returns an error with the limits that cannot be kept together, or with the solver's status
     /// if it found no solution.
-    pub fn nearest(
+    pub fn nearest_coefficients(
         &self,
         solution: &BTreeMap<String, f64>,
         names: &[String],
@@ -105,18 +108,18 @@ impl CoefficientLimits {
             self.names.iter().map(|name| solution.get(name).copied().unwrap_or(0.0)).collect();
         let nearest = NearestPointProblem { centre: &centre, curvature: &curvature };
         let mut common = self.fixed.clone();
-        common.extend(self.trust(prior));
+        common.extend(self.trust_region_limits(prior));
         let mut at = centre.clone();
         // The limit of straight-line stability depends on a reference matrix and is only sufficient
         // for it. Each round takes the last point as its reference, which makes the limit less
         // conservative.
         for _ in 0..if self.straight.is_some() { CONSTRAINTS.references } else { 1 } {
-            let own = self.straight_line(&at);
-            let limits: Vec<&Limit> = common.iter().chain(&own).collect();
+            let own = self.straight_line_limit(&at);
+            let limits: Vec<&CoefficientLimit> = common.iter().chain(&own).collect();
             if limits.is_empty() {
                 break;
             }
-            at = within(&nearest, &limits)?;
+            at = solve_within(&nearest, &limits)?;
         }
         Ok(self.names.iter().cloned().zip(at).collect())
     }
@@ -128,12 +131,12 @@ impl CoefficientLimits {
     pub fn check(&self, model: &Model) -> Result<(), LimitError> {
         let at: Vec<f64> = self.names.iter().map(|name| model.coefficient(name)).collect();
         // All fixed limits are half spaces, so that each has a single function.
-        let broken = self.fixed.iter().find(|limit| limit.cone[0].at(&at) < 0.0);
+        let broken = self.fixed.iter().find(|limit| limit.cone[0].value_at(&at) < 0.0);
         if let Some(limit) = broken {
             return Err(LimitError::Broken(limit.name.clone()));
         }
         match &self.straight {
-            Some((line, functions)) if !holds(*line, &matrix(functions, &at)) => {
+            Some((line, functions)) if !has_stability(*line, &sway_yaw_matrix(functions, &at)) => {
                 Err(LimitError::StraightLine(*line))
             }
             _ => Ok(()),
@@ -142,7 +145,7 @@ impl CoefficientLimits {
 
     /// Limits of the trust region about the source: `|c - source|` of at most `trust_sd` standard
     /// deviations of the prior; none without a trust region.
-    fn trust(&self, prior: &dyn Fn(&str) -> f64) -> Vec<Limit> {
+    fn trust_region_limits(&self, prior: &dyn Fn(&str) -> f64) -> Vec<CoefficientLimit> {
         let Some(sd) = self.trust_sd else { return Vec::new() };
         let one = |(place, name): (usize, &String)| {
             let reach = sd * prior(name);
@@ -152,7 +155,10 @@ impl CoefficientLimits {
                 let label = format!(
                     "trust region of {name}: at most {sd} standard deviations {word} the source"
                 );
-                Limit::least(label, AffineFunction::of_one(self.names.len(), place, sign, edge))
+                CoefficientLimit::at_least_zero(
+                    label,
+                    AffineFunction::single_coefficient(self.names.len(), place, sign, edge),
+                )
             })
         };
         self.names.iter().enumerate().flat_map(one).collect()
@@ -161,24 +167,29 @@ impl CoefficientLimits {
     /// The limit of straight-line stability by the first reference matrix that has the declared
     /// stability: that of the solution, of the source, or of the solution with all eigenvalues
     /// shifted.
-    fn straight_line(&self, at: &[f64]) -> Option<Limit> {
+    fn straight_line_limit(&self, at: &[f64]) -> Option<CoefficientLimit> {
         let (line, functions) = self.straight.as_ref()?;
-        let (own, source) = (matrix(functions, at), matrix(functions, &self.source));
+        let (own, source) =
+            (sway_yaw_matrix(functions, at), sway_yaw_matrix(functions, &self.source));
         let towards =
             if *line == StraightLine::Stable { -CONSTRAINTS.shift } else { CONSTRAINTS.shift };
         // Adding a multiple of the identity shifts every eigenvalue by it: the largest real part
         // becomes `towards`.
-        let shifted = own + Matrix2::identity() * (towards - fastest(&own));
-        let candidates = [own, source, shifted].into_iter().filter(|matrix| holds(*line, matrix));
-        candidates.filter_map(|reference| limit(*line, functions, &reference)).next()
+        let shifted = own + Matrix2::identity() * (towards - spectral_abscissa(&own));
+        let candidates =
+            [own, source, shifted].into_iter().filter(|matrix| has_stability(*line, matrix));
+        candidates.filter_map(|reference| stability_limit(*line, functions, &reference)).next()
     }
 }
 
 /// The nearest point within limits; where there is none, the error names the limits that conflict.
-fn within(nearest: &NearestPointProblem<'_>, limits: &[&Limit]) -> Result<Vec<f64>, LimitError> {
-    match nearest.within(limits, Overstepping::Held) {
+fn solve_within(
+    nearest: &NearestPointProblem<'_>,
+    limits: &[&CoefficientLimit],
+) -> Result<Vec<f64>, LimitError> {
+    match nearest.solve(limits, LimitEnforcement::Held) {
         Ok(point) => Ok(point.coefficients),
-        Err(status) => Err(match conflict(nearest, limits) {
+        Err(status) => Err(match find_conflict(nearest, limits) {
             Some(names) => LimitError::Conflict(names),
             None => LimitError::Solver(status),
         }),
@@ -186,19 +197,19 @@ fn within(nearest: &NearestPointProblem<'_>, limits: &[&Limit]) -> Result<Vec<f6
 }
 
 /// The matrix of sway and yaw from its four affine elements, row by row.
-fn matrix(functions: &[AffineFunction; 4], at: &[f64]) -> Matrix2<f64> {
-    let [vv, vr, rv, rr] = [0, 1, 2, 3].map(|k: usize| functions[k].at(at));
+fn sway_yaw_matrix(functions: &[AffineFunction; 4], at: &[f64]) -> Matrix2<f64> {
+    let [vv, vr, rv, rr] = [0, 1, 2, 3].map(|k: usize| functions[k].value_at(at));
     Matrix2::new(vv, vr, rv, rr)
 }
 
 /// Limits of sign for those coefficients of `signs` that the model has.
-fn signs(names: &[String], signs: &[(&str, f64)], what: &str) -> Vec<Limit> {
+fn sign_limits(names: &[String], signs: &[(&str, f64)], what: &str) -> Vec<CoefficientLimit> {
     let one = |&(name, sign): &(&str, f64)| {
         let place = names.iter().position(|own| own == name)?;
         let word = if sign > 0.0 { "at least" } else { "at most" };
-        Some(Limit::least(
+        Some(CoefficientLimit::at_least_zero(
             format!("{what}: {name} {word} 0"),
-            AffineFunction::of_one(names.len(), place, sign, 0.0),
+            AffineFunction::single_coefficient(names.len(), place, sign, 0.0),
         ))
     };
     signs.iter().filter_map(one).collect()
@@ -206,12 +217,12 @@ fn signs(names: &[String], signs: &[(&str, f64)], what: &str) -> Vec<Limit> {
 
 /// Limits by which surge acceleration falls with speed, at several speeds ahead that the trials
 /// covered.
-fn damping(
+fn damping_limits(
     model: &Model,
     law: &Law,
     names: &[String],
     [low, high]: [f64; 2],
-) -> Result<Vec<Limit>, PlantError> {
+) -> Result<Vec<CoefficientLimit>, PlantError> {
     // Near rest the resistance and its slope vanish, so that the lowest speed is bounded from
     // below.
     let ahead = low.max(CONSTRAINTS.least_speed * high);
@@ -221,10 +232,10 @@ fn damping(
         .collect();
     // `d(du/dt)/du <= 0` as a function that is at least 0.
     let one = |speed: f64| {
-        let [slope] = affine(model, law, names, &|ship| [surge(ship, speed)])?;
-        Ok(Limit::least(
+        let [slope] = affine_functions(model, law, names, &|ship| [surge_derivative(ship, speed)])?;
+        Ok(CoefficientLimit::at_least_zero(
             format!("dissipation: surge damping at {speed:.2} m/s"),
-            slope.with(-1.0, &slope, 0.0),
+            slope.linear_combination(-1.0, &slope, 0.0),
         ))
     };
     speeds.into_iter().map(one).collect()

@@ -7,7 +7,7 @@ use clarabel::solver::{
 };
 use nalgebra::{DMatrix, DVector};
 
-use super::limit::Limit;
+use super::limit::CoefficientLimit;
 use super::thresholds::CONSTRAINTS;
 
 /// A problem of the nearest point: the point from which distance is measured, and the curvature
@@ -19,7 +19,7 @@ pub(super) struct NearestPointProblem<'a> {
 
 /// Treatment of violated limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Overstepping {
+pub(super) enum LimitEnforcement {
     /// Limits hold, and the distance is least.
     Held,
     /// Each limit may be violated; the sum of the violations is least, and distance hardly counts.
@@ -38,29 +38,31 @@ impl NearestPointProblem<'_> {
     ///
     /// # Errors
     /// Returns the solver's status unless it is `Solved`.
-    pub fn within(
+    pub fn solve(
         &self,
-        limits: &[&Limit],
-        steps: Overstepping,
+        limits: &[&CoefficientLimit],
+        steps: LimitEnforcement,
     ) -> Result<NearestPoint, SolverStatus> {
         // Variables are the scaled changes of the coefficients, in the elastic programme followed
         // by one slack a limit. The objective is `1/2 x' P x + q' x` with `q` zero for coefficients
         // and one for slacks.
         let (size, extra) =
-            (self.centre.len(), if steps == Overstepping::Elastic { limits.len() } else { 0 });
-        let scales = self.scales();
-        let weight = if steps == Overstepping::Elastic { CONSTRAINTS.elastic_weight } else { 1.0 };
+            (self.centre.len(), if steps == LimitEnforcement::Elastic { limits.len() } else { 0 });
+        let scales = self.variable_scales();
+        let weight =
+            if steps == LimitEnforcement::Elastic { CONSTRAINTS.elastic_weight } else { 1.0 };
         let entry = |i: usize, j: usize| match i.max(j) < size {
             true => weight * self.curvature[(i, j)] * scales[i] * scales[j],
             false => 0.0,
         };
         // Clarabel takes the upper triangle of the quadratic part.
-        let quadratic =
-            sparse(size + extra, size + extra, &|i, j| if i <= j { entry(i, j) } else { 0.0 });
+        let quadratic = sparse_matrix(size + extra, size + extra, &|i, j| {
+            if i <= j { entry(i, j) } else { 0.0 }
+        });
         let linear: Vec<f64> =
             (0..size + extra).map(|k| if k < size { 0.0 } else { 1.0 }).collect();
-        let (rows, bounds, cones) = self.rows(limits, &scales, extra);
-        let matrix = sparse(rows.len(), size + extra, &|i, j| rows[i][j]);
+        let (rows, bounds, cones) = self.constraint_rows(limits, &scales, extra);
+        let matrix = sparse_matrix(rows.len(), size + extra, &|i, j| rows[i][j]);
         let settings = DefaultSettings { verbose: false, ..DefaultSettings::default() };
         let solver = DefaultSolver::new(&quadratic, &linear, &matrix, &bounds, &cones, settings);
         // Construction fails only for inconsistent dimensions, which the caller cannot correct.
@@ -75,16 +77,16 @@ impl NearestPointProblem<'_> {
     }
 
     /// Scales of the variables: the change of each coefficient that has a curvature of one.
-    fn scales(&self) -> DVector<f64> {
+    fn variable_scales(&self) -> DVector<f64> {
         self.curvature.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 })
     }
 
     /// The constraints `A x + s = b` with `s` in the cones: rows of `A`, `b` and the cones, every
     /// limit divided by the length of its scaled normals.
     #[allow(clippy::type_complexity)]
-    fn rows(
+    fn constraint_rows(
         &self,
-        limits: &[&Limit],
+        limits: &[&CoefficientLimit],
         scales: &DVector<f64>,
         extra: usize,
     ) -> (Vec<Vec<f64>>, Vec<f64>, Vec<SupportedConeT<f64>>) {
@@ -109,7 +111,7 @@ impl NearestPointProblem<'_> {
                     row[size + k] = -1.0;
                 }
                 rows.push(row);
-                bounds.push(function.at(self.centre) * by);
+                bounds.push(function.value_at(self.centre) * by);
             }
             cones.push(if limit.cone.len() == 1 {
                 NonnegativeConeT(1)
@@ -132,7 +134,11 @@ impl NearestPointProblem<'_> {
 }
 
 /// A matrix in compressed column form, zeros omitted.
-fn sparse(rows: usize, columns: usize, entry: &dyn Fn(usize, usize) -> f64) -> CscMatrix<f64> {
+fn sparse_matrix(
+    rows: usize,
+    columns: usize,
+    entry: &dyn Fn(usize, usize) -> f64,
+) -> CscMatrix<f64> {
     let (mut starts, mut places, mut values) = (vec![0], Vec::new(), Vec::new());
     for column in 0..columns {
         for (row, value) in

@@ -4,21 +4,21 @@
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use sistership_model::Model;
 use sistership_model::law::Law;
-use sistership_simulation::plant::Work;
-use sistership_simulation::state::{at, straight};
+use sistership_simulation::plant::PlantWorkspace;
+use sistership_simulation::state::{at, straight_state};
 use sistership_simulation::{PlantError, Ship, StateVector};
 
-use super::limit::{AffineFunction, Limit};
+use super::limit::{AffineFunction, CoefficientLimit};
 use super::settings::StraightLine;
 use super::thresholds::CONSTRAINTS;
 
 /// Derivative of the rates of change of the state on a straight course by one element (`place`) of
 /// the state, by central differences of half width `size`.
-fn slope(ship: &Ship, speed_m_s: f64, place: usize, size: f64) -> StateVector {
+fn rate_derivative(ship: &Ship, speed_m_s: f64, place: usize, size: f64) -> StateVector {
     let rate = |by: f64| {
-        let mut state = straight(speed_m_s);
+        let mut state = straight_state(speed_m_s);
         state[place] += by;
-        ship.rate_at(&state, 0.0, ship.revolutions_at(speed_m_s), &mut Work::default())
+        ship.rate_at(&state, 0.0, ship.revolutions_at(speed_m_s), &mut PlantWorkspace::default())
     };
     (rate(size) - rate(-size)) / (2.0 * size)
 }
@@ -29,8 +29,8 @@ pub(super) fn sway_and_yaw(ship: &Ship) -> [f64; 4] {
     let (length, speed) = (ship.lpp_m(), ship.approach_speed_m_s());
     let time = length / speed;
     // Both columns are derivatives in SI units; the factors below make them dimensionless.
-    let by_sway = slope(ship, speed, at::V, CONSTRAINTS.disturbance * speed);
-    let by_yaw = slope(ship, speed, at::R, CONSTRAINTS.disturbance * speed / length);
+    let by_sway = rate_derivative(ship, speed, at::V, CONSTRAINTS.disturbance * speed);
+    let by_yaw = rate_derivative(ship, speed, at::R, CONSTRAINTS.disturbance * speed / length);
     [
         by_sway[at::V] * time,
         by_yaw[at::V] / speed,
@@ -40,13 +40,13 @@ pub(super) fn sway_and_yaw(ship: &Ship) -> [f64; 4] {
 }
 
 /// Derivative of surge acceleration by the speed, 1/s, on a straight course at `speed_m_s`.
-pub(super) fn surge(ship: &Ship, speed_m_s: f64) -> f64 {
-    slope(ship, speed_m_s, at::U, CONSTRAINTS.disturbance * speed_m_s)[at::U]
+pub(super) fn surge_derivative(ship: &Ship, speed_m_s: f64) -> f64 {
+    rate_derivative(ship, speed_m_s, at::U, CONSTRAINTS.disturbance * speed_m_s)[at::U]
 }
 
 /// Functions of a ship that are affine in the coefficients of its model, as affine functions of the
 /// coefficients `names`, by differences.
-pub(super) fn affine<const N: usize>(
+pub(super) fn affine_functions<const N: usize>(
     model: &Model,
     law: &Law,
     names: &[String],
@@ -69,20 +69,20 @@ pub(super) fn affine<const N: usize>(
     Ok(std::array::from_fn(|k| {
         let linear = AffineFunction { normal: normals[k].clone(), constant: 0.0 };
         // The constant follows from the value at the model's own coefficients.
-        AffineFunction { constant: here[k] - linear.at(&values), ..linear }
+        AffineFunction { constant: here[k] - linear.value_at(&values), ..linear }
     }))
 }
 
 /// Returns true if a matrix of sway and yaw has the declared stability.
-pub(super) fn holds(line: StraightLine, matrix: &Matrix2<f64>) -> bool {
+pub(super) fn has_stability(line: StraightLine, matrix: &Matrix2<f64>) -> bool {
     match line {
-        StraightLine::Stable => fastest(matrix) < 0.0,
-        StraightLine::Unstable => fastest(matrix) > 0.0,
+        StraightLine::Stable => spectral_abscissa(matrix) < 0.0,
+        StraightLine::Unstable => spectral_abscissa(matrix) > 0.0,
     }
 }
 
 /// Sign of the definite matrix of the Lyapunov inequality: -1 for a stable, 1 for an unstable ship.
-fn sign(line: StraightLine) -> f64 {
+fn definiteness_sign(line: StraightLine) -> f64 {
     if line == StraightLine::Stable { -1.0 } else { 1.0 }
 }
 
@@ -90,17 +90,21 @@ fn sign(line: StraightLine) -> f64 {
 /// reference. By Lyapunov's theorems, negative definite with the `P` of a stable reference makes
 /// `A` stable, and positive definite with the `P` of an unstable one makes it unstable (Khalil
 /// 2002, Nonlinear systems, Theorems 4.3 and 4.6). `None` if the reference has no such `P`.
-pub(super) fn limit(
+pub(super) fn stability_limit(
     line: StraightLine,
     functions: &[AffineFunction; 4],
     reference: &Matrix2<f64>,
-) -> Option<Limit> {
-    let p = lyapunov(reference, sign(line))?;
+) -> Option<CoefficientLimit> {
+    let p = solve_lyapunov(reference, definiteness_sign(line))?;
     let [vv, vr, rv, rr] = functions;
     // Elements of `sign (P A + A' P)`: the diagonal ones are `2 (p11 vv + p12 rv)` and `2 (p12 vr +
     // p22 rr)`, the other one is `p11 vr + p12 vv + p12 rr + p22 rv`.
     let twice = |a: &AffineFunction, pa: f64, b: &AffineFunction, pb: f64| {
-        a.with(2.0 * pa * sign(line), b, 2.0 * pb * sign(line))
+        a.linear_combination(
+            2.0 * pa * definiteness_sign(line),
+            b,
+            2.0 * pb * definiteness_sign(line),
+        )
     };
     // The margin keeps the solver's error from making the matrix indefinite.
     let margin = |mut function: AffineFunction| {
@@ -109,24 +113,27 @@ pub(super) fn limit(
     };
     let first = margin(twice(vv, p[(0, 0)], rv, p[(0, 1)]));
     let last = margin(twice(vr, p[(0, 1)], rr, p[(1, 1)]));
-    let cross =
-        vr.with(p[(0, 0)], vv, p[(0, 1)]).with(1.0, &rr.with(p[(0, 1)], rv, p[(1, 1)]), 1.0);
-    let cross = cross.with(sign(line), &cross, 0.0);
+    let cross = vr.linear_combination(p[(0, 0)], vv, p[(0, 1)]).linear_combination(
+        1.0,
+        &rr.linear_combination(p[(0, 1)], rv, p[(1, 1)]),
+        1.0,
+    );
+    let cross = cross.linear_combination(definiteness_sign(line), &cross, 0.0);
     let name = if line == StraightLine::Stable {
         "straight-line stability"
     } else {
         "straight-line instability"
     };
-    Some(Limit::matrix(name.to_owned(), [&first, &cross, &last]))
+    Some(CoefficientLimit::positive_semidefinite(name.to_owned(), [&first, &cross, &last]))
 }
 
 /// The largest real part of the eigenvalues (the spectral abscissa).
-pub(super) fn fastest(matrix: &Matrix2<f64>) -> f64 {
+pub(super) fn spectral_abscissa(matrix: &Matrix2<f64>) -> f64 {
     matrix.complex_eigenvalues().iter().map(|value| value.re).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The symmetric `P` with `P A + A' P = sign I`; `None` if the equations are singular.
-fn lyapunov(a: &Matrix2<f64>, sign: f64) -> Option<Matrix2<f64>> {
+fn solve_lyapunov(a: &Matrix2<f64>, sign: f64) -> Option<Matrix2<f64>> {
     // Three linear equations for `p11`, `p12` and `p22`; the second one is the element off the
     // diagonal.
     let equations = Matrix3::new(

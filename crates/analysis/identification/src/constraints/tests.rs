@@ -4,12 +4,12 @@ use sistership_model::{Law, Model, Zoo};
 use sistership_simulation::Ship;
 
 use super::limits::CoefficientLimits;
-use super::straight::{fastest, sway_and_yaw};
+use super::straight::{spectral_abscissa, sway_and_yaw};
 use super::*;
 
 fn zoo(name: &str) -> (Model, std::sync::Arc<Law>) {
-    let zoo = Zoo::embedded().unwrap();
-    let model = zoo.model(name).unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = zoo.find_model(name).unwrap();
     let law = zoo.law(&model.law).unwrap().clone();
     (model, law)
 }
@@ -33,8 +33,9 @@ fn nearest(
         .iter()
         .map(|(name, quantity)| (name.clone(), quantity.value))
         .collect();
-    let found = limits
-        .nearest(&values, &names, &curvature, &|name| 0.1 * source.coefficient(name).abs())?;
+    let found = limits.nearest_coefficients(&values, &names, &curvature, &|name| {
+        0.1 * source.coefficient(name).abs()
+    })?;
     let mut model = solution.clone();
     found
         .into_iter()
@@ -52,7 +53,7 @@ fn with(model: &Model, changes: &[(&str, f64)]) -> Model {
 
 fn growth(model: &Model, law: &Law) -> f64 {
     let [vv, vr, rv, rr] = sway_and_yaw(&Ship::new(model, law).unwrap());
-    fastest(&Matrix2::new(vv, vr, rv, rr))
+    spectral_abscissa(&Matrix2::new(vv, vr, rv, rr))
 }
 
 #[test]
@@ -108,7 +109,7 @@ fn surge_that_speeds_itself_up_is_damped() {
     let found = nearest(&settings, &source, &law, &solution).unwrap();
     let ship = Ship::new(&found, &law).unwrap();
     for speed in [2.0, 3.5, 5.0, 6.5, 8.0] {
-        assert!(super::straight::surge(&ship, speed) < 1e-8, "{speed}");
+        assert!(super::straight::surge_derivative(&ship, speed) < 1e-8, "{speed}");
     }
     assert!(found.coefficient("X_deltadelta") < 1e-9);
 }
@@ -177,11 +178,11 @@ fn a_bound_of_what_the_model_lacks_is_refused() {
 
 #[test]
 fn the_ships_of_the_zoo_keep_signs_and_dissipation() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let settings =
         Constraints { physical_signs: true, dissipative: true, ..Constraints::default() };
     for name in ["mariner", "sr108", "kvlcc2", "kvlcc2-7m", "kcs", "esso-tanker"] {
-        let model = zoo.model(name).unwrap();
+        let model = zoo.find_model(name).unwrap();
         let speed = model.speed_m_s.unwrap_or(7.0);
         let limits = CoefficientLimits::new(
             &settings,

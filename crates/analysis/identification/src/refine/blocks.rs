@@ -13,16 +13,16 @@ use nalgebra::{DMatrix, DVector};
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
 use sistership_model::law::Law;
-use sistership_simulation::equations::{EquationsOfMotion, Lowering};
+use sistership_simulation::equations::{EquationLowering, EquationsOfMotion};
 use sistership_simulation::tape::Tape;
 
 use super::outcome::RefineError;
-use sistership_numerics::{Metric, Moments};
+use sistership_numerics::{PriorMetric, RegressionMoments};
 
 /// One regression: its axes, the coefficients of each axis, and the outputs of the tape that hold
 /// its parts.
 #[derive(Debug, Clone)]
-pub struct Block {
+pub struct RegressionBlock {
     /// The axes it solves for.
     pub axes: Vec<Axis>,
     /// Names of the coefficients by axis; the same place in each is the same regressor.
@@ -55,58 +55,59 @@ pub struct Block {
 
 /// All regressions of a law, and the tape that evaluates their parts.
 #[derive(Debug, Clone)]
-pub struct Blocks {
+pub struct RegressionBlocks {
     /// The regressions.
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<RegressionBlock>,
     pub(crate) tape: Tape,
     /// Inputs of the tape after the states, with their defaults.
     pub(crate) inputs: Vec<(String, Option<f64>)>,
 }
 
-impl Blocks {
+impl RegressionBlocks {
     /// Creates the regressions for the coefficients that a source model has.
     ///
     /// # Errors
     /// Returns an error with the quantity that the model lacks, or the coefficient that the law
     /// does not have.
     pub fn new(model: &Model, law: &Law) -> Result<Self, RefineError> {
-        let equations = EquationsOfMotion::of_law(model, Cow::Borrowed(law));
-        if let Some(blocks) = Self::build(&equations, true)? {
+        let equations = EquationsOfMotion::from_law(model, Cow::Borrowed(law));
+        if let Some(blocks) = Self::from_equations(&equations, true)? {
             return Ok(blocks);
         }
         // Mass or scales change during a run: there is no constant mixture to undo, so forces are
         // regressed.
-        let forces = Self::build(&equations, false)?;
+        let forces = Self::from_equations(&equations, false)?;
         forces.ok_or_else(|| RefineError::Law(format!("law `{}` cannot be regressed", law.name)))
     }
 
     /// The regressions of some equations; axes are solved together only where `allow_common`.
     /// `None` if the mixing matrix of a common regression is not constant.
-    fn build(
+    fn from_equations(
         equations: &EquationsOfMotion<'_>,
         allow_common: bool,
     ) -> Result<Option<Self>, RefineError> {
-        let names = equations.names();
-        let mut lowering = Lowering::new(equations, &names);
+        let names = equations.tape_input_names();
+        let mut lowering = EquationLowering::new(equations, &names);
         let mut blocks = Vec::new();
-        for group in coupled(equations.law()) {
-            for axes in split(equations, &group, allow_common) {
-                blocks.extend(block(equations, &mut lowering, axes, &group)?);
+        for group in coupled_groups(equations.law()) {
+            for axes in split_group(equations, &group, allow_common) {
+                blocks.extend(build_block(equations, &mut lowering, axes, &group)?);
             }
         }
         let tape = lowering.finish();
         // The mixing matrices need the finished tape, on which mass and scales are evaluated.
         for block in &mut blocks {
-            let Some(mixing) = mixing(block, &tape, names.len()) else { return Ok(None) };
-            block.unmixing = inverse(&mixing).ok_or_else(|| singular(equations.law(), block))?;
+            let Some(mixing) = mixing_matrix(block, &tape, names.len()) else { return Ok(None) };
+            block.unmixing =
+                invert_mixing(&mixing).ok_or_else(|| singular_error(equations.law(), block))?;
             block.mixing = mixing;
         }
-        Ok(Some(Self { blocks, tape, inputs: equations.inputs() }))
+        Ok(Some(Self { blocks, tape, inputs: equations.law_inputs() }))
     }
 }
 
 /// Groups of axes that the mass matrix couples.
-fn coupled(law: &Law) -> Vec<Vec<Axis>> {
+fn coupled_groups(law: &Law) -> Vec<Vec<Axis>> {
     let mut groups: Vec<Vec<Axis>> = Vec::new();
     for axis in law.axes.keys().copied() {
         let touches = |group: &Vec<Axis>| {
@@ -125,16 +126,21 @@ fn coupled(law: &Law) -> Vec<Vec<Axis>> {
 }
 
 /// The part of a coefficient's name after its axis.
-fn suffix(name: &str) -> &str {
+fn term_suffix(name: &str) -> &str {
     name.split_once('_').map_or(name, |(_, suffix)| suffix)
 }
 
 /// Splits a group into the sets of axes that are solved together: the whole group if its axes have
 /// the same terms, else single axes.
-fn split(equations: &EquationsOfMotion<'_>, group: &[Axis], allow_common: bool) -> Vec<Vec<Axis>> {
+fn split_group(
+    equations: &EquationsOfMotion<'_>,
+    group: &[Axis],
+    allow_common: bool,
+) -> Vec<Vec<Axis>> {
     let terms = |axis: Axis| -> Vec<_> {
-        let term = |name: &String| (suffix(name).to_owned(), equations.term(name).ok());
-        equations.coefficients(axis).map(term).collect()
+        let term =
+            |name: &String| (term_suffix(name).to_owned(), equations.unscaled_regressor(name).ok());
+        equations.axis_coefficients(axis).map(term).collect()
     };
     // Terms are the same if they have the same names after the axis and the same formulas.
     let same = allow_common && group.windows(2).all(|pair| terms(pair[0]) == terms(pair[1]));
@@ -143,40 +149,47 @@ fn split(equations: &EquationsOfMotion<'_>, group: &[Axis], allow_common: bool) 
 
 /// The regression of some axes of a group; `None` if they have no coefficients. Mixing matrices are
 /// the identity here, since they can be evaluated only on the finished tape.
-fn block(
+fn build_block(
     equations: &EquationsOfMotion<'_>,
-    lowering: &mut Lowering<'_>,
+    lowering: &mut EquationLowering<'_>,
     axes: Vec<Axis>,
     group: &[Axis],
-) -> Result<Option<Block>, RefineError> {
+) -> Result<Option<RegressionBlock>, RefineError> {
     let law = equations.law();
     let names: Vec<Vec<String>> =
-        axes.iter().map(|&axis| equations.coefficients(axis).cloned().collect()).collect();
+        axes.iter().map(|&axis| equations.axis_coefficients(axis).cloned().collect()).collect();
     if names[0].is_empty() {
         return Ok(None);
     }
     // Axes of a common regression have the same terms: those of the first axis serve all.
     let mut terms = Vec::new();
     for name in &names[0] {
-        terms.push(lowering.output(&equations.term(name)?)?);
+        terms.push(lowering.add_output(&equations.unscaled_regressor(name)?)?);
     }
-    let scales =
-        axes.iter().map(|axis| lowering.output(&law.axes[axis].scale)).collect::<Result<_, _>>()?;
-    let rests =
-        axes.iter().map(|axis| lowering.output(&law.axes[axis].rest)).collect::<Result<_, _>>()?;
+    let scales = axes
+        .iter()
+        .map(|axis| lowering.add_output(&law.axes[axis].scale))
+        .collect::<Result<_, _>>()?;
+    let rests = axes
+        .iter()
+        .map(|axis| lowering.add_output(&law.axes[axis].rest))
+        .collect::<Result<_, _>>()?;
     let mut mass = Vec::new();
     for &axis in &axes {
         mass.push(
-            group.iter().map(|&other| lowering.mass(axis, other)).collect::<Result<Vec<_>, _>>()?,
+            group
+                .iter()
+                .map(|&other| lowering.add_mass_entry(axis, other))
+                .collect::<Result<Vec<_>, _>>()?,
         );
     }
     let unmixed = DMatrix::identity(axes.len(), axes.len());
-    let additions = lowering.additions(group)?;
+    let additions = lowering.add_effect_accelerations(group)?;
     let shrinkage = names[0]
         .iter()
-        .map(|name| law.deviation(name).map_or(1.0, |submodel| submodel.shrinkage))
+        .map(|name| law.deviation_submodel(name).map_or(1.0, |submodel| submodel.shrinkage))
         .collect();
-    Ok(Some(Block {
+    Ok(Some(RegressionBlock {
         axes,
         names,
         terms,
@@ -192,29 +205,33 @@ fn block(
     }))
 }
 
-impl Block {
+impl RegressionBlock {
     /// Number of regressors.
-    pub fn regressors(&self) -> usize {
+    pub fn regressor_count(&self) -> usize {
         self.terms.len()
     }
 
     /// Number of columns of its table: regressors, then targets.
-    pub(crate) fn width(&self) -> usize {
-        self.regressors() + self.axes.len()
+    pub(crate) fn column_count(&self) -> usize {
+        self.regressor_count() + self.axes.len()
     }
 
     /// Metric of its prior: the joint precision where a source determines one, else the sizes of
     /// the regressors in `moments`.
-    pub(crate) fn metric(&self, moments: &Moments) -> Metric {
-        let earned = self.precision.as_ref().and_then(Metric::of_precision);
-        earned.unwrap_or_else(|| Metric::of_regressors(moments, &self.shrinkage))
+    pub(crate) fn prior_metric(&self, moments: &RegressionMoments) -> PriorMetric {
+        let earned = self.precision.as_ref().and_then(PriorMetric::of_precision);
+        earned.unwrap_or_else(|| PriorMetric::of_regressors(moments, &self.shrinkage))
     }
 
     /// Variance of each regressor over an envelope, or over the trials where that is larger, times
     /// its shrinkage.
-    pub(super) fn sizes(&self, envelope: &Moments, trials: &Moments) -> DVector<f64> {
-        let moves = |j: usize| envelope.variance(j).max(trials.variance(j));
-        DVector::from_fn(self.regressors(), |j, _| self.shrinkage[j] * moves(j))
+    pub(super) fn regressor_sizes(
+        &self,
+        envelope: &RegressionMoments,
+        trials: &RegressionMoments,
+    ) -> DVector<f64> {
+        let moves = |j: usize| envelope.regressor_variance(j).max(trials.regressor_variance(j));
+        DVector::from_fn(self.regressor_count(), |j, _| self.shrinkage[j] * moves(j))
     }
 
     /// Returns true if the force on one axis of a coupled group is regressed, not the
@@ -225,14 +242,14 @@ impl Block {
 }
 
 /// The inverse of a mixing matrix; none where it is singular.
-fn inverse(mixing: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+fn invert_mixing(mixing: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let (rows, columns) = mixing.shape();
     let inverse = mixing.clone().lu().solve(&DMatrix::identity(rows, columns))?;
     inverse.iter().all(|value| value.is_finite()).then_some(inverse)
 }
 
 /// The error for a mixing matrix that has no inverse.
-fn singular(law: &Law, block: &Block) -> RefineError {
+fn singular_error(law: &Law, block: &RegressionBlock) -> RefineError {
     let axes: Vec<String> = block.axes.iter().map(|axis| format!("{axis:?}")).collect();
     RefineError::Law(format!(
         "the coefficients of the axes {} of law `{}` cannot be told from their common regression: \
@@ -245,7 +262,7 @@ fn singular(law: &Law, block: &Block) -> RefineError {
 
 /// The mixing matrix `M^-1 diag(scale_k / scale_0)`; the scale of the first axis stays in the
 /// regressors. `None` if it is not constant.
-fn mixing(block: &Block, tape: &Tape, inputs: usize) -> Option<DMatrix<f64>> {
+fn mixing_matrix(block: &RegressionBlock, tape: &Tape, inputs: usize) -> Option<DMatrix<f64>> {
     let q = block.axes.len();
     if q == 1 {
         return Some(DMatrix::identity(1, 1));
@@ -259,7 +276,8 @@ fn mixing(block: &Block, tape: &Tape, inputs: usize) -> Option<DMatrix<f64>> {
     // Ratios of scales are compared at two arbitrary inputs without special values; scales that are
     // proportional give the same ratios at both.
     let ratios = |at: f64| {
-        let values = tape.values(&(0..inputs).map(|i| at + 0.1 * i as f64).collect::<Vec<f64>>());
+        let values =
+            tape.evaluate_point(&(0..inputs).map(|i| at + 0.1 * i as f64).collect::<Vec<f64>>());
         DVector::from_iterator(
             q,
             block.scales.iter().map(|&scale| values[scale] / values[block.scales[0]]),
@@ -283,15 +301,15 @@ mod tests {
     #[test]
     fn a_mixture_that_cannot_be_undone_is_refused_with_its_axes() {
         let regular = DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 1.0]);
-        let one = inverse(&regular).unwrap() * &regular;
+        let one = invert_mixing(&regular).unwrap() * &regular;
         assert!((one - DMatrix::identity(2, 2)).amax() < 1e-12);
-        assert!(inverse(&DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0])).is_none());
-        assert!(inverse(&DMatrix::from_row_slice(1, 1, &[f64::NAN])).is_none());
-        let zoo = Zoo::embedded().unwrap();
+        assert!(invert_mixing(&DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0])).is_none());
+        assert!(invert_mixing(&DMatrix::from_row_slice(1, 1, &[f64::NAN])).is_none());
+        let zoo = Zoo::load_embedded().unwrap();
         let law = zoo.law("abkowitz").unwrap();
-        let blocks = Blocks::new(&zoo.model("mariner").unwrap(), law).unwrap();
+        let blocks = RegressionBlocks::new(&zoo.find_model("mariner").unwrap(), law).unwrap();
         let coupled = blocks.blocks.iter().find(|block| block.axes.len() == 2).unwrap();
-        let refusal = singular(law, coupled).to_string();
+        let refusal = singular_error(law, coupled).to_string();
         assert!(refusal.contains("axes Y, N of law `abkowitz`"), "{refusal}");
     }
 }

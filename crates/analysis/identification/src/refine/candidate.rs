@@ -2,38 +2,38 @@
 
 use sistership_model::Model;
 use sistership_simulation::error::SquaredError;
-use sistership_simulation::horizons::{HorizonErrors, combined};
+use sistership_simulation::horizons::{HorizonErrors, combine_horizons};
 
 use super::cma_es::SearchReport;
 use super::errors::CoefficientErrors;
 use super::outcome::{RefineError, StepOption};
-use super::problem::Problem;
-use super::ridge::{Choices, Fit};
-use super::simulated::Simulated;
+use super::problem::RefinementProblem;
+use super::ridge::{CoefficientFit, RidgeChoices};
+use super::simulated::SimulatedErrors;
 use super::thresholds::SELECTION;
-use super::variant::Variant;
+use super::variant::TermVariant;
 use sistership_numerics::RidgeChoice;
 
 /// The fit of a candidate on all trials, evaluated where the candidate is chosen.
-pub(super) trait Solution: Sync {
+pub(super) trait CandidateSolution: Sync {
     /// Returns the coefficients without their errors; `None` if the source stays as it is.
     ///
     /// # Errors
     /// Returns an error if the trials have no sample, or the constraints cannot be kept.
-    fn fit(&self, variants: &[Variant]) -> Result<Option<Fit>, RefineError>;
+    fn fit(&self, variants: &[TermVariant]) -> Result<Option<CoefficientFit>, RefineError>;
 
     /// Returns the joint errors of the coefficients, where the estimator has them.
     ///
     /// # Errors
     /// Returns an error if a trial lacks a channel.
-    fn errors(
+    fn coefficient_errors(
         &self,
-        problem: &Problem<'_>,
-        variants: &[Variant],
+        problem: &RefinementProblem<'_>,
+        variants: &[TermVariant],
     ) -> Result<Option<CoefficientErrors>, RefineError>;
 
     /// Returns the place of its variant and its choices if the solution is a ridge.
-    fn ridge(&self) -> Option<(usize, &Choices)> {
+    fn ridge_choices(&self) -> Option<(usize, &RidgeChoices)> {
         None
     }
 }
@@ -41,15 +41,15 @@ pub(super) trait Solution: Sync {
 /// The solution that leaves the source as it is.
 pub(super) struct UnchangedSource;
 
-impl Solution for UnchangedSource {
-    fn fit(&self, _: &[Variant]) -> Result<Option<Fit>, RefineError> {
+impl CandidateSolution for UnchangedSource {
+    fn fit(&self, _: &[TermVariant]) -> Result<Option<CoefficientFit>, RefineError> {
         Ok(None)
     }
 
-    fn errors(
+    fn coefficient_errors(
         &self,
-        _: &Problem<'_>,
-        _: &[Variant],
+        _: &RefinementProblem<'_>,
+        _: &[TermVariant],
     ) -> Result<Option<CoefficientErrors>, RefineError> {
         Ok(None)
     }
@@ -58,7 +58,7 @@ impl Solution for UnchangedSource {
 /// A fit with the results by which it is compared with others.
 pub(super) struct CandidateFit {
     pub option: StepOption,
-    pub solution: Box<dyn Solution>,
+    pub solution: Box<dyn CandidateSolution>,
     /// Squared errors at the shortest restart interval.
     pub errors: SquaredError,
     /// Standardised errors by restart interval, the shortest first.
@@ -80,20 +80,20 @@ impl CandidateFit {
     /// Creates a candidate from a solution and the simulations of its held-out trials; `size` is
     /// the number of its coefficients.
     pub fn new(
-        problem: &Problem<'_>,
+        problem: &RefinementProblem<'_>,
         (step, lambda_min): (String, Option<f64>),
-        solution: impl Solution + 'static,
+        solution: impl CandidateSolution + 'static,
         size: usize,
-        simulated: Simulated,
+        simulated: SimulatedErrors,
     ) -> Self {
-        let Simulated { total: errors, horizons, reason } = simulated;
-        let (error, each) = combined(&horizons);
+        let SimulatedErrors { total: errors, horizons, reason } = simulated;
+        let (error, each) = combine_horizons(&horizons);
         // A divergence at the shortest restart interval, or a refusal, excludes the candidate.
         let error = reason.is_none().then_some(error);
         // One value an acceleration, in the order of the regressions and their targets.
         let flat = |of: &dyn Fn(&RidgeChoice) -> f64| {
             solution
-                .ridge()
+                .ridge_choices()
                 .into_iter()
                 .flat_map(|(_, choices)| choices.iter().flatten())
                 .map(of)
@@ -117,7 +117,7 @@ impl CandidateFit {
     /// Adds errors at further restart intervals and combines all of them anew.
     pub fn add_horizons(&mut self, horizons: Vec<HorizonErrors>) {
         self.horizons.extend(horizons);
-        let (error, each) = combined(&self.horizons);
+        let (error, each) = combine_horizons(&self.horizons);
         (self.option.error, self.each) = (Some(error), each);
     }
 }
@@ -126,13 +126,13 @@ impl CandidateFit {
 /// is better by more than one per cent, and an option with fewer coefficients unless the other is
 /// better by more than two standard errors of the difference over the trials (Breiman et al. 1984,
 /// Classification and regression trees, section 3.4.3). `None` if no option has a finite error.
-pub(super) fn best(options: &[CandidateFit]) -> Option<usize> {
+pub(super) fn best_candidate(options: &[CandidateFit]) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
     for (index, error) in
         options.iter().enumerate().filter_map(|(index, o)| Some((index, o.option.error?)))
     {
         let better = |(at, least): (usize, f64)| {
-            error < SELECTION.better * least && clearly(&options[index], &options[at])
+            error < SELECTION.better * least && is_clearly_better(&options[index], &options[at])
         };
         if error.is_finite() && best.is_none_or(better) {
             best = Some((index, error));
@@ -143,7 +143,7 @@ pub(super) fn best(options: &[CandidateFit]) -> Option<usize> {
 
 /// Returns true if an option may replace one that has fewer coefficients. The source has no fitted
 /// coefficients and is replaced by any better option, unless there are few trials.
-fn clearly(new: &CandidateFit, old: &CandidateFit) -> bool {
+fn is_clearly_better(new: &CandidateFit, old: &CandidateFit) -> bool {
     let is_larger = old.size > 0 && new.size > old.size;
     if !(new.few || is_larger) || new.each.len() != old.each.len() || new.each.len() < 2 {
         return true;

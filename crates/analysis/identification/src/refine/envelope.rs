@@ -8,20 +8,22 @@ use sistership_model::coefficient::Axis;
 use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, STANDARD, sail_together};
-use sistership_simulation::plant::{Inputs, MAX_INPUTS, Work};
-use sistership_simulation::state::{RECORDED, StateVector, Trajectory, at};
+use sistership_simulation::manoeuvre::{
+    ManoeuvreSettings, STANDARD_MANOEUVRES, simulate_manoeuvre_batch,
+};
+use sistership_simulation::plant::{LawInputs, MAX_INPUTS, PlantWorkspace};
+use sistership_simulation::state::{RECORDED_CHANNELS, StateVector, Trajectory, at};
 
-use super::blocks::{Block, Blocks};
+use super::blocks::{RegressionBlock, RegressionBlocks};
 use super::outcome::RefineError;
-use super::rows::{Table, known_tables};
+use super::rows::{RegressionTable, known_tables};
 use super::thresholds::SOURCE;
-use sistership_numerics::{Moments, merged};
-use sistership_priors::transfer::ready;
+use sistership_numerics::{RegressionMoments, merge_trials};
+use sistership_priors::transfer::prepare_ship;
 
 /// Accelerations of a model at the states of an envelope: by group, those of each axis in the order
 /// of [`Axis`].
-pub(super) type Rates = Vec<[Vec<f64>; 4]>;
+pub(super) type EnvelopeRates = Vec<[Vec<f64>; 4]>;
 
 /// Accelerations of a ship of a population at the states of an envelope.
 #[derive(Debug)]
@@ -29,7 +31,7 @@ pub(super) struct MemberRates {
     /// Its model's name.
     pub name: String,
     /// Its accelerations.
-    pub rates: Rates,
+    pub rates: EnvelopeRates,
 }
 
 /// States in which a model will be used, with the accelerations that a source predicts there.
@@ -64,7 +66,7 @@ pub(super) struct SampleGroup {
 
 impl SampleGroup {
     /// The source's acceleration of an axis at each sample.
-    fn rate(&self, axis: Axis) -> &[f64] {
+    fn axis_rate(&self, axis: Axis) -> &[f64] {
         &self.rates[axis as usize]
     }
 
@@ -73,11 +75,11 @@ impl SampleGroup {
     ///
     /// Targets are linear in accelerations. Their response to each axis' acceleration is the same
     /// for every model, so that it is evaluated once, with an acceleration of one.
-    fn moments_of(
+    fn model_moments(
         &self,
-        blocks: &Blocks,
+        blocks: &RegressionBlocks,
         models: &[&[Vec<f64>; 4]],
-    ) -> Result<Vec<Moments>, RefineError> {
+    ) -> Result<Vec<RegressionMoments>, RefineError> {
         // Targets at zero acceleration, and at an acceleration of one in each axis: the difference
         // is the response to that axis.
         let (zero, one) = (vec![0.0; self.samples.len()], vec![1.0; self.samples.len()]);
@@ -87,36 +89,40 @@ impl SampleGroup {
         };
         // Only the axes that are regressed have an acceleration that matters.
         let axes: Vec<Axis> = blocks.blocks.iter().flat_map(|block| block.axes.clone()).collect();
-        let alone: Vec<(Axis, Vec<Table>)> = axes
+        let alone: Vec<(Axis, Vec<RegressionTable>)> = axes
             .into_iter()
             .map(|axis| Ok((axis, alone(axis)?)))
             .collect::<Result<_, RefineError>>()?;
-        let of_block = |(place, (block, table)): (usize, (&Block, &mut Table))| {
-            let rest = table.split_off(block.regressors());
-            silence(table);
-            for rates in models {
-                for (target, rest) in rest.iter().enumerate() {
-                    let mut column = rest.clone();
-                    for (axis, tables) in &alone {
-                        let moved = &tables[place][block.regressors() + target];
-                        let rates = &rates[*axis as usize];
-                        column.iter_mut().enumerate().for_each(|(k, value)| {
-                            *value += (moved[k] - rest[k]) * rates[k];
-                        });
+        let of_block =
+            |(place, (block, table)): (usize, (&RegressionBlock, &mut RegressionTable))| {
+                let rest = table.split_off(block.regressor_count());
+                zero_rounding(table);
+                for rates in models {
+                    for (target, rest) in rest.iter().enumerate() {
+                        let mut column = rest.clone();
+                        for (axis, tables) in &alone {
+                            let moved = &tables[place][block.regressor_count() + target];
+                            let rates = &rates[*axis as usize];
+                            column.iter_mut().enumerate().for_each(|(k, value)| {
+                                *value += (moved[k] - rest[k]) * rates[k];
+                            });
+                        }
+                        table.push(column);
                     }
-                    table.push(column);
                 }
-            }
-            Moments::about_zero(table, block.regressors(), self.weight)
-        };
+                RegressionMoments::about_zero(table, block.regressor_count(), self.weight)
+            };
         Ok(blocks.blocks.iter().zip(&mut at_rest).enumerate().map(of_block).collect())
     }
 
-    fn moments(&self, blocks: &Blocks) -> Result<Vec<Moments>, RefineError> {
-        let mut tables = known_tables(blocks, &self.samples, &|axis| self.rate(axis))?;
-        let one = |(block, table): (&Block, &mut Table)| {
-            silence(&mut table[..block.regressors()]);
-            Moments::about_zero(table, block.regressors(), self.weight)
+    fn source_moments(
+        &self,
+        blocks: &RegressionBlocks,
+    ) -> Result<Vec<RegressionMoments>, RefineError> {
+        let mut tables = known_tables(blocks, &self.samples, &|axis| self.axis_rate(axis))?;
+        let one = |(block, table): (&RegressionBlock, &mut RegressionTable)| {
+            zero_rounding(&mut table[..block.regressor_count()]);
+            RegressionMoments::about_zero(table, block.regressor_count(), self.weight)
         };
         Ok(blocks.blocks.iter().zip(&mut tables).map(one).collect())
     }
@@ -130,19 +136,20 @@ impl OperatingEnvelope {
     /// Returns an error if the source cannot be simulated, or neither trials nor manoeuvres have a
     /// state that it covers.
     pub fn new(source: &Model, law: &Law, trials: &[&Trial]) -> Result<Self, RefineError> {
-        let ship = ready(source, law, trials)?;
+        let ship = prepare_ship(source, law, trials)?;
         let asked = SourceResponse::new(&ship, source, law);
-        let recorded =
-            trials.iter().filter_map(|trial| asked.group(trial.depth_m, asked.recorded(trial)));
-        let sailed = sail_together(
+        let recorded = trials
+            .iter()
+            .filter_map(|trial| asked.sample_group(trial.depth_m, asked.recorded_points(trial)));
+        let sailed = simulate_manoeuvre_batch(
             &ship,
-            &STANDARD.map(|manoeuvre| (manoeuvre, &[][..])),
+            &STANDARD_MANOEUVRES.map(|manoeuvre| (manoeuvre, &[][..])),
             &ManoeuvreSettings::default(),
         );
         let sailed = sailed
             .into_iter()
             .flatten()
-            .filter_map(|sailed| asked.group(None, asked.sailed(&sailed.track)));
+            .filter_map(|sailed| asked.sample_group(None, asked.track_points(&sailed.track)));
         let (recorded, sailed): (Vec<SampleGroup>, Vec<SampleGroup>) =
             (recorded.collect(), sailed.collect());
         if recorded.is_empty() && sailed.is_empty() {
@@ -153,7 +160,7 @@ impl OperatingEnvelope {
         }
         // Trials and manoeuvres are weighted separately: each of the two counts as `SOURCE.samples`
         // samples.
-        let groups = [recorded, sailed].into_iter().flat_map(evened).collect();
+        let groups = [recorded, sailed].into_iter().flat_map(with_equal_weight).collect();
         Ok(Self {
             source: source.name.clone(),
             law: law.name.clone(),
@@ -171,13 +178,13 @@ impl OperatingEnvelope {
     ///
     /// # Errors
     /// Returns an error if the other model cannot be set up or does not cover a state.
-    pub fn moved_to(
+    pub fn shifted_towards(
         &self,
         (model, law): (&Model, &Law),
         shares: &[f64; 4],
         trials: &[&Trial],
     ) -> Result<Self, RefineError> {
-        let said = self.asked_of((model, law), trials)?;
+        let said = self.model_rates((model, law), trials)?;
         let mut moved = self.clone();
         for (group, rates) in moved.groups.iter_mut().zip(&said) {
             for ((own, other), share) in group.rates.iter_mut().zip(rates).zip(shares) {
@@ -194,21 +201,21 @@ impl OperatingEnvelope {
     ///
     /// # Errors
     /// Returns an error if the other model cannot be set up or does not cover a state.
-    pub fn asked_of(
+    pub fn model_rates(
         &self,
         (model, law): (&Model, &Law),
         trials: &[&Trial],
-    ) -> Result<Rates, RefineError> {
-        let ship = ready(model, law, trials)?;
+    ) -> Result<EnvelopeRates, RefineError> {
+        let ship = prepare_ship(model, law, trials)?;
         let asked = SourceResponse::new(&ship, model, law);
         let of_group = |group: &SampleGroup| {
-            let mut points = asked.recorded(&group.samples);
+            let mut points = asked.recorded_points(&group.samples);
             // Both propellers then work at the same fraction of their own self-propulsion point.
             for (_, n_rps) in points.iter_mut().filter(|_| self.n_rps > 0.0) {
                 *n_rps *= asked.n_rps / self.n_rps;
             }
             let message = || format!("`{}` says nothing of some state", model.name);
-            let rates = asked.rates(&points, group.samples.depth_m);
+            let rates = asked.point_rates(&points, group.samples.depth_m);
             rates.ok_or_else(|| RefineError::Data(message()))
         };
         self.groups.iter().map(of_group).collect()
@@ -220,18 +227,18 @@ impl OperatingEnvelope {
     ///
     /// # Errors
     /// Returns an error if the law has an input that the states do not have.
-    pub fn moments_of(
+    pub fn model_moments(
         &self,
-        blocks: &Blocks,
-        models: &[&Rates],
-    ) -> Result<Vec<Moments>, RefineError> {
+        blocks: &RegressionBlocks,
+        models: &[&EnvelopeRates],
+    ) -> Result<Vec<RegressionMoments>, RefineError> {
         let of_group = |(place, group): (usize, &SampleGroup)| {
             let said: Vec<&[Vec<f64>; 4]> = models.iter().map(|rates| &rates[place]).collect();
-            group.moments_of(blocks, &said)
+            group.model_moments(blocks, &said)
         };
-        let groups: Vec<Vec<Moments>> =
+        let groups: Vec<Vec<RegressionMoments>> =
             self.groups.iter().enumerate().map(of_group).collect::<Result<_, _>>()?;
-        Ok(merged(&groups, |_| true).unwrap_or_default())
+        Ok(merge_trials(&groups, |_| true).unwrap_or_default())
     }
 
     /// Returns the statistics of the source's accelerations for the regressions of a law, by group
@@ -239,8 +246,11 @@ impl OperatingEnvelope {
     ///
     /// # Errors
     /// Returns an error if the law has an input that the trials do not record.
-    pub fn moments(&self, blocks: &Blocks) -> Result<Vec<Vec<Moments>>, RefineError> {
-        self.groups.iter().map(|group| group.moments(blocks)).collect()
+    pub fn group_moments(
+        &self,
+        blocks: &RegressionBlocks,
+    ) -> Result<Vec<Vec<RegressionMoments>>, RefineError> {
+        self.groups.iter().map(|group| group.source_moments(blocks)).collect()
     }
 }
 
@@ -249,13 +259,14 @@ impl OperatingEnvelope {
     /// Sum of the squared differences of the accelerations of an axis at the same states.
     pub fn distance(&self, other: &Self, axis: Axis) -> f64 {
         let pairs = self.groups.iter().zip(&other.groups);
-        let values = pairs.flat_map(|(one, other)| one.rate(axis).iter().zip(other.rate(axis)));
+        let values =
+            pairs.flat_map(|(one, other)| one.axis_rate(axis).iter().zip(other.axis_rate(axis)));
         values.map(|(one, other)| (one - other).powi(2)).sum()
     }
 }
 
 /// Groups with the weights by which together they count as much as [`SOURCE`]'s samples.
-fn evened(mut groups: Vec<SampleGroup>) -> Vec<SampleGroup> {
+fn with_equal_weight(mut groups: Vec<SampleGroup>) -> Vec<SampleGroup> {
     let all: usize = groups.iter().map(|group| group.samples.len()).sum();
     groups.iter_mut().for_each(|group| group.weight = SOURCE.samples as f64 / all as f64);
     groups
@@ -288,13 +299,13 @@ impl<'a> SourceResponse<'a> {
     }
 
     /// The states that a trial recorded; empty if it lacks a velocity or the rudder.
-    fn recorded(&self, trial: &Trial) -> Vec<OperatingPoint> {
+    fn recorded_points(&self, trial: &Trial) -> Vec<OperatingPoint> {
         let need = [Channel::U, Channel::V, Channel::R, Channel::Delta];
         if need.iter().any(|channel| trial.channel(*channel).is_none()) {
             return Vec::new();
         }
         // Channels that are not recorded stay zero.
-        let columns: Vec<(usize, &[f64])> = RECORDED
+        let columns: Vec<(usize, &[f64])> = RECORDED_CHANNELS
             .iter()
             .chain(&[(Channel::Delta, at::DELTA)])
             .filter_map(|&(channel, place)| Some((place, trial.channel(channel)?)))
@@ -304,35 +315,43 @@ impl<'a> SourceResponse<'a> {
             columns.iter().for_each(|(place, column)| state[*place] = column[k]);
             (state, trial.channel(Channel::N).map_or(self.n_rps, |n| n[k]))
         };
-        spread(trial.len()).map(one).collect()
+        sample_places(trial.len()).map(one).collect()
     }
 
     /// The states of a simulated track.
-    fn sailed(&self, track: &Trajectory) -> Vec<OperatingPoint> {
-        spread(track.t_s.len()).map(|k| (track.states[k], track.n_rps[k])).collect()
+    fn track_points(&self, track: &Trajectory) -> Vec<OperatingPoint> {
+        sample_places(track.t_s.len()).map(|k| (track.states[k], track.n_rps[k])).collect()
     }
 
     /// Returns true if the source covers a state: fast enough, and not with the propeller stopped
     /// or reversed.
-    fn knows(&self, (state, n_rps): &OperatingPoint) -> bool {
+    fn covers_point(&self, (state, n_rps): &OperatingPoint) -> bool {
         state[at::U] > self.least_m_s && (!self.propeller || *n_rps > 0.0)
     }
 
     /// The group of the points that the source covers, turned to heading north; `None` if there are
     /// none or an acceleration is not finite.
-    fn group(&self, depth_m: Option<f64>, mut points: Vec<OperatingPoint>) -> Option<SampleGroup> {
-        points.retain(|point| self.knows(point));
+    fn sample_group(
+        &self,
+        depth_m: Option<f64>,
+        mut points: Vec<OperatingPoint>,
+    ) -> Option<SampleGroup> {
+        points.retain(|point| self.covers_point(point));
         // The heading matters only relative to the wind, which `calm` gives for a heading of north.
         points.iter_mut().for_each(|(state, _)| state[at::PSI] = 0.0);
-        let rates = self.rates(&points, depth_m).filter(|_| !points.is_empty())?;
-        Some(SampleGroup { samples: self.samples(&points, depth_m), rates, weight: 1.0 })
+        let rates = self.point_rates(&points, depth_m).filter(|_| !points.is_empty())?;
+        Some(SampleGroup { samples: self.sample_trial(&points, depth_m), rates, weight: 1.0 })
     }
 
     /// Its accelerations by axis; `None` if one is not finite.
-    fn rates(&self, points: &[OperatingPoint], depth_m: Option<f64>) -> Option<[Vec<f64>; 4]> {
-        let mut work = Work::default();
+    fn point_rates(
+        &self,
+        points: &[OperatingPoint],
+        depth_m: Option<f64>,
+    ) -> Option<[Vec<f64>; 4]> {
+        let mut work = PlantWorkspace::default();
         let rate = |point: &OperatingPoint| {
-            self.ship.rate_with(&point.0, &self.inputs(point, depth_m), &mut work)
+            self.ship.rate_with(&point.0, &self.law_inputs(point, depth_m), &mut work)
         };
         // Rates of the state vector; the rates of the velocities are the accelerations.
         let rates: Vec<StateVector> = points.iter().map(rate).collect();
@@ -342,10 +361,10 @@ impl<'a> SourceResponse<'a> {
     }
 
     /// The inputs of the source's law at a point.
-    fn inputs(&self, (state, n_rps): &OperatingPoint, depth_m: Option<f64>) -> Inputs {
+    fn law_inputs(&self, (state, n_rps): &OperatingPoint, depth_m: Option<f64>) -> LawInputs {
         // The apparent wind is zero, so that the accelerations are those of the hull, rudder and
         // propeller alone.
-        let (wind_m_s, wind_from) = calm(state);
+        let (wind_m_s, wind_from) = calm_wind(state);
         let mut inputs = [0.0; MAX_INPUTS];
         for (value, (name, default)) in inputs.iter_mut().zip(self.ship.law_inputs()) {
             *value = match name {
@@ -361,7 +380,7 @@ impl<'a> SourceResponse<'a> {
     }
 
     /// The points as a trial that a law's regressions can read.
-    fn samples(&self, points: &[OperatingPoint], depth_m: Option<f64>) -> Trial {
+    fn sample_trial(&self, points: &[OperatingPoint], depth_m: Option<f64>) -> Trial {
         let states = [
             (Channel::U, at::U),
             (Channel::V, at::V),
@@ -377,7 +396,7 @@ impl<'a> SourceResponse<'a> {
         // Without a propeller the source holds for its approach revolutions, whatever was recorded.
         let n = points.iter().map(|(_, n_rps)| if self.propeller { *n_rps } else { self.n_rps });
         channels.insert(Channel::N, n.collect());
-        let (wind_m_s, wind_from) = points.iter().map(|(state, _)| calm(state)).unzip();
+        let (wind_m_s, wind_from) = points.iter().map(|(state, _)| calm_wind(state)).unzip();
         channels.extend([(Channel::WindSpeed, wind_m_s), (Channel::WindFrom, wind_from)]);
         Trial {
             t_s: (0..points.len()).map(|k| k as f64).collect(),
@@ -390,19 +409,19 @@ impl<'a> SourceResponse<'a> {
 
 /// Speed and direction of the wind that makes the apparent wind zero. The source's aerodynamic
 /// forces do not enter the prior. The heading is north.
-fn calm(state: &StateVector) -> (f64, f64) {
+fn calm_wind(state: &StateVector) -> (f64, f64) {
     let (u, v) = (state[at::U], state[at::V]);
     (u.hypot(v), (-v).atan2(-u))
 }
 
 /// Places of at most [`SOURCE`]`.samples` samples of a group, evenly spread.
-fn spread(count: usize) -> impl Iterator<Item = usize> {
+fn sample_places(count: usize) -> impl Iterator<Item = usize> {
     (0..count).step_by(count.div_ceil(SOURCE.samples).max(1))
 }
 
 /// Sets regressors that are nothing but rounding error to zero: the source gives no information on
 /// them.
-fn silence(regressors: &mut [Vec<f64>]) {
+fn zero_rounding(regressors: &mut [Vec<f64>]) {
     let size = |column: &Vec<f64>| column.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let least = SOURCE.rounding * regressors.iter().map(size).fold(0.0, f64::max);
     regressors.iter_mut().filter(|column| size(column) < least).for_each(|column| column.fill(0.0));

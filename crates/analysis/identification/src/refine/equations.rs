@@ -2,25 +2,29 @@
 
 use sistership_model::trial::Trial;
 
-use super::blocks::Blocks;
+use super::blocks::RegressionBlocks;
 use super::outcome::RefineError;
-use super::rows::{Table, trial_moments, trial_tables};
+use super::rows::{RegressionTable, trial_moments, trial_tables};
 use super::thresholds::SELECTION;
-use super::weak::{Windows, weak_moments, weak_tables};
-use sistership_numerics::Moments;
+use super::weak::{WindowSpacing, weak_moments, weak_tables};
+use sistership_numerics::RegressionMoments;
 
 /// Methods by which the equations of motion become rows of a regression.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Equations {
+pub(super) enum EquationForm {
     /// Accelerations by differences over a time, s; over one sampling interval if none is given.
     Differences(Option<f64>),
     /// Integrals over windows (the weak form).
-    Windows(Windows),
+    Windows(WindowSpacing),
 }
 
-impl Equations {
+impl EquationForm {
     /// Returns the statistics of a trial, one set for each regression.
-    pub fn moments(self, blocks: &Blocks, trial: &Trial) -> Result<Vec<Moments>, RefineError> {
+    pub fn regression_moments(
+        self,
+        blocks: &RegressionBlocks,
+        trial: &Trial,
+    ) -> Result<Vec<RegressionMoments>, RefineError> {
         match self {
             Self::Windows(windows) => weak_moments(blocks, trial, windows),
             Self::Differences(difference_s) => trial_moments(blocks, trial, difference_s),
@@ -28,7 +32,11 @@ impl Equations {
     }
 
     /// Returns the rows behind the statistics, one table for each regression.
-    pub fn tables(self, blocks: &Blocks, part: &Trial) -> Result<Vec<Table>, RefineError> {
+    pub fn regression_tables(
+        self,
+        blocks: &RegressionBlocks,
+        part: &Trial,
+    ) -> Result<Vec<RegressionTable>, RefineError> {
         match self {
             Self::Windows(windows) => weak_tables(blocks, part, windows),
             Self::Differences(difference_s) => {
@@ -38,7 +46,7 @@ impl Equations {
     }
 
     /// Description of its rows for messages.
-    pub fn rows(self) -> String {
+    pub fn describe_rows(self) -> String {
         match self {
             Self::Differences(None) => "differences of samples".to_owned(),
             Self::Differences(Some(difference_s)) => {

@@ -19,7 +19,7 @@ pub(super) struct CoefficientErrors {
 
 impl CoefficientErrors {
     /// Returns the errors of the coefficients `names`, in that order; `None` if one is missing.
-    pub fn ordered(&self, names: &[String]) -> Option<Self> {
+    pub fn in_order(&self, names: &[String]) -> Option<Self> {
         let place = |name: &String| self.names.iter().position(|own| own == name);
         let places: Vec<usize> = names.iter().map(place).collect::<Option<_>>()?;
         let of = |matrix: &DMatrix<f64>| matrix.select_rows(&places).select_columns(&places);
@@ -28,9 +28,9 @@ impl CoefficientErrors {
     }
 
     /// Returns the errors as a posterior of a model; `None` if the covariance has no Cholesky root.
-    pub fn posterior(&self, model: &Model) -> Option<Posterior> {
+    pub fn to_posterior(&self, model: &Model) -> Option<Posterior> {
         let deviations = self.covariance.diagonal().map(|variance| variance.max(0.0).sqrt());
-        let inverse = deviations.map(reciprocal);
+        let inverse = deviations.map(reciprocal_or_zero);
         let size = self.names.len();
         // A coefficient without variance is uncorrelated with all others.
         let entry = |i: usize, j: usize| {
@@ -45,7 +45,7 @@ impl CoefficientErrors {
         let root = SLACK.iter().find_map(rooted)?.unpack();
         let names = self.names.clone();
         let values = names.iter().map(|name| model.coefficient(name)).collect();
-        let root_correlation = Posterior::rows(size, &|i, j| root[(i, j)]);
+        let root_correlation = Posterior::format_rows(size, &|i, j| root[(i, j)]);
         Some(Posterior {
             names,
             values,
@@ -59,6 +59,6 @@ impl CoefficientErrors {
 const SLACK: [f64; 4] = [0.0, 1e-10, 1e-8, 1e-6];
 
 /// Reciprocal of a scale; 0 for a scale of 0.
-fn reciprocal(scale: f64) -> f64 {
+fn reciprocal_or_zero(scale: f64) -> f64 {
     if scale > 0.0 { 1.0 / scale } else { 0.0 }
 }

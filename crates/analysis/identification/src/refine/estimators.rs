@@ -2,18 +2,18 @@
 
 use super::cma_es::CovarianceMatrixAdaptation;
 use super::estimator::Estimator;
-use super::published::Published;
-use super::settings::Method;
+use super::published::PublishedEstimator;
+use super::settings::EstimationMethod;
 use super::trajectory::TrajectoryForm;
 use super::weak::WeakForm;
 
 /// The estimator of a method. A new one needs a folder, a name among the methods of the settings,
 /// and a line here.
-pub(super) fn estimator(method: Method) -> &'static dyn Estimator {
+pub(super) fn estimator_for(method: EstimationMethod) -> &'static dyn Estimator {
     match method {
-        Method::Published => &Published,
-        Method::Weak => &WeakForm,
-        Method::Trajectory => &TrajectoryForm,
-        Method::CmaEs => &CovarianceMatrixAdaptation,
+        EstimationMethod::Published => &PublishedEstimator,
+        EstimationMethod::Weak => &WeakForm,
+        EstimationMethod::Trajectory => &TrajectoryForm,
+        EstimationMethod::CmaEs => &CovarianceMatrixAdaptation,
     }
 }

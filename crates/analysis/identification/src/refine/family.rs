@@ -11,7 +11,7 @@ use sistership_model::quantity::Quantity;
 #[serde(rename_all = "snake_case")]
 #[derive(schemars::JsonSchema)]
 #[schemars(rename = "TermFamily")]
-pub enum Family {
+pub enum TermFamily {
     /// The source's own terms.
     Own,
     /// The source's own terms without those that break the symmetry of port and starboard, such as
@@ -33,7 +33,7 @@ const PRODUCTS: [&str; 4] = ["v", "r", "phi", "delta"];
 /// `phi`, or have too little effect.
 const LINEAR: [&str; 2] = ["p", "heel"];
 
-impl Family {
+impl TermFamily {
     /// Every family, from the source's terms outwards.
     pub(super) const ALL: [Self; 4] =
         [Self::Own, Self::Symmetric, Self::ThirdOrder, Self::Asymmetric];
@@ -49,18 +49,20 @@ impl Family {
     }
 
     /// Returns a model with these terms; added terms start at zero. `None` if that changes nothing.
-    pub fn of(self, model: &Model, law: &Law) -> Option<Model> {
+    pub fn extend_model(self, model: &Model, law: &Law) -> Option<Model> {
         let mut changed = model.clone();
         if matches!(self, Self::Symmetric | Self::ThirdOrder) {
             changed.coefficients.retain(|name, _| !breaks_symmetry(name, law));
         }
         let terms = match self {
             Self::Own | Self::Symmetric => Vec::new(),
-            Self::ThirdOrder => third_order(law),
-            Self::Asymmetric => third_order(law).into_iter().chain(asymmetric(law)).collect(),
+            Self::ThirdOrder => third_order_terms(law),
+            Self::Asymmetric => {
+                third_order_terms(law).into_iter().chain(asymmetric_terms(law)).collect()
+            }
         };
         for name in terms {
-            changed.coefficients.entry(name).or_insert_with(added);
+            changed.coefficients.entry(name).or_insert_with(added_term);
         }
         // Another family with the same terms would only repeat the candidates of `Own`.
         (self == Self::Own || changed != *model).then_some(changed)
@@ -78,11 +80,11 @@ pub(super) fn terms_without_heel(law: &Law) -> Vec<String> {
             parsed.axis != Axis::K && !has_heel
         })
     };
-    third_order(law).into_iter().filter(is_upright).collect()
+    third_order_terms(law).into_iter().filter(is_upright).collect()
 }
 
 /// A coefficient that was not in the source.
-fn added() -> Quantity {
+fn added_term() -> Quantity {
     Quantity::new(0.0, "term added")
 }
 
@@ -99,11 +101,11 @@ fn breaks_symmetry(name: &str, law: &Law) -> bool {
 }
 
 /// All third-order terms of the open axes.
-fn third_order(law: &Law) -> Vec<String> {
+fn third_order_terms(law: &Law) -> Vec<String> {
     let known = |symbol: &&&str| law.factors.contains_key(**symbol);
     let products: Vec<&str> = PRODUCTS.iter().filter(known).copied().collect();
     let linear: Vec<&str> = LINEAR.iter().filter(known).copied().collect();
-    spelled(law, |axis| match axis.is_odd() {
+    available_terms(law, |axis| match axis.is_odd() {
         true => odd_terms(&products, &linear),
         false => even_terms(&products),
     })
@@ -111,10 +113,10 @@ fn third_order(law: &Law) -> Vec<String> {
 
 /// Asymmetric terms of the open axes: for sway, roll and yaw a constant, its product with the
 /// speed, and the even products; for surge the odd factors.
-fn asymmetric(law: &Law) -> Vec<String> {
+fn asymmetric_terms(law: &Law) -> Vec<String> {
     let known = |symbol: &&&str| law.factors.contains_key(**symbol);
     let products: Vec<&str> = PRODUCTS.iter().filter(known).copied().collect();
-    spelled(law, |axis| match axis.is_odd() {
+    available_terms(law, |axis| match axis.is_odd() {
         true => {
             let constant = ["0", "u"].into_iter().map(str::to_owned);
             constant.chain(monomials(&products, 2)).collect()
@@ -124,11 +126,11 @@ fn asymmetric(law: &Law) -> Vec<String> {
 }
 
 /// Names of the given terms of each open axis that the law can evaluate.
-fn spelled(law: &Law, terms: impl Fn(Axis) -> Vec<String>) -> Vec<String> {
+fn available_terms(law: &Law, terms: impl Fn(Axis) -> Vec<String>) -> Vec<String> {
     let open = law.axes.iter().filter(|(_, axis)| axis.open).map(|(axis, _)| *axis);
     let of_axis = |axis: Axis| {
         let names = terms(axis).into_iter().map(move |factors| format!("{axis}_{factors}"));
-        names.filter(|name| law.term(name).is_ok()).collect::<Vec<_>>()
+        names.filter(|name| law.unscaled_regressor(name).is_ok()).collect::<Vec<_>>()
     };
     open.flat_map(of_axis).collect()
 }
@@ -169,9 +171,9 @@ mod tests {
 
     #[test]
     fn families_of_the_mariner() {
-        let zoo = Zoo::embedded().unwrap();
-        let (model, law) = (zoo.model("mariner").unwrap(), zoo.law("abkowitz").unwrap());
-        let symmetric = Family::Symmetric.of(&model, law).unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let (model, law) = (zoo.find_model("mariner").unwrap(), zoo.law("abkowitz").unwrap());
+        let symmetric = TermFamily::Symmetric.extend_model(&model, law).unwrap();
         let dropped: Vec<&str> = model
             .coefficients
             .keys()
@@ -179,8 +181,8 @@ mod tests {
             .map(String::as_str)
             .collect();
         assert_eq!(dropped, ["N_0", "N_u", "N_uu", "Y_0", "Y_u", "Y_uu"]);
-        assert_eq!(Family::Symmetric.of(&symmetric, law), None);
-        let third = Family::ThirdOrder.of(&model, law).unwrap();
+        assert_eq!(TermFamily::Symmetric.extend_model(&symmetric, law), None);
+        let third = TermFamily::ThirdOrder.extend_model(&model, law).unwrap();
         for name in ["Y_vrr", "N_rrdelta", "X_rdelta", "Y_vrdelta", "N_ur"] {
             assert!(third.coefficients.contains_key(name), "{name}");
         }
@@ -189,10 +191,10 @@ mod tests {
 
     #[test]
     fn asymmetric_terms_are_added_to_those_of_third_order() {
-        let zoo = Zoo::embedded().unwrap();
-        let (model, law) = (zoo.model("mariner").unwrap(), zoo.law("abkowitz").unwrap());
-        let [third, asymmetric] =
-            [Family::ThirdOrder, Family::Asymmetric].map(|f| f.of(&model, law).unwrap());
+        let zoo = Zoo::load_embedded().unwrap();
+        let (model, law) = (zoo.find_model("mariner").unwrap(), zoo.law("abkowitz").unwrap());
+        let [third, asymmetric] = [TermFamily::ThirdOrder, TermFamily::Asymmetric]
+            .map(|f| f.extend_model(&model, law).unwrap());
         assert!(third.coefficients.keys().all(|name| asymmetric.coefficients.contains_key(name)));
         let more: Vec<&String> = asymmetric
             .coefficients
@@ -208,10 +210,10 @@ mod tests {
 
     #[test]
     fn terms_without_heel_are_those_of_the_law_without_roll() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let [plane, rolling] = ["abkowitz", "abkowitz-roll"].map(|name| zoo.law(name).unwrap());
-        assert_eq!(terms_without_heel(rolling), third_order(plane));
-        assert!(third_order(rolling).len() > third_order(plane).len());
+        assert_eq!(terms_without_heel(rolling), third_order_terms(plane));
+        assert!(third_order_terms(rolling).len() > third_order_terms(plane).len());
     }
 
     #[test]

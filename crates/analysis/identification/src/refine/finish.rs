@@ -5,22 +5,22 @@ use sistership_model::Model;
 use sistership_model::posterior::Posterior;
 use sistership_simulation::manoeuvre::{ManoeuvreSettings, StandardManoeuvres};
 
-use super::blocks::Blocks;
-use super::candidate::{CandidateFit, Solution, best};
-use super::family::Family;
-use super::gathered::{ChosenCandidate, refinement};
+use super::blocks::RegressionBlocks;
+use super::candidate::{CandidateFit, CandidateSolution, best_candidate};
+use super::family::TermFamily;
+use super::gathered::{ChosenCandidate, assemble_refinement};
 use super::manoeuvres::{measured_manoeuvres, standard_manoeuvres};
 use super::mixture;
-use super::outcome::{Manoeuvres, RefineError, Refinement};
-use super::problem::Problem;
-use super::progress::{Progress, step};
-use super::ridge::{Choices, Fit};
+use super::outcome::{RefineError, Refinement, RefinementManoeuvres};
+use super::problem::RefinementProblem;
+use super::progress::{Progress, report_progress};
+use super::ridge::{CoefficientFit, RidgeChoices};
 use super::thresholds::SELECTION;
-use super::variant::Variant;
+use super::variant::TermVariant;
 use crate::constraints::LimitError;
-use sistership_assessment::uncertainty::{FoldQuantile, bands, fold_factor};
+use sistership_assessment::uncertainty::{FoldQuantile, fold_factor, uncertainty_bands};
 use sistership_numerics::RidgeChoice;
-use sistership_propulsion::{Context, PropulsionFault};
+use sistership_propulsion::{PropulsionContext, PropulsionFault};
 
 /// The error type for a candidate that cannot be chosen.
 #[derive(Debug, thiserror::Error)]
@@ -36,62 +36,69 @@ const NO_MODEL: &str = "a law without coefficients is no model";
 
 /// Returns true if a model has coefficients and all of them are zero: the placeholder for a source
 /// where there is none.
-pub(super) fn is_empty(model: &Model) -> bool {
+pub(super) fn has_only_zeros(model: &Model) -> bool {
     let mut values = model.coefficients.values().peekable();
     values.peek().is_some() && values.all(|coefficient| coefficient.value == 0.0)
 }
 
 /// A candidate fitted on all trials, with the standard manoeuvres of its model.
 struct FittedCandidate {
-    fit: Option<Fit>,
+    fit: Option<CoefficientFit>,
     model: Model,
     manoeuvres: StandardManoeuvres,
 }
 
 /// A fitted candidate, or the reason why it cannot be chosen.
-type Accepted = Result<FittedCandidate, CandidateRefusal>;
+type CandidateOutcome = Result<FittedCandidate, CandidateRefusal>;
 
 /// Returns the refinement by the best candidate whose model, fitted on all trials, also completes
 /// the standard manoeuvres that the source completes.
 ///
 /// # Errors
 /// Returns an error if no candidate's simulations run to their end, or if it was cancelled.
-pub(super) fn finish(
-    problem: &Problem<'_>,
+pub(super) fn finish_refinement(
+    problem: &RefinementProblem<'_>,
     mut candidates: Vec<CandidateFit>,
-    variants: &[Variant],
+    variants: &[TermVariant],
     progress: Progress<'_>,
 ) -> Result<Refinement, RefineError> {
-    if is_empty(&problem.transferred) {
+    if has_only_zeros(&problem.transferred) {
         let source = &mut candidates[0].option;
         (source.error, source.reason) = (None, Some(NO_MODEL.to_owned()));
     }
-    step(progress, 0.9, "standard manoeuvres of the source, and of the best option")?;
-    let first = |place: usize| sailed(problem, candidates[place].solution.as_ref(), variants);
+    report_progress(progress, 0.9, "standard manoeuvres of the source, and of the best option")?;
+    let first =
+        |place: usize| simulate_candidate(problem, candidates[place].solution.as_ref(), variants);
     // The manoeuvres of the source and of the first candidate are independent and run in parallel.
     let (before, mut first) = rayon::join(
         || standard_manoeuvres(&problem.transferred, problem.law),
-        || best(&candidates).map(first),
+        || best_candidate(&candidates).map(first),
     );
     loop {
         // A refused candidate loses its error below, so that each round finds another one and the
         // loop ends.
-        let Some(best) = best(&candidates) else {
+        let Some(best) = best_candidate(&candidates) else {
             let reasons = candidates.iter().filter_map(|one| one.option.reason.as_deref());
-            return Err(RefineError::diverged(reasons));
+            return Err(RefineError::all_diverged(reasons));
         };
-        step(
+        report_progress(
             progress,
             0.9,
             &format!("standard manoeuvres of option {}", candidates[best].option.step),
         )?;
         let sailed = match first.take() {
             Some(sailed) => sailed,
-            None => sailed(problem, candidates[best].solution.as_ref(), variants),
+            None => simulate_candidate(problem, candidates[best].solution.as_ref(), variants),
         };
-        match accepted(sailed?, &before) {
+        match check_manoeuvres(sailed?, &before) {
             Ok(fitted) => {
-                return take(problem, (candidates, best), (fitted, variants), before, progress);
+                return build_refinement(
+                    problem,
+                    (candidates, best),
+                    (fitted, variants),
+                    before,
+                    progress,
+                );
             }
             Err(refusal) => {
                 let option = &mut candidates[best].option;
@@ -107,22 +114,22 @@ pub(super) fn finish(
 /// Returns an error if no candidate's simulations run to their end, or the constraints cannot be
 /// kept.
 pub(super) fn best_model(
-    problem: &Problem<'_>,
+    problem: &RefinementProblem<'_>,
     candidates: &[CandidateFit],
-    variants: &[Variant],
+    variants: &[TermVariant],
 ) -> Result<Model, RefineError> {
     let reasons = || candidates.iter().filter_map(|one| one.option.reason.as_deref());
-    let best = best(candidates).ok_or_else(|| RefineError::diverged(reasons()))?;
-    Ok(model_of(problem, candidates[best].solution.fit(variants)?.as_ref()))
+    let best = best_candidate(candidates).ok_or_else(|| RefineError::all_diverged(reasons()))?;
+    Ok(refined_model(problem, candidates[best].solution.fit(variants)?.as_ref()))
 }
 
 /// Fits a candidate on all trials and simulates its standard manoeuvres; a refusal if it does not
 /// keep the constraints.
-fn sailed(
-    problem: &Problem<'_>,
-    solution: &dyn Solution,
-    variants: &[Variant],
-) -> Result<Accepted, RefineError> {
+fn simulate_candidate(
+    problem: &RefinementProblem<'_>,
+    solution: &dyn CandidateSolution,
+    variants: &[TermVariant],
+) -> Result<CandidateOutcome, RefineError> {
     let fitted = match solution.fit(variants) {
         Err(RefineError::Constraints(reason)) => {
             return Ok(Err(CandidateRefusal::Constraints(reason)));
@@ -130,13 +137,14 @@ fn sailed(
         fitted => fitted?,
     };
     // Propulsion comes before the manoeuvres, which it affects.
-    let model = context(problem).with_propulsion(model_of(problem, fitted.as_ref()));
+    let model =
+        propulsion_context(problem).with_propulsion(refined_model(problem, fitted.as_ref()));
     let manoeuvres = standard_manoeuvres(&model, problem.law);
     Ok(Ok(FittedCandidate { fit: fitted, model, manoeuvres }))
 }
 
 /// Refuses a candidate that fails a standard manoeuvre although the source completes all of them.
-fn accepted(sailed: Accepted, before: &StandardManoeuvres) -> Accepted {
+fn check_manoeuvres(sailed: CandidateOutcome, before: &StandardManoeuvres) -> CandidateOutcome {
     let fitted = sailed?;
     let failures = &fitted.manoeuvres.failures;
     // If the source itself fails a manoeuvre, nothing can be required of the fit.
@@ -149,34 +157,35 @@ fn accepted(sailed: Accepted, before: &StandardManoeuvres) -> Accepted {
 
 /// The propulsion context of the law and the trials, with the estimate from particulars where there
 /// is one.
-fn context<'a>(problem: &'a Problem<'_>) -> Context<'a> {
+fn propulsion_context<'a>(problem: &'a RefinementProblem<'_>) -> PropulsionContext<'a> {
     // The estimate is optional: a ship whose particulars do not suffice has none.
-    let of_ship = |target| mixture::estimated(target, problem.transferred.speed_m_s).ok();
+    let of_ship =
+        |target| mixture::particulars_estimate(target, problem.transferred.speed_m_s).ok();
     let estimate = problem.target.and_then(of_ship).map(|(estimate, _)| estimate);
-    Context { law: problem.law, trials: &problem.whole, estimate }
+    PropulsionContext { law: problem.law, trials: &problem.whole, estimate }
 }
 
 /// The refined model; the transferred source if nothing was fitted.
-fn model_of(problem: &Problem<'_>, fitted: Option<&Fit>) -> Model {
+fn refined_model(problem: &RefinementProblem<'_>, fitted: Option<&CoefficientFit>) -> Model {
     fitted.map_or_else(|| problem.transferred.clone(), |fit| problem.model_with(&fit.coefficients))
 }
 
 /// Builds the refinement from the chosen candidate: errors, posterior, propulsion and uncertainty
 /// bands.
-fn take(
-    problem: &Problem<'_>,
+fn build_refinement(
+    problem: &RefinementProblem<'_>,
     (mut candidates, best): (Vec<CandidateFit>, usize),
-    (taken, variants): (FittedCandidate, &[Variant]),
+    (taken, variants): (FittedCandidate, &[TermVariant]),
     before: StandardManoeuvres,
     progress: Progress<'_>,
 ) -> Result<Refinement, RefineError> {
     candidates[best].option.chosen = true;
-    let errors = candidates[best].solution.errors(problem, variants)?;
+    let errors = candidates[best].solution.coefficient_errors(problem, variants)?;
     let mut fitted = taken.fit.map(|fit| fit.with_errors(errors));
     // The coefficients are read again for their standard errors, which are known only now.
-    let coefficients = model_of(problem, fitted.as_ref()).coefficients;
+    let coefficients = refined_model(problem, fitted.as_ref()).coefficients;
     let mut model = Model { coefficients, ..taken.model };
-    model.posterior = posterior(problem, &model, fitted.as_ref(), variants)?;
+    model.posterior = coefficient_posterior(problem, &model, fitted.as_ref(), variants)?;
     if problem.settings.posterior_by_folds {
         let quantile = match problem.settings.folds_pooled {
             true => FoldQuantile::Normal,
@@ -185,24 +194,32 @@ fn take(
         // The fold models' scatter widens the posterior; it never narrows it.
         let how = (quantile, problem.settings.bands.figures_only);
         let factor = fold_factor(&model, problem.law, &candidates[best].left_out, how);
-        widen(&mut model, fitted.as_mut(), factor);
+        widen_errors(&mut model, fitted.as_mut(), factor);
     }
-    let propulsion = context(problem);
+    let propulsion = propulsion_context(problem);
     // The balance is weighted by the posterior, which is known only now.
     let model = propulsion.with_posterior(model);
-    let fault = propulsion.fault(&model).filter(|fault| *fault != PropulsionFault::NoRevolutions);
+    let fault = propulsion
+        .propulsion_fault(&model)
+        .filter(|fault| *fault != PropulsionFault::NoRevolutions);
     let measured = measured_manoeuvres(problem, &model);
-    step(progress, 0.93, "confidence bands")?;
-    let bands =
-        bands(&model, problem.law, &ManoeuvreSettings::default(), None, problem.settings.bands);
-    let manoeuvres = Manoeuvres { source: before, refined: taken.manoeuvres, bands, measured };
+    report_progress(progress, 0.93, "confidence bands")?;
+    let bands = uncertainty_bands(
+        &model,
+        problem.law,
+        &ManoeuvreSettings::default(),
+        None,
+        problem.settings.bands,
+    );
+    let manoeuvres =
+        RefinementManoeuvres { source: before, refined: taken.manoeuvres, bands, measured };
     let propulsion_fault = fault.map(|fault| fault.to_string());
     let chosen = ChosenCandidate { candidates, best, model, fitted, propulsion_fault };
-    refinement(problem, chosen, manoeuvres)
+    assemble_refinement(problem, chosen, manoeuvres)
 }
 
 /// Multiplies all standard errors of a model and its fit by a factor.
-fn widen(model: &mut Model, fitted: Option<&mut Fit>, factor: f64) {
+fn widen_errors(model: &mut Model, fitted: Option<&mut CoefficientFit>, factor: f64) {
     let of_fit = fitted.into_iter().flat_map(|fit| fit.coefficients.values_mut());
     of_fit.for_each(|coefficient| coefficient.standard_error *= factor);
     let own = model.coefficients.values_mut().filter_map(|one| one.standard_error.as_mut());
@@ -213,22 +230,22 @@ fn widen(model: &mut Model, fitted: Option<&mut Fit>, factor: f64) {
 
 /// The posterior of the model's coefficients. If the source is kept, its errors are those that the
 /// trials indicate at a prior that holds it.
-fn posterior(
-    problem: &Problem<'_>,
+fn coefficient_posterior(
+    problem: &RefinementProblem<'_>,
     model: &Model,
-    fitted: Option<&Fit>,
-    variants: &[Variant],
+    fitted: Option<&CoefficientFit>,
+    variants: &[TermVariant],
 ) -> Result<Option<Posterior>, RefineError> {
-    let errors = match (fitted, variants.iter().find(|variant| variant.family == Family::Own)) {
+    let errors = match (fitted, variants.iter().find(|variant| variant.family == TermFamily::Own)) {
         (Some(fitted), _) => fitted.errors.clone(),
-        (None, Some(own)) => own.errors(&problem.training, &held(&own.blocks))?,
+        (None, Some(own)) => own.ridge_errors(&problem.training, &source_choices(&own.blocks))?,
         (None, None) => None,
     };
-    Ok(errors.and_then(|errors| errors.posterior(model)))
+    Ok(errors.and_then(|errors| errors.to_posterior(model)))
 }
 
 /// Ridge choices so strong that the source is kept.
-fn held(blocks: &Blocks) -> Choices {
+fn source_choices(blocks: &RegressionBlocks) -> RidgeChoices {
     blocks
         .blocks
         .iter()
@@ -240,28 +257,28 @@ fn held(blocks: &Blocks) -> Choices {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::refine::request::Request;
+    use crate::refine::request::RefinementSpec;
     use crate::refine::selection::refine;
-    use crate::refine::settings::{Method, Settings};
-    use crate::testing::{mariner, trials, with};
+    use crate::refine::settings::{EstimationMethod, RefinementSettings};
+    use crate::testing::{mariner_model, simulated_trials, with_scaled_coefficients};
     use sistership_model::trial::Trial;
 
     /// What the strongest of priors leaves is no better than what it pulls to: what stands for the
     /// source where there is none would be kept.
     #[test]
     fn a_law_without_coefficients_is_never_taken() {
-        let (model, law) = mariner();
-        let trials = trials(&model, &law, 0.001);
+        let (model, law) = mariner_model();
+        let trials = simulated_trials(&model, &law, 0.001);
         let trials: Vec<&Trial> = trials.iter().collect();
-        let settings = Settings {
-            method: Method::Weak,
+        let settings = RefinementSettings {
+            method: EstimationMethod::Weak,
             strengths: vec![SELECTION.held],
-            ..Settings::default()
+            ..RefinementSettings::default()
         };
-        let zoo = sistership_model::Zoo::embedded().unwrap();
+        let zoo = sistership_model::Zoo::load_embedded().unwrap();
         let kept = |source: &Model| {
             let (target, settings) = (zoo.vessel("mariner").unwrap(), &settings);
-            let request = Request {
+            let request = RefinementSpec {
                 target,
                 source,
                 source_law: None,
@@ -273,6 +290,6 @@ mod tests {
             refine(&request, &|_, _| true).map(|made| made.is_source_kept())
         };
         assert_eq!(kept(&model), Ok(true));
-        assert_ne!(kept(&with(&model, |_| 0.0)), Ok(true));
+        assert_ne!(kept(&with_scaled_coefficients(&model, |_| 0.0)), Ok(true));
     }
 }

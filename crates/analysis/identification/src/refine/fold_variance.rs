@@ -9,51 +9,52 @@
 use sistership_model::Model;
 use sistership_model::trial::Trial;
 use sistership_simulation::error::{SquaredError, standardised_mse};
-use sistership_simulation::recorded::{Recorded, Replay, ReplaySettings, replay_all};
-use sistership_simulation::state::{RECORDED, StateVector};
+use sistership_simulation::recorded::{RecordedTrial, ReplaySettings, TrialReplay, replay_trials};
+use sistership_simulation::state::{RECORDED_CHANNELS, StateVector};
 
-use super::helm::{Helm, helms};
-use super::problem::Problem;
-use super::simulated::sisters;
+use super::helm::{RudderOrder, rudder_records};
+use super::problem::RefinementProblem;
+use super::simulated::sister_coefficients;
 use super::thresholds::HELM;
-use sistership_priors::transfer::ready_for_sisters;
+use sistership_priors::transfer::prepare_sister_ships;
 
 /// Jackknife variance of simulated states under rudder orders that no trial had, standardised and
 /// summed over channels as errors on held-out trials are. Infinite if a fold's model cannot be
 /// simulated to the end; `None` if fewer than two folds have models, or if the records lack an
 /// input of the law.
-pub(super) fn fold_variance(problem: &Problem<'_>, folds: &[Model]) -> Option<f64> {
+pub(super) fn fold_variance(problem: &RefinementProblem<'_>, folds: &[Model]) -> Option<f64> {
     let first = folds.first().filter(|_| folds.len() > 1)?;
-    let asked = Helm::random(HELM.records);
-    let helms = helms(&problem.transferred, &problem.whole, (&asked, HELM.lengths))?;
-    let ship = ready_for_sisters(first, problem.law, &problem.whole).ok()?;
-    let coefficients = sisters(&ship, folds).ok()?;
-    let each = |trial| coefficients.iter().map(move |one| Recorded { trial, coefficients: one });
-    let all: Vec<Recorded<'_>> = helms.iter().flat_map(each).collect();
+    let asked = RudderOrder::random_orders(HELM.records);
+    let helms = rudder_records(&problem.transferred, &problem.whole, (&asked, HELM.lengths))?;
+    let ship = prepare_sister_ships(first, problem.law, &problem.whole).ok()?;
+    let coefficients = sister_coefficients(&ship, folds).ok()?;
+    let each =
+        |trial| coefficients.iter().map(move |one| RecordedTrial { trial, coefficients: one });
+    let all: Vec<RecordedTrial<'_>> = helms.iter().flat_map(each).collect();
     // The same step as for held-out trials, so that both figures have the same integration error.
     let step_s = problem.replayed.step_s;
     let settings = ReplaySettings { step_s, ..ReplaySettings::default() };
-    let runs = replay_all(&ship, &all, &settings).ok()?;
+    let runs = replay_trials(&ship, &all, &settings).ok()?;
     if runs.iter().any(|run| run.stopped.is_some()) {
         return Some(f64::INFINITY);
     }
     let mut about_mean = SquaredError::default();
     for (helm, runs) in helms.iter().zip(runs.chunks(folds.len())) {
-        let mean = mean_of(helm, runs);
-        runs.iter().for_each(|run| about_mean.add(&SquaredError::of(&mean, run)));
+        let mean = mean_record(helm, runs);
+        runs.iter().for_each(|run| about_mean.add(&SquaredError::from_trial(&mean, run)));
     }
     // The mean over the samples of all folds has the jackknife's `1/g` already.
     Some((folds.len() - 1) as f64 * standardised_mse(&about_mean, &problem.deviations))
 }
 
 /// A record of the mean of the folds' states at each sample.
-fn mean_of(helm: &Trial, runs: &[Replay]) -> Trial {
+fn mean_record(helm: &Trial, runs: &[TrialReplay]) -> Trial {
     let mean = |sample: usize| {
         runs.iter().map(|run| run.track.states[sample]).sum::<StateVector>() / runs.len() as f64
     };
     let states: Vec<StateVector> = (0..helm.len()).map(mean).collect();
     let column = |place: usize| states.iter().map(|state| state[place]).collect();
-    let channels = RECORDED.iter().map(|&(channel, place)| (channel, column(place)));
+    let channels = RECORDED_CHANNELS.iter().map(|&(channel, place)| (channel, column(place)));
     Trial { channels: channels.collect(), ..helm.clone() }
 }
 
@@ -61,16 +62,19 @@ fn mean_of(helm: &Trial, runs: &[Replay]) -> Trial {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::refine::settings::Settings;
-    use crate::testing::{mariner, trials, with};
+    use crate::refine::settings::RefinementSettings;
+    use crate::testing::{mariner_model, simulated_trials, with_scaled_coefficients};
 
     #[test]
     fn folds_that_differ_by_twice_as_much_have_four_times_the_variance() {
-        let (model, law) = mariner();
-        let trials = trials(&model, &law, 0.0);
+        let (model, law) = mariner_model();
+        let trials = simulated_trials(&model, &law, 0.0);
         let trials: Vec<&Trial> = trials.iter().collect();
-        let problem = Problem::of_model(&model, &law, &trials, Settings::default());
-        let fold = |by: f64| with(&model, |name| if name == "N_delta" { 1.0 + by } else { 1.0 });
+        let problem =
+            RefinementProblem::from_model(&model, &law, &trials, RefinementSettings::default());
+        let fold = |by: f64| {
+            with_scaled_coefficients(&model, |name| if name == "N_delta" { 1.0 + by } else { 1.0 })
+        };
         let variance =
             |apart: f64| fold_variance(&problem, &[fold(-apart), fold(apart), fold(0.0)]);
         assert!(variance(0.0).unwrap() < 1e-20);
@@ -81,11 +85,13 @@ mod tests {
 
     #[test]
     fn a_fold_that_does_not_sail_is_infinitely_far() {
-        let (model, law) = mariner();
-        let trials = trials(&model, &law, 0.0);
+        let (model, law) = mariner_model();
+        let trials = simulated_trials(&model, &law, 0.0);
         let trials: Vec<&Trial> = trials.iter().collect();
-        let problem = Problem::of_model(&model, &law, &trials, Settings::default());
-        let runs_away = with(&model, |name| if name == "N_r" { -10.0 } else { 1.0 });
+        let problem =
+            RefinementProblem::from_model(&model, &law, &trials, RefinementSettings::default());
+        let runs_away =
+            with_scaled_coefficients(&model, |name| if name == "N_r" { -10.0 } else { 1.0 });
         let folds = [model.clone(), runs_away];
         assert_eq!(fold_variance(&problem, &folds), Some(f64::INFINITY));
     }

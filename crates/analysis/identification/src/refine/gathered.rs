@@ -1,25 +1,25 @@
 //! The result of a refinement, with everything that its user must be able to defend.
 
 use sistership_model::Model;
-use sistership_model::estimated_particulars::estimated_words;
+use sistership_model::estimated_particulars::describe_estimates;
 use sistership_model::quantity::Quantity;
 
 use super::candidate::CandidateFit;
 use super::cma_es::SearchReport;
-use super::outcome::{CoefficientChange, HeldOut, Manoeuvres, RefineError, Refinement};
-use super::problem::Problem;
-use super::ridge::Fit;
-use super::settings::Settings;
+use super::outcome::{CoefficientChange, HeldOut, RefineError, Refinement, RefinementManoeuvres};
+use super::problem::RefinementProblem;
+use super::ridge::CoefficientFit;
+use super::settings::RefinementSettings;
 use super::simulated::simulate_all;
 use super::thresholds::SELECTION;
-use sistership_priors::rolling::roll_words;
+use sistership_priors::rolling::roll_remark;
 
 /// The chosen candidate among all, its model and its fit; no fit if the source was kept.
 pub(super) struct ChosenCandidate {
     pub candidates: Vec<CandidateFit>,
     pub best: usize,
     pub model: Model,
-    pub fitted: Option<Fit>,
+    pub fitted: Option<CoefficientFit>,
     /// Fault of the model with the propeller stopped or reversed.
     pub propulsion_fault: Option<String>,
 }
@@ -28,19 +28,19 @@ pub(super) struct ChosenCandidate {
 ///
 /// # Errors
 /// Returns an error if a trial lacks a channel.
-pub(super) fn refinement(
-    problem: &Problem<'_>,
+pub(super) fn assemble_refinement(
+    problem: &RefinementProblem<'_>,
     taken: ChosenCandidate,
-    manoeuvres: Manoeuvres,
+    manoeuvres: RefinementManoeuvres,
 ) -> Result<Refinement, RefineError> {
     let ChosenCandidate { candidates, best, model, fitted, propulsion_fault } = taken;
-    let held_out = held_out(problem, &candidates, best, &model)?;
+    let held_out = held_out_errors(problem, &candidates, best, &model)?;
     let lambdas = candidates[best].option.lambda.clone();
     let (condition_number, collinear_groups) = fitted
         .as_ref()
         .map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
-    let mut remarks = remarks(problem, best, &lambdas);
-    remarks.extend(model.propulsion.as_ref().map(sistership_propulsion::words));
+    let mut remarks = refinement_remarks(problem, best, &lambdas);
+    remarks.extend(model.propulsion.as_ref().map(sistership_propulsion::describe_balance));
     remarks
         .extend(propulsion_fault.map(|fault| format!("WITHOUT propulsion like a ship's: {fault}")));
     if candidates[best].search.is_some() {
@@ -55,10 +55,10 @@ pub(super) fn refinement(
         ship: problem.transferred.ship.clone(),
         source: problem.source.to_owned(),
         method: problem.settings.method.name().to_owned(),
-        coefficients: changes(problem, &model, fitted.as_ref()),
+        coefficients: coefficient_changes(problem, &model, fitted.as_ref()),
         model,
         transferred: problem.transferred.clone(),
-        settings: recorded(&problem.settings, search.as_ref()),
+        settings: reproducible_settings(&problem.settings, search.as_ref()),
         search,
         condition_number,
         collinear_groups,
@@ -71,7 +71,10 @@ pub(super) fn refinement(
 
 /// The settings that reproduce the refinement: a search that ended by time gets the number of its
 /// evaluations as its budget, since elapsed time cannot be reproduced.
-fn recorded(settings: &Settings, search: Option<&SearchReport>) -> Settings {
+fn reproducible_settings(
+    settings: &RefinementSettings,
+    search: Option<&SearchReport>,
+) -> RefinementSettings {
     let mut settings = settings.clone();
     if let (Some(given), Some(search)) = (&mut settings.cma_es, search) {
         (given.evaluations, given.wall_s, given.cpu_s) = (search.evaluations, None, None);
@@ -80,8 +83,8 @@ fn recorded(settings: &Settings, search: Option<&SearchReport>) -> Settings {
 }
 
 /// Errors of source and refined model on held-out trials, and how these were held out.
-fn held_out(
-    problem: &Problem<'_>,
+fn held_out_errors(
+    problem: &RefinementProblem<'_>,
     candidates: &[CandidateFit],
     best: usize,
     model: &Model,
@@ -104,8 +107,8 @@ fn held_out(
             )
         };
         return Ok(HeldOut {
-            source: candidates[0].errors.rmse(),
-            refined: candidates[best].errors.rmse(),
+            source: candidates[0].errors.rmse_by_channel(),
+            refined: candidates[best].errors.rmse_by_channel(),
             how,
         });
     }
@@ -116,14 +119,18 @@ fn held_out(
         simulate_all(problem, &problem.judged, std::slice::from_ref(model), &|_| 0)?.total;
     let names: Vec<&str> = problem.judged.iter().map(|trial| trial.name.as_str()).collect();
     Ok(HeldOut {
-        source: source.rmse(),
-        refined: refined.rmse(),
+        source: source.rmse_by_channel(),
+        refined: refined.rmse_by_channel(),
         how: format!("kept out of fit and choice: {}", names.join(", ")),
     })
 }
 
 /// Change of every coefficient from the transferred source to the model.
-fn changes(problem: &Problem<'_>, model: &Model, fitted: Option<&Fit>) -> Vec<CoefficientChange> {
+fn coefficient_changes(
+    problem: &RefinementProblem<'_>,
+    model: &Model,
+    fitted: Option<&CoefficientFit>,
+) -> Vec<CoefficientChange> {
     let one = |(name, quantity): (&String, &Quantity)| {
         let source = problem.transferred.coefficient(name);
         let fitted = fitted.and_then(|fit| fit.coefficients.get(name));
@@ -146,7 +153,11 @@ fn changes(problem: &Problem<'_>, model: &Model, fitted: Option<&Fit>) -> Vec<Co
 }
 
 /// Remarks for the reader of the refinement.
-fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
+fn refinement_remarks(
+    problem: &RefinementProblem<'_>,
+    best: usize,
+    lambdas: &[f64],
+) -> Vec<String> {
     let mut remarks = Vec::new();
     let strongest =
         problem.settings.ranges.iter().map(|range| range.lambda_max).fold(0.0, f64::max);
@@ -155,8 +166,8 @@ fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
             source's, scaled as a whole by 1 - alpha";
         remarks.push(format!("{what}, and their standard errors say nothing"));
     }
-    remarks.extend(problem.measure.words(&problem.transferred, problem.law));
-    remarks.extend(roll_words(&problem.transferred));
+    remarks.extend(problem.measure.describe_prior(&problem.transferred, problem.law));
+    remarks.extend(roll_remark(&problem.transferred));
     if best == 0 {
         remarks.push(
             "no option beat the source on manoeuvres left out: the source is kept as it is"
@@ -166,7 +177,7 @@ fn remarks(problem: &Problem<'_>, best: usize, lambdas: &[f64]) -> Vec<String> {
     if problem.training.len() == 1 {
         remarks.push("a single trial: only the most conservative range was tried".to_owned());
     }
-    remarks.extend(estimated_words(&problem.transferred.particulars));
+    remarks.extend(describe_estimates(&problem.transferred.particulars));
     remarks
 }
 

@@ -8,11 +8,11 @@ use sistership_model::vessel::Steering;
 use sistership_model::{Model, particulars};
 
 use super::thresholds::HELM;
-use sistership_priors::transfer::approach_of;
+use sistership_priors::transfer::trial_approach;
 
 /// Rudder orders of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Helm {
+pub enum RudderOrder {
     /// Random angles within the gear's limit, each held for some ship lengths; the number of the
     /// record selects the sequence.
     Random(usize),
@@ -20,9 +20,9 @@ pub enum Helm {
     Held(f64),
 }
 
-impl Helm {
+impl RudderOrder {
     /// Returns orders for `records` random records.
-    pub fn random(records: usize) -> Vec<Self> {
+    pub fn random_orders(records: usize) -> Vec<Self> {
         (0..records).map(Self::Random).collect()
     }
 
@@ -37,7 +37,7 @@ impl Helm {
     }
 
     /// Angles, rad, of a rudder that follows its orders at its gear's rate, from an angle at first.
-    fn angles(
+    fn rudder_angles(
         self,
         steering: &Steering,
         interval_s: f64,
@@ -62,7 +62,7 @@ impl Helm {
 /// Initial conditions of a record: channels that are held throughout or at first, and the rudder's
 /// angle.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Beginning {
+pub struct RecordStart {
     /// Speeds (m/s, rad/s), heel (rad) and revolutions (1/s) at first; inputs keep their value.
     pub channels: BTreeMap<Channel, f64>,
     /// The rudder's angle, rad.
@@ -72,12 +72,12 @@ pub struct Beginning {
 /// Returns a record for each order, `lengths` ship lengths long, from straight ahead at the speed
 /// and revolutions of the trials' approach, in their depth and without wind. `None` if the approach
 /// or the length is not known.
-pub fn helms(
+pub fn rudder_records(
     model: &Model,
     trials: &[&Trial],
-    (helms, lengths): (&[Helm], f64),
+    (helms, lengths): (&[RudderOrder], f64),
 ) -> Option<Vec<Trial>> {
-    let approach = approach_of(trials)?;
+    let approach = trial_approach(trials)?;
     let motion = [
         (Channel::U, Some(approach.speed_m_s)),
         (Channel::V, Some(0.0)),
@@ -85,26 +85,26 @@ pub fn helms(
         (Channel::N, approach.n_rps),
     ];
     let channels = motion.into_iter().filter_map(|(channel, value)| Some((channel, value?)));
-    let ahead = Beginning { channels: channels.collect(), angle_rad: 0.0 };
-    helms.iter().map(|helm| record(model, trials, (*helm, lengths), &ahead)).collect()
+    let ahead = RecordStart { channels: channels.collect(), angle_rad: 0.0 };
+    helms.iter().map(|helm| rudder_record(model, trials, (*helm, lengths), &ahead)).collect()
 }
 
 /// Returns a record of an order from initial conditions, `lengths` ship lengths long, in the depth
 /// of the trials and without wind. `None` if the approach or the length is not known.
-pub fn record(
+pub fn rudder_record(
     model: &Model,
     trials: &[&Trial],
-    (helm, lengths): (Helm, f64),
-    begun: &Beginning,
+    (helm, lengths): (RudderOrder, f64),
+    begun: &RecordStart,
 ) -> Option<Trial> {
-    let lpp_m = particulars::value(&model.particulars, "lpp_m")?;
-    let interval_s = lpp_m / approach_of(trials)?.speed_m_s / HELM.samples_a_length;
+    let lpp_m = particulars::particular_value(&model.particulars, "lpp_m")?;
+    let interval_s = lpp_m / trial_approach(trials)?.speed_m_s / HELM.samples_a_length;
     let count = (lengths * HELM.samples_a_length) as usize;
     let calm = [(Channel::WindSpeed, 0.0), (Channel::WindFrom, 0.0)];
     let constants = begun.channels.clone().into_iter().chain(calm);
     let mut channels: BTreeMap<Channel, Vec<f64>> =
         constants.map(|(channel, value)| (channel, vec![value; count])).collect();
-    let angles = helm.angles(&model.steering, interval_s, (begun.angle_rad, count));
+    let angles = helm.rudder_angles(&model.steering, interval_s, (begun.angle_rad, count));
     channels.insert(Channel::Delta, angles);
     Some(Trial {
         name: helm.name(&model.steering),
@@ -160,14 +160,14 @@ mod tests {
     #[test]
     fn a_rudder_moves_at_its_gears_rate_within_its_limit() {
         let steering = Steering { limit_deg: 20.0, rate_deg_s: 3.0, ..Steering::default() };
-        let angles = Helm::Random(0).angles(&steering, 2.0, (0.0, 400));
+        let angles = RudderOrder::Random(0).rudder_angles(&steering, 2.0, (0.0, 400));
         let degrees = |angle: &f64| angle.to_degrees();
         let most = angles.iter().map(degrees).fold(0.0, |most: f64, angle| most.max(angle.abs()));
         assert!((10.0..20.0 + 1e-9).contains(&most), "{most}");
         let moves = angles.windows(2).map(|pair| (pair[1] - pair[0]).abs().to_degrees());
         assert!(moves.fold(0.0, f64::max) < 6.0 + 1e-9);
-        assert_ne!(angles, Helm::Random(1).angles(&steering, 2.0, (0.0, 400)));
-        let held = Helm::Held(-0.5).angles(&steering, 2.0, (0.0, 400));
+        assert_ne!(angles, RudderOrder::Random(1).rudder_angles(&steering, 2.0, (0.0, 400)));
+        let held = RudderOrder::Held(-0.5).rudder_angles(&steering, 2.0, (0.0, 400));
         assert!((held[0].to_degrees() + 6.0).abs() < 1e-9);
         assert!((held[399].to_degrees() + 10.0).abs() < 1e-9);
     }

@@ -2,7 +2,7 @@
 
 use super::candidate::CandidateFit;
 use super::outcome::RefineError;
-use super::problem::Problem;
+use super::problem::RefinementProblem;
 use super::simulated::simulate_longer;
 use super::thresholds::SELECTION;
 
@@ -13,7 +13,7 @@ use super::thresholds::SELECTION;
 /// # Errors
 /// Returns an error if a trial lacks a channel.
 pub(super) fn compare_longer(
-    problem: &Problem<'_>,
+    problem: &RefinementProblem<'_>,
     candidates: &mut [CandidateFit],
 ) -> Result<(), RefineError> {
     if problem.settings.longer_restarts_s.is_empty() {
@@ -50,12 +50,12 @@ mod tests {
     use sistership_model::trial::Trial;
 
     use super::super::candidate::UnchangedSource;
-    use super::super::settings::Settings;
+    use super::super::settings::RefinementSettings;
     use super::super::simulated::simulate_training;
     use super::*;
-    use crate::testing::{mariner, trials, with};
+    use crate::testing::{mariner_model, simulated_trials, with_scaled_coefficients};
 
-    fn candidate(problem: &Problem<'_>, model: &Model) -> CandidateFit {
+    fn candidate(problem: &RefinementProblem<'_>, model: &Model) -> CandidateFit {
         let left_out = vec![model.clone(); problem.fold_count()];
         let simulated = simulate_training(problem, &left_out, &|trial| problem.fold_of(trial));
         let step = (String::new(), None);
@@ -65,17 +65,18 @@ mod tests {
 
     #[test]
     fn a_bias_shows_in_whole_trials_and_what_is_far_off_is_out() {
-        let (model, law) = mariner();
-        let sailed = trials(&model, &law, 0.02);
+        let (model, law) = mariner_model();
+        let sailed = simulated_trials(&model, &law, 0.02);
         let sailed: Vec<&Trial> = sailed.iter().collect();
-        let settings = Settings {
+        let settings = RefinementSettings {
             restart_s: Some(60.0),
             longer_restarts_s: vec![1000.0],
-            ..Settings::default()
+            ..RefinementSettings::default()
         };
-        let problem = Problem::of_model(&model, &law, &sailed, settings);
-        let biased = with(&model, |name| if name == "N_0" { 1.5 } else { 1.0 });
-        let far = with(&model, |name| if name == "N_delta" { 1.5 } else { 1.0 });
+        let problem = RefinementProblem::from_model(&model, &law, &sailed, settings);
+        let biased = with_scaled_coefficients(&model, |name| if name == "N_0" { 1.5 } else { 1.0 });
+        let far =
+            with_scaled_coefficients(&model, |name| if name == "N_delta" { 1.5 } else { 1.0 });
         let mut all = [&model, &biased, &far].map(|model| candidate(&problem, model));
         compare_longer(&problem, &mut all).unwrap();
         let [own, biased, far] = all;

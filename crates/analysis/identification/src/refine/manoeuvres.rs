@@ -4,18 +4,20 @@ use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, StandardManoeuvres, standard};
-use sistership_simulation::metrics::{Recognised, recorded_track};
-use sistership_simulation::recorded::{Recorded, Replay, ReplaySettings, replay_all};
+use sistership_simulation::manoeuvre::{
+    ManoeuvreSettings, StandardManoeuvres, simulate_standard_manoeuvres,
+};
+use sistership_simulation::metrics::{ManoeuvreRecognition, recorded_track};
+use sistership_simulation::recorded::{RecordedTrial, ReplaySettings, TrialReplay, replay_trials};
 
 use super::outcome::MeasuredManoeuvre;
-use super::problem::Problem;
-use sistership_priors::transfer::ready;
+use super::problem::RefinementProblem;
+use sistership_priors::transfer::prepare_ship;
 
 /// Returns the turning circles and zigzags among the trials, as measured and as simulated by both
 /// models with the recorded rudder.
 pub(super) fn measured_manoeuvres(
-    problem: &Problem<'_>,
+    problem: &RefinementProblem<'_>,
     refined: &Model,
 ) -> Vec<MeasuredManoeuvre> {
     // Whole trials, not the parts in which they may be held out: a manoeuvre is recognised from its
@@ -25,22 +27,24 @@ pub(super) fn measured_manoeuvres(
         .iter()
         .map(|trial| (*trial, true))
         .chain(problem.judged.iter().map(|trial| (*trial, false)));
-    let recognised: Vec<(&Trial, bool, Recognised)> = trials
-        .filter_map(|(trial, fitted)| Some((trial, fitted, Recognised::of(trial)?)))
+    let recognised: Vec<(&Trial, bool, ManoeuvreRecognition)> = trials
+        .filter_map(|(trial, fitted)| {
+            Some((trial, fitted, ManoeuvreRecognition::from_trial(trial)?))
+        })
         .collect();
     let trials: Vec<&Trial> = recognised.iter().map(|(trial, ..)| *trial).collect();
-    let [source, refined] =
-        [&problem.transferred, refined].map(|model| sailed(model, problem.law, &trials));
-    let one = |(k, (trial, fitted, recognised)): (usize, &(&Trial, bool, Recognised))| {
+    let [source, refined] = [&problem.transferred, refined]
+        .map(|model| replay_whole_trials(model, problem.law, &trials));
+    let one = |(k, (trial, fitted, recognised)): (usize, &(&Trial, bool, ManoeuvreRecognition))| {
         let samples: Vec<usize> = (0..trial.len()).collect();
-        let simulated = |runs: &[Replay]| {
+        let simulated = |runs: &[TrialReplay]| {
             let run = runs.get(k).filter(|run| run.stopped.is_none())?;
-            recognised.metrics(&run.track, &run.samples)
+            recognised.track_metrics(&run.track, &run.samples)
         };
         Some(MeasuredManoeuvre {
             trial: trial.name.clone(),
             fitted: *fitted,
-            measured: recognised.metrics(&recorded_track(trial)?, &samples)?,
+            measured: recognised.track_metrics(&recorded_track(trial)?, &samples)?,
             source: simulated(&source),
             refined: simulated(&refined),
         })
@@ -49,18 +53,18 @@ pub(super) fn measured_manoeuvres(
 }
 
 /// Simulations of trials from beginning to end by a model; empty if it cannot be set up.
-fn sailed(model: &Model, law: &Law, trials: &[&Trial]) -> Vec<Replay> {
-    let Ok(ship) = ready(model, law, trials) else { return Vec::new() };
-    let recorded: Vec<Recorded<'_>> =
-        trials.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
-    replay_all(&ship, &recorded, &ReplaySettings::default()).unwrap_or_default()
+fn replay_whole_trials(model: &Model, law: &Law, trials: &[&Trial]) -> Vec<TrialReplay> {
+    let Ok(ship) = prepare_ship(model, law, trials) else { return Vec::new() };
+    let recorded: Vec<RecordedTrial<'_>> =
+        trials.iter().map(|trial| RecordedTrial { trial, coefficients: &[] }).collect();
+    replay_trials(&ship, &recorded, &ReplaySettings::default()).unwrap_or_default()
 }
 
 /// Returns the standard manoeuvres of a model; its only failure is the error if it cannot be set
 /// up.
 pub(super) fn standard_manoeuvres(model: &Model, law: &Law) -> StandardManoeuvres {
     match Ship::new(model, law) {
-        Ok(ship) => standard(&ship, &ManoeuvreSettings::default()),
+        Ok(ship) => simulate_standard_manoeuvres(&ship, &ManoeuvreSettings::default()),
         Err(error) => {
             StandardManoeuvres { failures: vec![error.to_string()], ..Default::default() }
         }

@@ -8,11 +8,11 @@ use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 
 use super::across::{PlaneSource, SourceRegression};
-use super::blocks::Blocks;
+use super::blocks::RegressionBlocks;
 use super::envelope::{MemberRates, OperatingEnvelope};
 use super::outcome::RefineError;
 use super::population::PopulationRegression;
-use sistership_numerics::{Moments, merged};
+use sistership_numerics::{RegressionMoments, merge_trials};
 
 /// The measure of a prior: the source of the sizes of the regressors.
 pub(super) enum PriorMeasure {
@@ -36,7 +36,7 @@ pub(super) enum PriorMeasure {
 impl PriorMeasure {
     /// Returns the measure for a source of the law that is fitted. A source that cannot be
     /// simulated has no envelope.
-    pub fn own(source: &Model, law: &Law, trials: &[&Trial], in_parts: bool) -> Self {
+    pub fn for_own_law(source: &Model, law: &Law, trials: &[&Trial], in_parts: bool) -> Self {
         let envelope = in_parts.then(|| OperatingEnvelope::new(source, law, trials).ok()).flatten();
         envelope.map_or(Self::Trials, Self::Envelope)
     }
@@ -51,38 +51,41 @@ impl PriorMeasure {
     ///
     /// # Errors
     /// Returns an error if the law has an input that the trials do not record.
-    pub fn hold(
+    pub fn apply_to(
         &self,
-        blocks: &mut Blocks,
+        blocks: &mut RegressionBlocks,
         model: &mut Model,
-        trials: &[Moments],
+        trials: &[RegressionMoments],
     ) -> Result<(), RefineError> {
         match self {
             Self::Trials => {}
-            Self::Envelope(envelope) => sized(blocks, &envelope.moments(blocks)?, trials),
+            Self::Envelope(envelope) => {
+                set_precision_by_size(blocks, &envelope.group_moments(blocks)?, trials)
+            }
             Self::Mixture(envelope) => {
-                SourceRegression::new(envelope, blocks, model)?.hold(blocks, trials);
+                SourceRegression::new(envelope, blocks, model)?.set_precision(blocks, trials);
             }
             Self::Source(envelope) => {
                 let imitation = SourceRegression::new(envelope, blocks, model)?;
-                imitation.fill(blocks, model);
-                imitation.hold(blocks, trials);
+                imitation.set_coefficients(blocks, model);
+                imitation.set_precision(blocks, trials);
             }
-            Self::Plane(source) => source.hold(blocks, model, trials)?,
+            Self::Plane(source) => source.apply_to(blocks, model, trials)?,
             Self::Population(envelope, members) => {
                 // The source's regression sets the states, the ridge and the metric; the population
                 // then replaces values and precision.
                 let states = SourceRegression::new(envelope, blocks, model)?;
-                states.fill(blocks, model);
-                states.hold(blocks, trials);
-                PopulationRegression::new(envelope, members, states.ridge()).hold(blocks, model)?;
+                states.set_coefficients(blocks, model);
+                states.set_precision(blocks, trials);
+                PopulationRegression::new(envelope, members, states.ridge_strength())
+                    .apply_to(blocks, model)?;
             }
         }
         Ok(())
     }
 
     /// Description for reports; `None` for the measure of the published method.
-    pub fn words(&self, model: &Model, law: &Law) -> Option<String> {
+    pub fn describe_prior(&self, model: &Model, law: &Law) -> Option<String> {
         match self {
             Self::Trials => None,
             Self::Envelope(_) => Some(
@@ -102,13 +105,13 @@ impl PriorMeasure {
                 ))
             }
             Self::Source(envelope) => {
-                let blocks = Blocks::new(model, law).ok()?;
+                let blocks = RegressionBlocks::new(model, law).ok()?;
                 let regression = SourceRegression::new(envelope, &blocks, model).ok()?;
-                Some(regression.words(&blocks, &law.name))
+                Some(regression.describe_source(&blocks, &law.name))
             }
             Self::Plane(source) => {
-                let blocks = Blocks::new(model, law).ok()?;
-                source.words(&blocks, model, law)
+                let blocks = RegressionBlocks::new(model, law).ok()?;
+                source.describe_source(&blocks, model, law)
             }
         }
     }
@@ -116,9 +119,13 @@ impl PriorMeasure {
 
 /// Measures each coefficient by the deviation of its regressor over the envelope, or over the
 /// trials where that is larger.
-fn sized(blocks: &mut Blocks, envelope: &[Vec<Moments>], trials: &[Moments]) {
-    let Some(all) = merged(envelope, |_| true) else { return };
+fn set_precision_by_size(
+    blocks: &mut RegressionBlocks,
+    envelope: &[Vec<RegressionMoments>],
+    trials: &[RegressionMoments],
+) {
+    let Some(all) = merge_trials(envelope, |_| true) else { return };
     for ((block, envelope), trials) in blocks.blocks.iter_mut().zip(&all).zip(trials) {
-        block.precision = Some(DMatrix::from_diagonal(&block.sizes(envelope, trials)));
+        block.precision = Some(DMatrix::from_diagonal(&block.regressor_sizes(envelope, trials)));
     }
 }

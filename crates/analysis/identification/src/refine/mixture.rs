@@ -7,27 +7,30 @@ use sistership_model::coefficient::Axis;
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 use sistership_model::{FileError, Model, Vessel};
-use sistership_priors::estimates::{LAW, Library, estimate};
+use sistership_priors::estimates::{LAW, RegressionLibrary, estimate_ship};
 
 use super::across::SourceRegression;
-use super::blocks::Blocks;
+use super::blocks::RegressionBlocks;
 use super::envelope::OperatingEnvelope;
 use super::measure::PriorMeasure;
 use super::outcome::RefineError;
-use super::thresholds::{LEARNED_POSITION, MIXTURE, Misfit};
+use super::thresholds::{ErrorCovariance, LEARNED_POSITION, MIXTURE};
 
 /// The regressions of estimates, and the law that they estimate.
-struct Regressions {
-    library: Library,
+struct EstimateRegressions {
+    library: RegressionLibrary,
     law: Law,
 }
 
-static REGRESSIONS: LazyLock<Result<Regressions, FileError>> = LazyLock::new(|| {
+static REGRESSIONS: LazyLock<Result<EstimateRegressions, FileError>> = LazyLock::new(|| {
     let text = include_str!("../../../../../models/laws/mmg.yaml");
-    Ok(Regressions { library: Library::embedded()?, law: Law::parse(LAW, text)? })
+    Ok(EstimateRegressions {
+        library: RegressionLibrary::parse_embedded()?,
+        law: Law::parse(LAW, text)?,
+    })
 });
 
-fn regressions() -> Result<&'static Regressions, RefineError> {
+fn embedded_regressions() -> Result<&'static EstimateRegressions, RefineError> {
     REGRESSIONS.as_ref().map_err(|error| RefineError::Law(error.to_string()))
 }
 
@@ -36,7 +39,7 @@ fn regressions() -> Result<&'static Regressions, RefineError> {
 /// # Errors
 /// Returns an error if the requested regressions are not those of this program.
 pub(super) fn regressions_sha256(asked: Option<&str>) -> Result<String, RefineError> {
-    let own = &regressions()?.library.sha256;
+    let own = &embedded_regressions()?.library.sha256;
     match asked {
         Some(asked) if asked != own => Err(RefineError::Setting {
             field: "regressions_sha256".into(),
@@ -51,7 +54,7 @@ pub(super) fn regressions_sha256(asked: Option<&str>) -> Result<String, RefineEr
 ///
 /// # Errors
 /// Returns an error if the source is a model of the target.
-pub(super) fn check(source: &Model, target: &Vessel) -> Result<(), RefineError> {
+pub(super) fn check_source(source: &Model, target: &Vessel) -> Result<(), RefineError> {
     if source.ship != target.name() {
         return Ok(());
     }
@@ -65,15 +68,15 @@ pub(super) fn check(source: &Model, target: &Vessel) -> Result<(), RefineError> 
 /// # Errors
 /// Returns an error if the ship's particulars do not suffice for an estimate, or the model cannot
 /// be simulated.
-pub(super) fn of_same_law(
+pub(super) fn mix_same_law(
     mut model: Model,
     law: &Law,
     target: &Vessel,
     (trials, position): (&[&Trial], f64),
 ) -> Result<(Model, PriorMeasure), RefineError> {
     let envelope = OperatingEnvelope::new(&model, law, trials)?;
-    let mixed = mixed(&envelope, target, model.speed_m_s, (trials, position))?;
-    moved(&mut model, law, &envelope, &mixed)?;
+    let mixed = mixed_envelope(&envelope, target, model.speed_m_s, (trials, position))?;
+    shift_coefficients(&mut model, law, &envelope, &mixed)?;
     Ok((model, PriorMeasure::Mixture(mixed)))
 }
 
@@ -82,37 +85,38 @@ pub(super) fn of_same_law(
 ///
 /// # Errors
 /// Returns an error if the ship's particulars do not suffice for an estimate.
-pub(super) fn mixed(
+pub(super) fn mixed_envelope(
     envelope: &OperatingEnvelope,
     target: &Vessel,
     speed_m_s: Option<f64>,
     (trials, position): (&[&Trial], f64),
 ) -> Result<OperatingEnvelope, RefineError> {
-    let (estimated, law) = estimated(target, speed_m_s)?;
+    let (estimated, law) = particulars_estimate(target, speed_m_s)?;
     // An axis without a known covariance keeps the source.
-    let shares = MIXTURE.misfit.map(|misfit| misfit.map_or(0.0, |misfit| at(position, misfit)));
-    let moved = envelope.moved_to((&estimated, law), &shares, trials)?;
-    Ok(OperatingEnvelope { mixed: Some(words(&shares)), ..moved })
+    let shares =
+        MIXTURE.misfit.map(|misfit| misfit.map_or(0.0, |misfit| share_at(position, misfit)));
+    let moved = envelope.shifted_towards((&estimated, law), &shares, trials)?;
+    Ok(OperatingEnvelope { mixed: Some(describe_shares(&shares)), ..moved })
 }
 
 /// Returns the envelope of the estimate alone, described as such.
-pub(super) fn alone(envelope: OperatingEnvelope) -> OperatingEnvelope {
-    OperatingEnvelope { mixed: Some(words(&[1.0; 4])), ..envelope }
+pub(super) fn estimate_only(envelope: OperatingEnvelope) -> OperatingEnvelope {
+    OperatingEnvelope { mixed: Some(describe_shares(&[1.0; 4])), ..envelope }
 }
 
 /// Returns the estimate from the ship's particulars, and its law.
 ///
 /// # Errors
 /// Returns an error if the particulars do not suffice, or the speed is not known.
-pub(super) fn estimated(
+pub(super) fn particulars_estimate(
     target: &Vessel,
     speed_m_s: Option<f64>,
 ) -> Result<(Model, &'static Law), RefineError> {
-    let Regressions { library, law } = regressions()?;
+    let EstimateRegressions { library, law } = embedded_regressions()?;
     let speed_m_s = speed_m_s.ok_or_else(|| {
         RefineError::Data(format!("{}: the speed of the estimate is not known", target.name()))
     })?;
-    let estimate = estimate(library, target, law, speed_m_s)
+    let estimate = estimate_ship(library, target, law, speed_m_s)
         .map_err(|error| RefineError::Data(format!("no estimate for the mixture: {error}")))?;
     Ok((estimate.model, law))
 }
@@ -121,7 +125,7 @@ pub(super) fn estimated(
 /// revolutions, `k_0/s^2`, `k_1/s` and `k_2` give the same thrust `k_0 (nD)^2 + k_1 u_P nD + k_2
 /// u_P^2` as before, at every speed and at `s` times the revolutions: the pitch is estimated, the
 /// revolutions are read from the trials.
-pub(super) fn turn_at(estimate: &mut Model, n_rps: f64) {
+pub(super) fn set_revolutions(estimate: &mut Model, n_rps: f64) {
     let Some(own) = estimate.revolutions_rps.replace(n_rps) else { return };
     let ratio = n_rps / own;
     for (name, by) in [("k_0", ratio.powi(2)), ("k_1", ratio)] {
@@ -134,8 +138,8 @@ pub(super) fn turn_at(estimate: &mut Model, n_rps: f64) {
 
 /// The estimate's share at a position: 0 at the source, that of least variance at a half, 1 at the
 /// estimate, linear between them.
-fn at(position: f64, misfit: Misfit) -> f64 {
-    let learned = share(misfit);
+fn share_at(position: f64, misfit: ErrorCovariance) -> f64 {
+    let learned = minimum_variance_share(misfit);
     match position <= LEARNED_POSITION {
         true => learned * position / LEARNED_POSITION,
         false => {
@@ -146,26 +150,26 @@ fn at(position: f64, misfit: Misfit) -> f64 {
 
 /// The estimate's share in the mean of least variance: with `C` the covariance of both errors,
 /// `C^-1 1 / (1' C^-1 1)` (Bates and Granger 1969, Eq. 2).
-fn share(misfit: Misfit) -> f64 {
-    let Misfit { source, estimate, common } = misfit;
+fn minimum_variance_share(misfit: ErrorCovariance) -> f64 {
+    let ErrorCovariance { source, estimate, common } = misfit;
     ((source - common) / (source + estimate - 2.0 * common)).clamp(0.0, 1.0)
 }
 
 /// Shifts a model's coefficients by the difference of the mixture and the source, both regressed on
 /// the law's terms alike: where the estimate has no share, the source stays as it is.
-fn moved(
+fn shift_coefficients(
     model: &mut Model,
     law: &Law,
     own: &OperatingEnvelope,
     mixed: &OperatingEnvelope,
 ) -> Result<(), RefineError> {
-    let blocks = Blocks::new(model, law)?;
+    let blocks = RegressionBlocks::new(model, law)?;
     let towards = SourceRegression::new(mixed, &blocks, model)?;
     // The same ridge for both, so that the difference is not one of regularisation.
-    let from = towards.of(own, &blocks)?;
+    let from = towards.for_envelope(own, &blocks)?;
     let (mut before, mut after) = (model.clone(), model.clone());
-    from.fill(&blocks, &mut before);
-    towards.fill(&blocks, &mut after);
+    from.set_coefficients(&blocks, &mut before);
+    towards.set_coefficients(&blocks, &mut after);
     for (name, quantity) in &mut model.coefficients {
         quantity.value += after.coefficient(name) - before.coefficient(name);
         quantity.source = format!("{}, moved towards the estimate", quantity.source);
@@ -174,7 +178,7 @@ fn moved(
 }
 
 /// Description of the shares for reports.
-fn words(shares: &[f64; 4]) -> String {
+fn describe_shares(shares: &[f64; 4]) -> String {
     if shares.iter().all(|share| *share == 1.0) {
         return "the prior is the estimate from particulars in place of the source".to_owned();
     }
@@ -191,19 +195,24 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use sistership_model::Zoo;
-    use sistership_priors::transfer::transfer;
+    use sistership_priors::transfer::transfer_model;
     use sistership_simulation::Ship;
-    use sistership_simulation::plant::Work;
+    use sistership_simulation::plant::PlantWorkspace;
     use sistership_simulation::state::{StateVector, at};
 
     #[test]
     fn shares_are_those_of_the_least_variance() {
-        let of = |source, estimate, common| share(Misfit { source, estimate, common });
+        let of = |source, estimate, common| {
+            minimum_variance_share(ErrorCovariance { source, estimate, common })
+        };
         assert_eq!(of(1.0, 1.0, 0.0), 0.5);
         assert_eq!(of(4.0, 1.0, 0.0), 0.8);
         assert_eq!(of(1.0, 9.0, 2.0), 0.0);
-        let misfit = Misfit { source: 4.0, estimate: 1.0, common: 0.0 };
-        assert_eq!([0.0, 0.25, 0.5, 0.75, 1.0].map(|p| at(p, misfit)), [0.0, 0.4, 0.8, 0.9, 1.0]);
+        let misfit = ErrorCovariance { source: 4.0, estimate: 1.0, common: 0.0 };
+        assert_eq!(
+            [0.0, 0.25, 0.5, 0.75, 1.0].map(|p| share_at(p, misfit)),
+            [0.0, 0.4, 0.8, 0.9, 1.0]
+        );
         // The mean square of the mean by its share is least there.
         let square = |w: f64| (1.0 - w).powi(2) * 2.0 + w * w * 3.0 + 2.0 * w * (1.0 - w) * 0.5;
         let best = of(2.0, 3.0, 0.5);
@@ -212,15 +221,15 @@ mod tests {
 
     #[test]
     fn coefficients_say_what_the_mixture_says() {
-        let zoo = Zoo::embedded().unwrap();
-        let source = zoo.model("kvlcc2").unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let source = zoo.find_model("kvlcc2").unwrap();
         let (target, law) = (zoo.vessel("kcs").unwrap(), zoo.law(&source.law).unwrap());
-        let carried = transfer(&source, law, target, None);
+        let carried = transfer_model(&source, law, target, None);
         let own = OperatingEnvelope::new(&carried, law, &[]).unwrap();
         let (model, measure) =
-            of_same_law(carried.clone(), law, target, (&[], LEARNED_POSITION)).unwrap();
+            mix_same_law(carried.clone(), law, target, (&[], LEARNED_POSITION)).unwrap();
         let PriorMeasure::Mixture(mixed) = measure else { panic!("another measure") };
-        let said = own.moved_to((&model, law), &[1.0; 4], &[]).unwrap();
+        let said = own.shifted_towards((&model, law), &[1.0; 4], &[]).unwrap();
         for axis in [Axis::X, Axis::Y, Axis::N] {
             let before = own.distance(&mixed, axis);
             assert!(before > 0.0, "{axis}: the estimate says the same");
@@ -230,16 +239,18 @@ mod tests {
 
     #[test]
     fn an_estimate_makes_its_speed_at_the_revolutions_of_the_trials() {
-        let zoo = Zoo::embedded().unwrap();
-        let (mut model, law) = estimated(zoo.vessel("kcs").unwrap(), Some(12.0)).unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let (mut model, law) =
+            particulars_estimate(zoo.vessel("kcs").unwrap(), Some(12.0)).unwrap();
         let gained = |model: &Model, n_rps: f64| {
             let ship = Ship::new(model, law).unwrap();
             let state = StateVector::from_fn(|place, _| if place == at::U { 12.0 } else { 0.0 });
-            ship.rate_with(&state, &ship.inputs(0.0, n_rps), &mut Work::default())[at::U]
+            ship.rate_with(&state, &ship.inputs_for(0.0, n_rps), &mut PlantWorkspace::default())
+                [at::U]
         };
         let own = model.revolutions_rps.unwrap();
         let before = gained(&model, 0.9 * own);
-        turn_at(&mut model, 1.3 * own);
+        set_revolutions(&mut model, 1.3 * own);
         assert_eq!(model.revolutions_rps, Some(1.3 * own));
         assert!(gained(&model, 1.3 * own).abs() < 1e-6 && before < -1e-3);
         assert!((gained(&model, 1.3 * 0.9 * own) - before).abs() < 1e-9);
@@ -247,10 +258,10 @@ mod tests {
 
     #[test]
     fn a_ships_own_model_and_other_regressions_are_refused() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let target = zoo.vessel("kvlcc2").unwrap();
-        assert!(check(&zoo.model("kvlcc2").unwrap(), target).is_err());
-        assert!(check(&zoo.model("mariner").unwrap(), target).is_ok());
+        assert!(check_source(&zoo.find_model("kvlcc2").unwrap(), target).is_err());
+        assert!(check_source(&zoo.find_model("mariner").unwrap(), target).is_ok());
         let own = regressions_sha256(None).unwrap();
         assert_eq!(regressions_sha256(Some(&own)).unwrap(), own);
         assert!(regressions_sha256(Some("0")).unwrap_err().to_string().contains(&own));

@@ -4,8 +4,8 @@
 use rayon::prelude::*;
 
 use super::outcome::RefineError;
-use super::settings::Settings;
-use super::weighed::Weighed;
+use super::settings::RefinementSettings;
+use super::weighed::CandidateEvaluation;
 
 /// Returns the chosen position; `None` if there is no choice.
 ///
@@ -15,9 +15,9 @@ use super::weighed::Weighed;
 ///
 /// # Errors
 /// Returns an error if it was cancelled.
-pub(super) fn chosen(
-    settings: &Settings,
-    weigh: impl Fn(&Settings) -> Result<Vec<Weighed>, RefineError> + Sync,
+pub(super) fn choose_position(
+    settings: &RefinementSettings,
+    weigh: impl Fn(&RefinementSettings) -> Result<Vec<CandidateEvaluation>, RefineError> + Sync,
 ) -> Result<Option<f64>, RefineError> {
     let mut positions = settings.mixture_positions.clone();
     if positions.len() < 2 {
@@ -27,16 +27,17 @@ pub(super) fn chosen(
     // earlier one.
     positions.sort_by(|a, b| b.total_cmp(a));
     let weighed = |position: &f64| {
-        let settings = Settings { mixture_positions: vec![*position], ..settings.clone() };
+        let settings =
+            RefinementSettings { mixture_positions: vec![*position], ..settings.clone() };
         // A position that cannot be evaluated is skipped; only cancellation ends the choice.
         match weigh(&settings) {
             Err(RefineError::Cancelled) => Err(RefineError::Cancelled),
-            weighed => Ok(weighed.ok().and_then(least)),
+            weighed => Ok(weighed.ok().and_then(least_error)),
         }
     };
-    let all: Vec<Option<Weighed>> =
+    let all: Vec<Option<CandidateEvaluation>> =
         positions.par_iter().map(weighed).collect::<Result<_, RefineError>>()?;
-    let mut best: Option<(f64, &Weighed)> = None;
+    let mut best: Option<(f64, &CandidateEvaluation)> = None;
     for (position, weighed) in positions.iter().zip(&all) {
         let Some(weighed) = weighed else { continue };
         if best.is_none_or(|(_, before)| is_better(weighed, before, settings.in_parts)) {
@@ -47,14 +48,14 @@ pub(super) fn chosen(
 }
 
 /// The evaluation with the least error of those that can be chosen.
-fn least(weighed: Vec<Weighed>) -> Option<Weighed> {
+fn least_error(weighed: Vec<CandidateEvaluation>) -> Option<CandidateEvaluation> {
     let takeable = weighed.into_iter().filter(|one| one.reason.is_none() && one.error.is_some());
     takeable.min_by(|a, b| a.error.unwrap_or(f64::MAX).total_cmp(&b.error.unwrap_or(f64::MAX)))
 }
 
 /// Returns true if a fit has the smaller error; with few trials, by more than a standard error of
 /// the difference over their parts (Breiman et al. 1984, section 3.4.3).
-fn is_better(new: &Weighed, old: &Weighed, is_few: bool) -> bool {
+fn is_better(new: &CandidateEvaluation, old: &CandidateEvaluation, is_few: bool) -> bool {
     let gains: Vec<f64> =
         new.each.iter().filter_map(|(name, error)| Some(old.each.get(name)? - error)).collect();
     let count = gains.len() as f64;
@@ -73,25 +74,30 @@ mod tests {
     use crate::refine::Prior;
 
     /// Errors by part of a mixture that is best at a position.
-    fn weighed(position: f64, best: f64, scatter: f64) -> Vec<Weighed> {
+    fn weighed(position: f64, best: f64, scatter: f64) -> Vec<CandidateEvaluation> {
         let error = |part: usize| {
             1.0 + (position - best).abs() + scatter * position * if part < 2 { 1.0 } else { -1.0 }
         };
         let each = (0..4).map(|part| (part.to_string(), error(part))).collect();
         let error = Some(1.0 + (position - best).abs());
-        vec![Weighed { error, each, reason: None, ..Weighed::refused(String::new()) }]
+        vec![CandidateEvaluation {
+            error,
+            each,
+            reason: None,
+            ..CandidateEvaluation::with_refusal(String::new())
+        }]
     }
 
     fn position(best: f64, scatter: f64, in_parts: bool) -> Option<f64> {
         let positions = vec![0.0, 0.5, 1.0];
-        let settings = Settings {
+        let settings = RefinementSettings {
             prior: Prior::Mixture,
             mixture_positions: positions,
             in_parts,
-            ..Settings::default()
+            ..RefinementSettings::default()
         };
-        let weigh = |one: &Settings| Ok(weighed(one.mixture_positions[0], best, scatter));
-        chosen(&settings, weigh).unwrap()
+        let weigh = |one: &RefinementSettings| Ok(weighed(one.mixture_positions[0], best, scatter));
+        choose_position(&settings, weigh).unwrap()
     }
 
     #[test]
@@ -107,17 +113,21 @@ mod tests {
 
     #[test]
     fn one_position_is_no_choice() {
-        let settings = Settings { mixture_positions: vec![0.5], ..Settings::default() };
-        assert_eq!(chosen(&settings, |_| panic!("weighed")).unwrap(), None);
+        let settings =
+            RefinementSettings { mixture_positions: vec![0.5], ..RefinementSettings::default() };
+        assert_eq!(choose_position(&settings, |_| panic!("weighed")).unwrap(), None);
     }
 
     #[test]
     fn what_cannot_be_weighed_is_passed_over() {
-        let settings = Settings { mixture_positions: vec![0.0, 1.0], ..Settings::default() };
-        let weigh = |one: &Settings| match one.mixture_positions[0] {
+        let settings = RefinementSettings {
+            mixture_positions: vec![0.0, 1.0],
+            ..RefinementSettings::default()
+        };
+        let weigh = |one: &RefinementSettings| match one.mixture_positions[0] {
             1.0 => Err(RefineError::Data("no estimate".into())),
             other => Ok(weighed(other, 0.0, 0.0)),
         };
-        assert_eq!(chosen(&settings, weigh).unwrap(), Some(0.0));
+        assert_eq!(choose_position(&settings, weigh).unwrap(), Some(0.0));
     }
 }

@@ -48,22 +48,25 @@ mod weighed;
 
 pub use crate::constraints::{Bound, ConstraintError, Constraints, LimitError, StraightLine};
 pub use across::SourceEnvelopes;
-pub use alternatives::{Alternative, alternatives};
-pub use blocks::{Block, Blocks};
+pub use alternatives::{AlternativeFit, alternative_fits};
+pub use blocks::{RegressionBlock, RegressionBlocks};
 pub use cma_es::{CmaEs, SearchReport};
-pub use family::Family;
-pub use helm::{Beginning, Helm, helms, record};
+pub use family::TermFamily;
+pub use helm::{RecordStart, RudderOrder, rudder_record, rudder_records};
 pub use outcome::{
-    CoefficientChange, HeldOut, Manoeuvres, MeasuredManoeuvre, RefineError, Refinement, StepOption,
+    CoefficientChange, HeldOut, MeasuredManoeuvre, RefineError, Refinement, RefinementManoeuvres,
+    StepOption,
 };
-pub use population::Member;
-pub use progress::{Iterate, MonotoneProgress, Progress, Watch};
-pub use replayed_trials::{ReplayedTrials, Thinning};
-pub use request::Request;
-pub use ridge::{Choices, Fit, Fitted, Fold, fit, tune};
-pub use rows::{Table, trial_moments, trial_tables};
-pub use selection::{fit_model, refine, refine_wanted, refine_watched, weigh};
-pub use settings::{Method, Prior, Range, Settings, TRIALS_ALONE};
+pub use population::PopulationShip;
+pub use progress::{FitIterate, IterateObserver, MonotoneProgress, Progress};
+pub use replayed_trials::{ReplayedTrials, ThinningSettings};
+pub use request::RefinementSpec;
+pub use ridge::{
+    CoefficientFit, FittedCoefficient, RegressionFold, RidgeChoices, fit_regressions, tune_choices,
+};
+pub use rows::{RegressionTable, trial_moments, trial_tables};
+pub use selection::{evaluate_candidates, fit_model, refine, refine_if_wanted, refine_watched};
+pub use settings::{EstimationMethod, Prior, RefinementSettings, TRIALS_ALONE, TuningRange};
 pub use settings_check::SettingFault;
-pub use weak::{Windows, weak_moments, weak_tables};
-pub use weighed::{Extent, FoldModel, Weighed};
+pub use weak::{WindowSpacing, weak_moments, weak_tables};
+pub use weighed::{CandidateEvaluation, FoldModel, RefinementExtent};

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 use sistership_model::Model;
 use sistership_model::trial::Channel;
 use sistership_simulation::PlantError;
-use sistership_simulation::manoeuvre::{Figure, StandardManoeuvres};
+use sistership_simulation::manoeuvre::{NamedFigure, StandardManoeuvres};
 use sistership_simulation::metrics::ManoeuvreMetrics;
 
 use super::cma_es::SearchReport;
-use super::settings::Settings;
+use super::settings::RefinementSettings;
 use crate::constraints::LimitError;
-use sistership_assessment::uncertainty::{Band, Bands};
+use sistership_assessment::uncertainty::{UncertaintyBand, UncertaintyBands};
 use sistership_priors::transfer::UnknownParameter;
 
 /// The error type for a refinement that is refused.
@@ -56,13 +56,13 @@ pub enum RefineError {
 
 impl RefineError {
     /// Returns the error that no option can be chosen, with each reason once.
-    pub fn diverged<'a>(reasons: impl Iterator<Item = &'a str>) -> Self {
-        Self::Diverged(each_once(reasons))
+    pub fn all_diverged<'a>(reasons: impl Iterator<Item = &'a str>) -> Self {
+        Self::Diverged(join_distinct(reasons))
     }
 }
 
 /// Joins distinct reasons in their order; many options share one.
-fn each_once<'a>(reasons: impl Iterator<Item = &'a str>) -> String {
+fn join_distinct<'a>(reasons: impl Iterator<Item = &'a str>) -> String {
     let mut told: Vec<&str> = Vec::new();
     for reason in reasons {
         if !told.contains(&reason) {
@@ -116,23 +116,23 @@ pub struct StepOption {
     pub reason: Option<String>,
 }
 
-impl Manoeuvres {
+impl RefinementManoeuvres {
     /// Returns a sentence about the widest uncertainty band, if it is wide: that of an advance or
     /// tactical diameter is wide if it exceeds half the figure, that of a first overshoot if it
     /// exceeds the 10 deg between the least and the greatest value that MSC.137(76) allows.
     pub fn wide_band(&self) -> Option<String> {
         let bands = self.bands.as_ref()?;
-        let width = |figure: &Figure| {
+        let width = |figure: &NamedFigure| {
             let allowed = allowed_width(figure)?;
-            let band = bands.of(&figure.name)?;
+            let band = bands.figure_band(&figure.name)?;
             // Widths relative to what is allowed make different units comparable.
             let width = (band.high - band.low) / allowed;
             (width > 1.0).then_some((width, band.clone()))
         };
-        let figures = self.refined.figures();
+        let figures = self.refined.list_figures();
         let wide = figures.iter().filter_map(width);
         let (_, band) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let Band { figure, unit, low, high, .. } = band;
+        let UncertaintyBand { figure, unit, low, high, .. } = band;
         Some(format!(
             "These trials leave much open: {figure} is between {low:.0} and {high:.0} {unit} (95 %)"
         ))
@@ -141,7 +141,7 @@ impl Manoeuvres {
 
 /// Width from which on a figure's band is reported as wide; `None` for figures that are not judged
 /// by it.
-fn allowed_width(figure: &Figure) -> Option<f64> {
+fn allowed_width(figure: &NamedFigure) -> Option<f64> {
     let is = |name: &str| figure.name.ends_with(name);
     if is("first overshoot") {
         return Some(10.0);
@@ -175,7 +175,7 @@ pub struct Refinement {
     /// The transferred source model, before refinement.
     pub transferred: Model,
     /// Every setting.
-    pub settings: Settings,
+    pub settings: RefinementSettings,
     /// Largest condition number of the standardised regressions.
     pub condition_number: f64,
     /// Groups of coefficients that the trials cannot distinguish.
@@ -190,7 +190,7 @@ pub struct Refinement {
     /// Every step of the widening ranges.
     pub options: Vec<StepOption>,
     /// Standard manoeuvres of the transferred source and of the refined model.
-    pub manoeuvres: Manoeuvres,
+    pub manoeuvres: RefinementManoeuvres,
     /// Remarks for the person who must defend the model.
     pub remarks: Vec<String>,
 }
@@ -205,21 +205,21 @@ impl Refinement {
     }
 
     /// Reasons why options could not be chosen, each once.
-    pub fn refusals(&self) -> String {
-        each_once(self.options.iter().filter_map(|option| option.reason.as_deref()))
+    pub fn refusal_reasons(&self) -> String {
+        join_distinct(self.options.iter().filter_map(|option| option.reason.as_deref()))
     }
 }
 
 /// Standard manoeuvres before and after.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Manoeuvres {
+pub struct RefinementManoeuvres {
     /// Manoeuvres of the transferred source.
     pub source: StandardManoeuvres,
     /// Manoeuvres of the refined model.
     pub refined: StandardManoeuvres,
     /// Confidence bands of the refined model's figures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bands: Option<Bands>,
+    pub bands: Option<UncertaintyBands>,
     /// Turning circles and zigzags among the trials, measured and simulated with the recorded
     /// rudder from their start.
     pub measured: Vec<MeasuredManoeuvre>,

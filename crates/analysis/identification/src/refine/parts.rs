@@ -9,38 +9,38 @@ use std::ops::Range;
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 
-use super::equations::Equations;
-use super::settings::Settings;
+use super::equations::EquationForm;
+use super::settings::RefinementSettings;
 
 /// Returns the training trials divided into parts of the length of the settings, at least two of
 /// each trial. Empty if the trials stay whole: parts are used where the settings request them, or
 /// where a law has roll and there are fewer trials than folds.
-pub(super) fn parts(
+pub(super) fn trial_parts(
     training: &[&Trial],
     law: &Law,
-    equations: Equations,
-    settings: &Settings,
+    equations: EquationForm,
+    settings: &RefinementSettings,
 ) -> Vec<Trial> {
     let Some(part_s) = settings.part_s.or(settings.restart_s) else { return Vec::new() };
     let few_that_roll = law.has_roll() && training.len() < settings.folds;
     if !settings.in_parts && (equations.are_differences() || !few_that_roll) {
         return Vec::new();
     }
-    training.iter().flat_map(|trial| cut(trial, part_s)).collect()
+    training.iter().flat_map(|trial| divide_trial(trial, part_s)).collect()
 }
 
 /// Divides a trial into equal parts that neither overlap nor share a sample.
-fn cut(trial: &Trial, part_s: f64) -> Vec<Trial> {
+fn divide_trial(trial: &Trial, part_s: f64) -> Vec<Trial> {
     let count = ((trial.duration_s() / part_s).round() as usize).max(2);
     let size = trial.len().div_ceil(count).max(1);
     (0..trial.len())
         .step_by(size)
-        .map(|from| slice(trial, from..(from + size).min(trial.len())))
+        .map(|from| trial_slice(trial, from..(from + size).min(trial.len())))
         .collect()
 }
 
 /// Returns a range of samples of a trial as a trial, with its conditions and without its warnings.
-pub(super) fn slice(trial: &Trial, samples: Range<usize>) -> Trial {
+pub(super) fn trial_slice(trial: &Trial, samples: Range<usize>) -> Trial {
     let of = |column: &[f64]| column[samples.clone()].to_vec();
     Trial {
         name: trial.name.clone(),
@@ -56,7 +56,7 @@ pub(super) fn slice(trial: &Trial, samples: Range<usize>) -> Trial {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::weak::Windows;
+    use super::super::weak::WindowSpacing;
     use super::*;
     use sistership_model::Zoo;
     use sistership_model::trial::Channel;
@@ -70,7 +70,7 @@ mod tests {
     fn parts_hold_every_sample_once() {
         let whole = trial(1161);
         for (part_s, count) in [(200.0, 3), (1000.0, 2)] {
-            let parts = cut(&whole, part_s);
+            let parts = divide_trial(&whole, part_s);
             assert_eq!(parts.len(), count);
             let together: Vec<f64> =
                 parts.iter().flat_map(|part| part.channel(Channel::U).unwrap().to_vec()).collect();
@@ -80,18 +80,20 @@ mod tests {
 
     #[test]
     fn only_few_trials_of_ships_that_roll_are_cut() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let one = trial(1000);
-        let settings = Settings { restart_s: Some(100.0), ..Settings::default() };
-        let windows = Equations::Windows(Windows { length_s: 20.0, hop_s: 2.0, in_means: false });
+        let settings =
+            RefinementSettings { restart_s: Some(100.0), ..RefinementSettings::default() };
+        let windows =
+            EquationForm::Windows(WindowSpacing { length_s: 20.0, hop_s: 2.0, in_means: false });
         let count = |law: &str, trials: usize, equations| {
-            parts(&vec![&one; trials], zoo.law(law).unwrap(), equations, &settings).len()
+            trial_parts(&vec![&one; trials], zoo.law(law).unwrap(), equations, &settings).len()
         };
         assert_eq!(count("abkowitz-roll", 3, windows), 15);
         assert_eq!(count("abkowitz-roll", 8, windows), 0);
         assert_eq!(count("abkowitz", 3, windows), 0);
-        assert_eq!(count("abkowitz-roll", 3, Equations::Differences(None)), 0);
-        let asked = Settings { in_parts: true, ..settings.clone() };
-        assert_eq!(parts(&[&one], zoo.law("abkowitz").unwrap(), windows, &asked).len(), 5);
+        assert_eq!(count("abkowitz-roll", 3, EquationForm::Differences(None)), 0);
+        let asked = RefinementSettings { in_parts: true, ..settings.clone() };
+        assert_eq!(trial_parts(&[&one], zoo.law("abkowitz").unwrap(), windows, &asked).len(), 5);
     }
 }

@@ -17,17 +17,17 @@ use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel};
-use sistership_numerics::{Metric, Moments, RidgeChoice, RidgePath, Scatter};
-use sistership_priors::transfer::{Approach, transfer};
+use sistership_numerics::{PriorMetric, RegressionMoments, RidgeChoice, RidgePath, RobustScatter};
+use sistership_priors::transfer::{TrialApproach, transfer_model};
 
-use super::blocks::{Block, Blocks};
-use super::envelope::{MemberRates, OperatingEnvelope, Rates};
+use super::blocks::{RegressionBlock, RegressionBlocks};
+use super::envelope::{EnvelopeRates, MemberRates, OperatingEnvelope};
 use super::outcome::RefineError;
 use super::thresholds::POPULATION;
 
 /// A ship of the population.
 #[derive(Debug, Clone)]
-pub struct Member {
+pub struct PopulationShip {
     /// Its model, as published or as refined.
     pub model: Model,
     /// The model's law.
@@ -39,19 +39,19 @@ pub struct Member {
 ///
 /// # Errors
 /// Returns an error if there are fewer such members than a scatter needs.
-pub(super) fn rates_of(
-    members: &[Member],
+pub(super) fn member_rates(
+    members: &[PopulationShip],
     target: &Vessel,
-    approach: Option<Approach>,
+    approach: Option<TrialApproach>,
     (envelope, trials): (&OperatingEnvelope, &[&Trial]),
 ) -> Result<Vec<MemberRates>, RefineError> {
-    let one = |Member { model, law }: &Member| {
-        let carried = transfer(model, law, target, approach);
+    let one = |PopulationShip { model, law }: &PopulationShip| {
+        let carried = transfer_model(model, law, target, approach);
         // A member that cannot be set up, or does not cover a state, is skipped.
-        let rates = envelope.asked_of((&carried, law), trials).ok()?;
+        let rates = envelope.model_rates((&carried, law), trials).ok()?;
         Some(MemberRates { name: model.name.clone(), rates })
     };
-    let others: Vec<&Member> =
+    let others: Vec<&PopulationShip> =
         members.iter().filter(|member| member.model.ship != target.name()).collect();
     let known: Vec<MemberRates> = others.into_par_iter().filter_map(one).collect();
     if known.len() < POPULATION.least {
@@ -71,7 +71,7 @@ pub(super) fn rates_of(
 ///
 /// # Errors
 /// Returns an error if the law is one of them.
-pub(super) fn check(law: &Law, source_law: Option<&Law>) -> Result<(), RefineError> {
+pub(super) fn check_laws(law: &Law, source_law: Option<&Law>) -> Result<(), RefineError> {
     let is_across = source_law.is_some_and(|own| own.name != law.name);
     if is_across && !law.has_roll() {
         return Ok(());
@@ -101,37 +101,42 @@ impl<'a> PopulationRegression<'a> {
     ///
     /// # Errors
     /// Returns an error if the law has an input that the states do not have.
-    pub fn hold(&self, blocks: &mut Blocks, model: &mut Model) -> Result<(), RefineError> {
-        let rates: Vec<&Rates> = self.members.iter().map(|member| &member.rates).collect();
-        let moments = self.envelope.moments_of(blocks, &rates)?;
+    pub fn apply_to(
+        &self,
+        blocks: &mut RegressionBlocks,
+        model: &mut Model,
+    ) -> Result<(), RefineError> {
+        let rates: Vec<&EnvelopeRates> = self.members.iter().map(|member| &member.rates).collect();
+        let moments = self.envelope.model_moments(blocks, &rates)?;
         for (block, moments) in blocks.blocks.iter_mut().zip(&moments) {
             // The metric is the precision that the source's regression left in the block.
-            let Some(metric) = block.precision.as_ref().and_then(Metric::of_precision) else {
+            let Some(metric) = block.precision.as_ref().and_then(PriorMetric::of_precision) else {
                 continue;
             };
-            let members = self.coordinates(block, &metric, moments);
-            let scatter = Scatter::new(&members, POPULATION.rounds);
-            block.precision = scatter.precision(&metric, POPULATION.outside);
-            fill(block, &scatter.means, &metric, (model, self.members.len()));
+            let members = self.member_coordinates(block, &metric, moments);
+            let scatter = RobustScatter::new(&members, POPULATION.rounds);
+            block.precision = scatter.coefficient_precision(&metric, POPULATION.outside);
+            set_means(block, &scatter.means, &metric, (model, self.members.len()));
         }
         Ok(())
     }
 
     /// The members' coefficients in the coordinates of a metric, by target.
-    fn coordinates(
+    fn member_coordinates(
         &self,
-        block: &Block,
-        metric: &Metric,
-        moments: &Moments,
+        block: &RegressionBlock,
+        metric: &PriorMetric,
+        moments: &RegressionMoments,
     ) -> Vec<Vec<DVector<f64>>> {
-        let (p, q) = (block.regressors(), block.axes.len());
+        let (p, q) = (block.regressor_count(), block.axes.len());
         let zero = vec![0.0; p];
-        let own = Metric::of_regressors(moments, &block.shrinkage);
-        let path = RidgePath::measured(moments, &vec![zero.clone(); moments.targets()], own);
+        let own = PriorMetric::of_regressors(moments, &block.shrinkage);
+        let path = RidgePath::with_metric(moments, &vec![zero.clone(); moments.targets()], own);
         let choice = RidgeChoice { lambda: self.ridge, alpha: 0.0 };
         // Targets are ordered by member, then by axis.
         let of = |target: usize, member: usize| {
-            metric.root() * DVector::from_vec(path.solve(member * q + target, choice, &zero))
+            metric.root_matrix()
+                * DVector::from_vec(path.solve_target(member * q + target, choice, &zero))
         };
         let members = 0..self.members.len();
         (0..q).map(|t| members.clone().map(|member| of(t, member)).collect()).collect()
@@ -139,10 +144,15 @@ impl<'a> PopulationRegression<'a> {
 }
 
 /// Sets the coefficients of a regression to means by target.
-fn fill(block: &Block, means: &[DVector<f64>], metric: &Metric, of: (&mut Model, usize)) {
+fn set_means(
+    block: &RegressionBlock,
+    means: &[DVector<f64>],
+    metric: &PriorMetric,
+    of: (&mut Model, usize),
+) {
     let (model, count) = of;
-    let solved: Vec<DVector<f64>> = means.iter().map(|mean| metric.back() * mean).collect();
-    for place in 0..block.regressors() {
+    let solved: Vec<DVector<f64>> = means.iter().map(|mean| metric.inverse_root() * mean).collect();
+    for place in 0..block.regressor_count() {
         let seen = DVector::from_iterator(means.len(), solved.iter().map(|one| one[place]));
         // From the unknowns of the regression back to the coefficients of the axes.
         let own = &block.unmixing * seen;
@@ -160,20 +170,20 @@ mod tests {
 
     #[test]
     fn a_law_with_roll_or_of_the_source_itself_is_refused() {
-        let zoo = sistership_model::Zoo::embedded().unwrap();
+        let zoo = sistership_model::Zoo::load_embedded().unwrap();
         let law = |name: &str| zoo.law(name).unwrap();
-        assert!(check(law("low-speed"), Some(law("mmg"))).is_ok());
+        assert!(check_laws(law("low-speed"), Some(law("mmg"))).is_ok());
         for refused in ["abkowitz-roll", "mmg"] {
-            assert!(check(law(refused), Some(law("mmg"))).is_err(), "{refused}");
+            assert!(check_laws(law(refused), Some(law("mmg"))).is_err(), "{refused}");
         }
     }
 
     #[test]
     fn too_few_ships_are_out_and_no_fault_of_the_settings() {
-        let (zoo, target) = (sistership_model::Zoo::embedded().unwrap(), "kcs");
-        let (model, law) = crate::testing::mariner();
+        let (zoo, target) = (sistership_model::Zoo::load_embedded().unwrap(), "kcs");
+        let (model, law) = crate::testing::mariner_model();
         let envelope = OperatingEnvelope::new(&model, &law, &[]).unwrap();
-        let none = rates_of(&[], zoo.vessel(target).unwrap(), None, (&envelope, &[]));
+        let none = member_rates(&[], zoo.vessel(target).unwrap(), None, (&envelope, &[]));
         assert!(matches!(none, Err(RefineError::Data(_))), "a search goes on without it");
     }
 }

@@ -10,13 +10,13 @@ use sistership_model::{Model, Vessel, particulars};
 use sistership_simulation::error::standard_deviations;
 
 use super::measure::PriorMeasure;
-use super::progress::{Iterate, Watch};
+use super::progress::{FitIterate, IterateObserver};
 use super::replayed_trials::ReplayedTrials;
-use super::ridge::Fitted;
-use super::settings::Settings;
+use super::ridge::FittedCoefficient;
+use super::settings::RefinementSettings;
 
 /// Inputs that are constant while candidates are compared.
-pub(super) struct Problem<'a> {
+pub(super) struct RefinementProblem<'a> {
     pub law: &'a Law,
     pub target: Option<&'a Vessel>,
     /// The source's name.
@@ -33,21 +33,21 @@ pub(super) struct Problem<'a> {
     pub transferred: Model,
     /// Measure by which the prior weights coefficients.
     pub measure: PriorMeasure,
-    pub settings: Settings,
-    pub watch: Option<Watch<'a>>,
+    pub settings: RefinementSettings,
+    pub watch: Option<IterateObserver<'a>>,
 }
 
-impl<'a> Problem<'a> {
+impl<'a> RefinementProblem<'a> {
     /// Creates the problem of a model with itself as the source, on whole trials.
-    pub fn of_model(
+    pub fn from_model(
         model: &'a Model,
         law: &'a Law,
         trials: &[&'a Trial],
-        settings: Settings,
+        settings: RefinementSettings,
     ) -> Self {
         let training = trials.to_vec();
         let (whole, judged, transferred) = (training.clone(), Vec::new(), model.clone());
-        let lpp_m = particulars::value(&model.particulars, "lpp_m");
+        let lpp_m = particulars::particular_value(&model.particulars, "lpp_m");
         let replayed = ReplayedTrials::new(law, lpp_m, &training, (&settings).into());
         let deviations = standard_deviations(&training);
         Self {
@@ -67,7 +67,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Passes an iterate to the observer, if there is one.
-    pub fn show(&self, iterate: &Iterate<'_>) {
+    pub fn notify_observer(&self, iterate: &FitIterate<'_>) {
         self.watch.into_iter().for_each(|watch| watch(iterate));
     }
 
@@ -92,7 +92,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Returns the transferred model with these coefficients and no others.
-    pub fn model_with(&self, coefficients: &BTreeMap<String, Fitted>) -> Model {
+    pub fn model_with(&self, coefficients: &BTreeMap<String, FittedCoefficient>) -> Model {
         let mut model = self.transferred.clone();
         model.status = Status::Refined;
         model.coefficients.clear();

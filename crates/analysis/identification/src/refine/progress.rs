@@ -17,12 +17,16 @@ pub(super) type PartProgress<'a> = &'a dyn Fn(f64, &str) -> Result<(), RefineErr
 ///
 /// # Errors
 /// Returns an error if the callback cancels the refinement.
-pub(super) fn step(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineError> {
+pub(super) fn report_progress(
+    progress: Progress<'_>,
+    fraction: f64,
+    what: &str,
+) -> Result<(), RefineError> {
     if progress(fraction, what) { Ok(()) } else { Err(RefineError::Cancelled) }
 }
 
 /// An iterate of the fit on all trials, for learning curves.
-pub struct Iterate<'a> {
+pub struct FitIterate<'a> {
     /// Simulations of all trials so far, for a search; 0 for the trajectory form, which does not
     /// count them.
     pub evaluations: usize,
@@ -33,7 +37,7 @@ pub struct Iterate<'a> {
 }
 
 /// Observer of the iterates of a fit.
-pub type Watch<'a> = &'a (dyn Fn(&Iterate<'_>) + Sync);
+pub type IterateObserver<'a> = &'a (dyn Fn(&FitIterate<'_>) + Sync);
 
 /// Progress that never decreases, whatever fractions the parts of the work report.
 pub struct MonotoneProgress<'a> {
@@ -50,7 +54,7 @@ impl<'a> MonotoneProgress<'a> {
     }
 
     /// Reports the larger of a fraction and the largest one before; returns `false` to cancel.
-    pub fn tell(&self, fraction: f64, what: &str) -> bool {
+    pub fn report_fraction(&self, fraction: f64, what: &str) -> bool {
         // `max` also turns a fraction that is not a number into 0.
         let bits = fraction.max(0.0).to_bits();
         let before = self.largest.fetch_max(bits, Ordering::Relaxed);
@@ -73,7 +77,9 @@ mod tests {
         };
         let forward = MonotoneProgress::new(&note);
         assert!(
-            [0.1, 0.8, 0.6, f64::NAN, 0.9].into_iter().all(|fraction| forward.tell(fraction, ""))
+            [0.1, 0.8, 0.6, f64::NAN, 0.9]
+                .into_iter()
+                .all(|fraction| forward.report_fraction(fraction, ""))
         );
         assert_eq!(told.into_inner().unwrap_or_default(), [0.1, 0.8, 0.8, 0.8, 0.9]);
     }

@@ -7,10 +7,10 @@ use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::recorded::ReplaySettings;
 
-use super::settings::Settings;
+use super::settings::RefinementSettings;
 use super::smoothed::{ReadingsAbout, is_motion};
 use super::steps::step_s;
-use sistership_priors::transfer::approach_of;
+use sistership_priors::transfer::trial_approach;
 
 /// Trials with no more samples than simulations need.
 pub struct ReplayedTrials {
@@ -22,29 +22,29 @@ pub struct ReplayedTrials {
 
 /// Settings by which trials are thinned and smoothed.
 #[derive(Debug, Clone, Copy)]
-pub struct Thinning {
+pub struct ThinningSettings {
     /// True to use as few samples as a search needs, with means of the inputs between them.
     pub economical: bool,
     /// Window in which motions are smoothed, s; none leaves them as recorded.
     pub smoothing_s: Option<f64>,
 }
 
-impl From<&Settings> for Thinning {
-    fn from(settings: &Settings) -> Self {
+impl From<&RefinementSettings> for ThinningSettings {
+    fn from(settings: &RefinementSettings) -> Self {
         Self { economical: settings.economical, smoothing_s: settings.smoothing_s }
     }
 }
 
 impl ReplayedTrials {
     /// Creates thinned trials; without a known length or approach speed no sample is dropped.
-    pub fn new(law: &Law, lpp_m: Option<f64>, training: &[&Trial], by: Thinning) -> Self {
+    pub fn new(law: &Law, lpp_m: Option<f64>, training: &[&Trial], by: ThinningSettings) -> Self {
         let economical = by.economical;
         let step_s = lpp_m
-            .zip(approach_of(training))
+            .zip(trial_approach(training))
             .map(|(l, approach)| step_s(law, l / approach.speed_m_s, economical));
         let usual_s = ReplaySettings::default().step_s;
         Self {
-            trials: training.iter().map(|trial| thinned(trial, step_s, by)).collect(),
+            trials: training.iter().map(|trial| thin_trial(trial, step_s, by)).collect(),
             // Ships that roll keep the usual step, as do settings that are not economical.
             step_s: step_s.filter(|_| economical && !law.has_roll()).unwrap_or(usual_s),
         }
@@ -53,23 +53,23 @@ impl ReplayedTrials {
 
 /// Thins a trial to samples as far apart as a simulation may step; no sample is joined to another
 /// across a gap. Keeps every sample if thinning would drop a part between gaps.
-fn thinned(trial: &Trial, step_s: Option<f64>, by: Thinning) -> Trial {
+fn thin_trial(trial: &Trial, step_s: Option<f64>, by: ThinningSettings) -> Trial {
     // Without thinning and smoothing the trial is used as it is.
-    let every = every(trial, step_s);
+    let every = sample_stride(trial, step_s);
     if every == 1 && by.smoothing_s.is_none() {
         return trial.clone();
     }
     let parts = trial.segments();
-    let kept = Kept::new(trial, &parts, every, by.smoothing_s);
+    let kept = KeptSamples::new(trial, &parts, every, by.smoothing_s);
     let column = |channel: Channel, column: &[f64]| match channel {
-        _ if is_motion(channel) => kept.smoothed(channel, column),
-        _ if by.economical && drives(channel) => kept.means(column),
-        _ => kept.of(column),
+        _ if is_motion(channel) => kept.smoothed_samples(channel, column),
+        _ if by.economical && is_averaged_input(channel) => kept.mean_samples(column),
+        _ => kept.select_samples(column),
     };
     let channels =
         trial.channels.iter().map(|(&channel, values)| (channel, column(channel, values)));
     Trial {
-        t_s: kept.of(&trial.t_s),
+        t_s: kept.select_samples(&trial.t_s),
         channels: channels.collect(),
         warnings: Vec::new(),
         ..trial.clone()
@@ -77,21 +77,21 @@ fn thinned(trial: &Trial, step_s: Option<f64>, by: Thinning) -> Trial {
 }
 
 /// Stride from one kept sample to the next.
-fn every(trial: &Trial, step_s: Option<f64>) -> usize {
+fn sample_stride(trial: &Trial, step_s: Option<f64>) -> usize {
     let interval_s = trial.interval_s();
     let every = step_s
         .filter(|_| interval_s > 0.0)
         // The small term keeps a ratio that is whole but for rounding.
         .map_or(1, |step_s| (step_s / interval_s + 1e-9).floor().max(1.0) as usize);
     let parts = trial.segments();
-    let kept = Kept::new(trial, &parts, every, None);
+    let kept = KeptSamples::new(trial, &parts, every, None);
     // Thinning must not merge parts, nor lose a short one: the number of parts has to stay.
-    let fewer = Trial { t_s: kept.of(&trial.t_s), ..Trial::default() };
+    let fewer = Trial { t_s: kept.select_samples(&trial.t_s), ..Trial::default() };
     if fewer.segments().len() == parts.len() { every } else { 1 }
 }
 
 /// The samples of a trial that are kept.
-struct Kept<'a> {
+struct KeptSamples<'a> {
     every: usize,
     /// Kept samples, each with its part between gaps.
     samples: Vec<(usize, &'a Range<usize>)>,
@@ -99,7 +99,7 @@ struct Kept<'a> {
     about: Vec<Option<ReadingsAbout>>,
 }
 
-impl<'a> Kept<'a> {
+impl<'a> KeptSamples<'a> {
     fn new(
         trial: &Trial,
         parts: &'a [Range<usize>],
@@ -115,13 +115,13 @@ impl<'a> Kept<'a> {
     }
 
     /// Values of a column at the kept samples.
-    fn of(&self, column: &[f64]) -> Vec<f64> {
+    fn select_samples(&self, column: &[f64]) -> Vec<f64> {
         self.samples.iter().map(|&(k, _)| column[k]).collect()
     }
 
     /// Smoothed values of a motion channel at the kept samples; as recorded where readings are too
     /// few.
-    fn smoothed(&self, channel: Channel, column: &[f64]) -> Vec<f64> {
+    fn smoothed_samples(&self, channel: Channel, column: &[f64]) -> Vec<f64> {
         let one = |(&(k, _), about): (&(usize, _), &Option<ReadingsAbout>)| {
             about.as_ref().map_or(column[k], |about| about.value(channel, column))
         };
@@ -129,7 +129,7 @@ impl<'a> Kept<'a> {
     }
 
     /// Means of an input about each kept sample.
-    fn means(&self, column: &[f64]) -> Vec<f64> {
+    fn mean_samples(&self, column: &[f64]) -> Vec<f64> {
         let one = |&(k, part): &(usize, &Range<usize>)| {
             mean_around(&column[part.clone()], k - part.start, self.every)
         };
@@ -139,7 +139,7 @@ impl<'a> Kept<'a> {
 
 /// Returns true if a channel is an input whose values between samples matter: a rudder moves within
 /// one step.
-fn drives(channel: Channel) -> bool {
+fn is_averaged_input(channel: Channel) -> bool {
     matches!(channel, Channel::Delta | Channel::N | Channel::WindSpeed)
 }
 
@@ -155,7 +155,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    const MEANS: Thinning = Thinning { economical: true, smoothing_s: None };
+    const MEANS: ThinningSettings = ThinningSettings { economical: true, smoothing_s: None };
 
     fn trial(gap_s: f64) -> Trial {
         let t_s: Vec<f64> =
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn samples_are_as_far_apart_as_a_step_may_be() {
-        let fewer = thinned(&trial(30.0), Some(0.35), MEANS);
+        let fewer = thin_trial(&trial(30.0), Some(0.35), MEANS);
         assert_eq!((fewer.len(), fewer.segments().len()), (17 + 17, 2));
         assert!((fewer.interval_s() - 0.3).abs() < 1e-9);
         assert_eq!(fewer.channel(Channel::U).unwrap(), fewer.t_s);
@@ -177,20 +177,20 @@ mod tests {
         let mut trial = trial(30.0);
         let step = (0..100).map(|k| if (20..60).contains(&k) { 1.0 } else { 0.0 }).collect();
         trial.channels.insert(Channel::Delta, step);
-        let fewer = thinned(&trial, Some(0.35), MEANS);
+        let fewer = thin_trial(&trial, Some(0.35), MEANS);
         let impulse = 0.3 * fewer.channel(Channel::Delta).unwrap().iter().sum::<f64>();
         assert!((impulse - 0.1 * 40.0).abs() < 0.1, "{impulse}");
     }
 
     #[test]
     fn slow_records_and_gaps_that_would_vanish_are_left_as_they_are() {
-        assert_eq!(thinned(&trial(30.0), Some(0.15), MEANS), trial(30.0));
+        assert_eq!(thin_trial(&trial(30.0), Some(0.15), MEANS), trial(30.0));
         assert_eq!(
-            thinned(&trial(0.1), Some(0.35), MEANS),
+            thin_trial(&trial(0.1), Some(0.35), MEANS),
             trial(0.1),
             "a gap of a fifth of a second"
         );
-        assert_eq!(thinned(&trial(30.0), None, MEANS), trial(30.0));
+        assert_eq!(thin_trial(&trial(30.0), None, MEANS), trial(30.0));
     }
 
     #[test]
@@ -199,13 +199,13 @@ mod tests {
         let scatter = |k: usize| if k.is_multiple_of(2) { 0.1 } else { -0.1 };
         let scattered: Vec<f64> = (0..100).map(|k| 1.0 + scatter(k)).collect();
         trial.channels = [(Channel::U, scattered.clone()), (Channel::Delta, scattered)].into();
-        let by = Thinning { economical: false, smoothing_s: Some(2.0) };
-        let smooth = thinned(&trial, None, by);
+        let by = ThinningSettings { economical: false, smoothing_s: Some(2.0) };
+        let smooth = thin_trial(&trial, None, by);
         assert_eq!(smooth.t_s, trial.t_s);
         assert_eq!(smooth.channel(Channel::Delta), trial.channel(Channel::Delta));
         let far = |u: &f64| (u - 1.0).abs();
         assert!(smooth.channel(Channel::U).unwrap().iter().map(far).fold(0.0, f64::max) < 0.07);
-        let fewer = thinned(&trial, Some(0.35), by);
+        let fewer = thin_trial(&trial, Some(0.35), by);
         let place = |t: f64| smooth.t_s.iter().position(|s| *s == t).unwrap();
         let same: Vec<f64> =
             fewer.t_s.iter().map(|t| smooth.channel(Channel::U).unwrap()[place(*t)]).collect();

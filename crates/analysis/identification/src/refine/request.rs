@@ -4,12 +4,12 @@ use sistership_model::law::Law;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel};
 
-use super::population::Member;
-use super::settings::Settings;
+use super::population::PopulationShip;
+use super::settings::RefinementSettings;
 
 /// A request: the ship, the source model and the law, and the trials against which it is refined.
 #[derive(Debug, Clone, Copy)]
-pub struct Request<'a> {
+pub struct RefinementSpec<'a> {
     /// The ship.
     pub target: &'a Vessel,
     /// The source model, as published or as refined earlier.
@@ -22,7 +22,7 @@ pub struct Request<'a> {
     /// Trials of the ship.
     pub trials: &'a [&'a Trial],
     /// Other ships with their models, for a prior from a population.
-    pub population: &'a [Member],
+    pub population: &'a [PopulationShip],
     /// Settings.
-    pub settings: &'a Settings,
+    pub settings: &'a RefinementSettings,
 }

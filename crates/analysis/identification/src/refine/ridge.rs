@@ -7,16 +7,18 @@ use nalgebra::{DMatrix, DVector};
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
 
-use super::blocks::{Block, Blocks};
+use super::blocks::{RegressionBlock, RegressionBlocks};
 use super::errors::CoefficientErrors;
 use super::outcome::RefineError;
-use super::settings::Range;
+use super::settings::TuningRange;
 use super::thresholds::SELECTION;
-use sistership_numerics::{AlphaError, Moments, RidgeChoice, RidgePath, Validation};
+use sistership_numerics::{
+    AlphaError, RegressionMoments, RidgeChoice, RidgePath, ValidationSamples,
+};
 
 /// A coefficient as fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fitted {
+pub struct FittedCoefficient {
     /// Its value.
     pub value: f64,
     /// Posterior standard error.
@@ -28,9 +30,9 @@ pub struct Fitted {
 
 /// Coefficients fitted on some samples at a choice for each target of each regression.
 #[derive(Debug, Clone)]
-pub struct Fit {
+pub struct CoefficientFit {
     /// Coefficients by name, in the law's units.
-    pub coefficients: BTreeMap<String, Fitted>,
+    pub coefficients: BTreeMap<String, FittedCoefficient>,
     /// Largest condition number of the regressions.
     pub condition_number: f64,
     /// Groups of coefficients that the samples cannot distinguish.
@@ -40,48 +42,57 @@ pub struct Fit {
 }
 
 /// Ridge choices of a law, by regression and target.
-pub type Choices = Vec<Vec<RidgeChoice>>;
+pub type RidgeChoices = Vec<Vec<RidgeChoice>>;
 
 /// One regression with its decomposition.
 struct PreparedRegression<'a> {
-    block: &'a Block,
+    block: &'a RegressionBlock,
     source: Vec<Vec<f64>>,
     path: RidgePath,
 }
 
 impl<'a> PreparedRegression<'a> {
-    fn new(block: &'a Block, moments: &Moments, model: &Model) -> Self {
+    fn new(block: &'a RegressionBlock, moments: &RegressionMoments, model: &Model) -> Self {
         let source = mixed_source(block, model);
-        Self { block, path: RidgePath::measured(moments, &source, block.metric(moments)), source }
+        Self {
+            block,
+            path: RidgePath::with_metric(moments, &source, block.prior_metric(moments)),
+            source,
+        }
     }
 
     /// The solution of each target at its choice.
     fn solve(&self, choices: &[RidgeChoice]) -> Vec<Vec<f64>> {
         let one = |(target, choice): (usize, &RidgeChoice)| {
-            self.path.solve(target, *choice, &self.source[target])
+            self.path.solve_target(target, *choice, &self.source[target])
         };
         choices.iter().enumerate().map(one).collect()
     }
 
     /// The error on held-out samples as a function of alpha.
-    fn error_by_alpha(&self, target: usize, lambda: f64, held_out: &Validation) -> AlphaError {
+    fn error_by_alpha(
+        &self,
+        target: usize,
+        lambda: f64,
+        held_out: &ValidationSamples,
+    ) -> AlphaError {
         self.path.error_by_alpha(target, lambda, &self.source[target], held_out)
     }
 }
 
 /// The regressions of a training set, with the held-out samples that judge them.
-pub struct Fold<'a> {
+pub struct RegressionFold<'a> {
     prepared: Vec<PreparedRegression<'a>>,
-    validations: Vec<Validation>,
+    validations: Vec<ValidationSamples>,
 }
 
-impl<'a> Fold<'a> {
+impl<'a> RegressionFold<'a> {
     /// Decomposes the training statistics (one set per regression) and prepares the held-out ones.
     pub fn new(
-        blocks: &'a Blocks,
+        blocks: &'a RegressionBlocks,
         model: &Model,
-        training: &[Moments],
-        left_out: &[Moments],
+        training: &[RegressionMoments],
+        left_out: &[RegressionMoments],
     ) -> Self {
         let prepared = blocks
             .blocks
@@ -89,25 +100,26 @@ impl<'a> Fold<'a> {
             .zip(training)
             .map(|(block, moments)| PreparedRegression::new(block, moments, model))
             .collect();
-        Self { prepared, validations: left_out.iter().map(Validation::new).collect() }
+        Self { prepared, validations: left_out.iter().map(ValidationSamples::new).collect() }
     }
 
     /// Returns the coefficients fitted on the training samples.
-    pub fn solve(&self, choices: &Choices) -> BTreeMap<String, Fitted> {
+    pub fn solve(&self, choices: &RidgeChoices) -> BTreeMap<String, FittedCoefficient> {
         let mut coefficients = BTreeMap::new();
         self.prepared
             .iter()
             .zip(choices)
-            .for_each(|(prepared, choices)| unmix(prepared, choices, &mut coefficients));
+            .for_each(|(prepared, choices)| unmix_solutions(prepared, choices, &mut coefficients));
         coefficients
     }
 }
 
-impl Fold<'_> {
+impl RegressionFold<'_> {
     /// Names of the coefficients, and half the second derivative by them of the objective of the
     /// fold's solution, each acceleration divided by its residual variance.
-    pub(super) fn curvature(&self, choices: &Choices) -> (Vec<String>, DMatrix<f64>) {
-        let sizes = self.prepared.iter().map(|p| p.block.axes.len() * p.block.regressors()).sum();
+    pub(super) fn solution_curvature(&self, choices: &RidgeChoices) -> (Vec<String>, DMatrix<f64>) {
+        let sizes =
+            self.prepared.iter().map(|p| p.block.axes.len() * p.block.regressor_count()).sum();
         let (mut names, mut all) = (Vec::new(), DMatrix::zeros(sizes, sizes));
         for (prepared, choices) in self.prepared.iter().zip(choices) {
             let start = names.len();
@@ -118,13 +130,13 @@ impl Fold<'_> {
     }
 }
 
-impl Fold<'_> {
+impl RegressionFold<'_> {
     /// The share of the mean square of each acceleration that remains on the held-out samples at a
     /// strength of the prior about the source.
-    pub(super) fn shares(&self, lambda: f64) -> Vec<(Axis, f64)> {
-        let of_block = |(prepared, validation): (&PreparedRegression<'_>, &Validation)| {
+    pub(super) fn error_shares(&self, lambda: f64) -> Vec<(Axis, f64)> {
+        let of_block = |(prepared, validation): (&PreparedRegression<'_>, &ValidationSamples)| {
             let one = |(target, axis): (usize, &Axis)| {
-                let error = prepared.error_by_alpha(target, lambda, validation).at(0.0);
+                let error = prepared.error_by_alpha(target, lambda, validation).error_at(0.0);
                 (*axis, error / prepared.path.target_variance(target).max(f64::MIN_POSITIVE))
             };
             prepared.block.axes.iter().enumerate().map(one).collect::<Vec<_>>()
@@ -136,10 +148,10 @@ impl Fold<'_> {
 impl PreparedRegression<'_> {
     /// Adds the curvature of this regression to the block of `all` that begins at `start`.
     fn add_curvature(&self, choices: &[RidgeChoice], start: usize, all: &mut DMatrix<f64>) {
-        let (q, p) = (self.block.axes.len(), self.block.regressors());
+        let (q, p) = (self.block.axes.len(), self.block.regressor_count());
         for (target, choice) in choices.iter().enumerate() {
             let variance = self.path.residual_variance(target, *choice).max(f64::MIN_POSITIVE);
-            let own = self.path.curvature(choice.lambda) / variance;
+            let own = self.path.cost_curvature(choice.lambda) / variance;
             for (a, b) in (0..q).flat_map(|a| (0..q).map(move |b| (a, b))) {
                 // The unknowns of a target are `mixing[target, a]` times the coefficients of axis
                 // `a`: the chain rule gives a block for each pair of axes.
@@ -156,10 +168,14 @@ impl PreparedRegression<'_> {
 ///
 /// # Errors
 /// Returns an error with the axis whose error is not finite at any strength of the range.
-pub fn tune(folds: &[Fold<'_>], range: &Range, count: usize) -> Result<Choices, RefineError> {
-    let Some(first) = folds.first() else { return Ok(Choices::new()) };
+pub fn tune_choices(
+    folds: &[RegressionFold<'_>],
+    range: &TuningRange,
+    count: usize,
+) -> Result<RidgeChoices, RefineError> {
+    let Some(first) = folds.first() else { return Ok(RidgeChoices::new()) };
     let of_block = |b: usize| {
-        let pairs: Vec<(&PreparedRegression<'_>, &Validation)> =
+        let pairs: Vec<(&PreparedRegression<'_>, &ValidationSamples)> =
             folds.iter().map(|fold| (&fold.prepared[b], &fold.validations[b])).collect();
         let axes = first.prepared[b].block.axes.iter().enumerate();
         let of_axis = |(target, axis): (usize, &Axis)| {
@@ -178,17 +194,18 @@ pub fn tune(folds: &[Fold<'_>], range: &Range, count: usize) -> Result<Choices, 
 /// The lambda and alpha with the least sum of errors over the folds; `None` if no error is finite.
 fn tune_target(
     target: usize,
-    folds: &[(&PreparedRegression<'_>, &Validation)],
-    range: &Range,
+    folds: &[(&PreparedRegression<'_>, &ValidationSamples)],
+    range: &TuningRange,
     count: usize,
 ) -> Option<RidgeChoice> {
     let scored = |lambda: f64| {
-        let of_fold = |(prepared, held_out): &(&PreparedRegression<'_>, &Validation)| {
+        let of_fold = |(prepared, held_out): &(&PreparedRegression<'_>, &ValidationSamples)| {
             prepared.error_by_alpha(target, lambda, held_out)
         };
         // At a given lambda the error is a quadratic function of alpha: sums over folds add its
         // coefficients, and its minimum up to `alpha_max` is found directly.
-        let (alpha, error) = folds.iter().map(of_fold).sum::<AlphaError>().least(range.alpha_max);
+        let (alpha, error) =
+            folds.iter().map(of_fold).sum::<AlphaError>().least_error(range.alpha_max);
         (error, RidgeChoice { lambda, alpha })
     };
     let all = log_spaced(range.lambda_min, range.lambda_max, count).map(scored);
@@ -199,16 +216,16 @@ fn tune_target(
 /// The strengths with the greatest marginal likelihood on the given statistics, for each target of
 /// each regression.
 pub(super) fn most_likely(
-    blocks: &Blocks,
-    moments: &[Moments],
+    blocks: &RegressionBlocks,
+    moments: &[RegressionMoments],
     model: &Model,
-    range: &Range,
+    range: &TuningRange,
     count: usize,
-) -> Choices {
-    let of_block = |(block, moments): (&Block, &Moments)| {
+) -> RidgeChoices {
+    let of_block = |(block, moments): (&RegressionBlock, &RegressionMoments)| {
         let prepared = PreparedRegression::new(block, moments, model);
         let of_target = |target: usize| {
-            let misfit = |lambda: f64| (prepared.path.misfit(target, lambda), lambda);
+            let misfit = |lambda: f64| (prepared.path.evidence_misfit(target, lambda), lambda);
             let all = log_spaced(range.lambda_min, range.lambda_max, count).map(misfit);
             let best = all
                 .min_by(|a, b| a.0.total_cmp(&b.0))
@@ -227,10 +244,10 @@ fn log_spaced(low: f64, high: f64, count: usize) -> impl Iterator<Item = f64> {
 }
 
 /// The source's coefficients in the unknowns of the regression, by target.
-pub(super) fn mixed_source(block: &Block, model: &Model) -> Vec<Vec<f64>> {
+pub(super) fn mixed_source(block: &RegressionBlock, model: &Model) -> Vec<Vec<f64>> {
     let q = block.axes.len();
-    let mut mixed = vec![vec![0.0; block.regressors()]; q];
-    for i in 0..block.regressors() {
+    let mut mixed = vec![vec![0.0; block.regressor_count()]; q];
+    for i in 0..block.regressor_count() {
         let own =
             DVector::from_iterator(q, block.names.iter().map(|names| model.coefficient(&names[i])));
         let seen = &block.mixing * own;
@@ -239,7 +256,7 @@ pub(super) fn mixed_source(block: &Block, model: &Model) -> Vec<Vec<f64>> {
     mixed
 }
 
-impl Fit {
+impl CoefficientFit {
     /// Returns the fit with joint errors, from which each coefficient's standard error is set.
     pub(super) fn with_errors(mut self, errors: Option<CoefficientErrors>) -> Self {
         if let Some(errors) = &errors {
@@ -256,8 +273,13 @@ impl Fit {
 }
 
 /// Fits each regression at its choices on the given statistics (one set per regression).
-pub fn fit(blocks: &Blocks, moments: &[Moments], model: &Model, choices: &Choices) -> Fit {
-    let mut result = Fit {
+pub fn fit_regressions(
+    blocks: &RegressionBlocks,
+    moments: &[RegressionMoments],
+    model: &Model,
+    choices: &RidgeChoices,
+) -> CoefficientFit {
+    let mut result = CoefficientFit {
         coefficients: BTreeMap::new(),
         condition_number: 1.0,
         collinear_groups: Vec::new(),
@@ -265,27 +287,27 @@ pub fn fit(blocks: &Blocks, moments: &[Moments], model: &Model, choices: &Choice
     };
     for ((block, moments), choices) in blocks.blocks.iter().zip(moments).zip(choices) {
         let prepared = PreparedRegression::new(block, moments, model);
-        unmix(&prepared, choices, &mut result.coefficients);
+        unmix_solutions(&prepared, choices, &mut result.coefficients);
         result.condition_number = result.condition_number.max(prepared.path.condition_number());
         // A regressor is common to the axes of a block, so that their coefficients are collinear
         // together.
         for group in prepared.path.collinear_groups(SELECTION.collinear) {
-            result.collinear_groups.push(group.iter().map(|&i| joined(block, i)).collect());
+            result.collinear_groups.push(group.iter().map(|&i| joined_names(block, i)).collect());
         }
     }
     result
 }
 
 /// Names of the coefficients that share a regressor, as `Y_v/N_v`.
-fn joined(block: &Block, i: usize) -> String {
+fn joined_names(block: &RegressionBlock, i: usize) -> String {
     block.names.iter().map(|names| names[i].as_str()).collect::<Vec<_>>().join("/")
 }
 
 /// Transforms the unknowns of a regression back to the coefficients of each axis.
-fn unmix(
+fn unmix_solutions(
     prepared: &PreparedRegression<'_>,
     choices: &[RidgeChoice],
-    into: &mut BTreeMap<String, Fitted>,
+    into: &mut BTreeMap<String, FittedCoefficient>,
 ) {
     let block = prepared.block;
     let q = block.axes.len();
@@ -298,9 +320,9 @@ fn unmix(
     // Standard deviations of posterior and prior for residuals of variance one, by target and
     // regressor.
     let deviations: Vec<Vec<(f64, f64)>> =
-        choices.iter().map(|choice| prepared.path.deviations(choice.lambda)).collect();
+        choices.iter().map(|choice| prepared.path.coefficient_deviations(choice.lambda)).collect();
     let unmixing = &block.unmixing;
-    for i in 0..block.regressors() {
+    for i in 0..block.regressor_count() {
         let solved = DVector::from_iterator(q, solutions.iter().map(|solution| solution[i]));
         let own = unmixing * solved;
         for axis in 0..q {
@@ -315,7 +337,7 @@ fn unmix(
             let pulled = (0..q)
                 .map(|t| unmixing[(axis, t)] * choices[t].alpha * prepared.source[t][i])
                 .sum::<f64>();
-            let fitted = Fitted {
+            let fitted = FittedCoefficient {
                 value: own[axis],
                 standard_error: spread(&|t| deviations[t][i].0),
                 prior_deviation: spread(&|t| deviations[t][i].1).hypot(pulled),

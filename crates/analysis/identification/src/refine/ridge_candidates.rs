@@ -3,45 +3,45 @@
 use rayon::prelude::*;
 use sistership_model::Model;
 
-use super::candidate::{CandidateFit, Solution, UnchangedSource};
+use super::candidate::{CandidateFit, CandidateSolution, UnchangedSource};
 use super::errors::CoefficientErrors;
 use super::outcome::{RefineError, SOURCE_STEP};
-use super::problem::Problem;
-use super::progress::{PartProgress, Progress, step};
-use super::ridge::{Choices, Fit, Fold, fit};
-use super::simulated::{Simulated, simulate_training};
-use super::variant::Variant;
+use super::problem::RefinementProblem;
+use super::progress::{PartProgress, Progress, report_progress};
+use super::ridge::{CoefficientFit, RegressionFold, RidgeChoices, fit_regressions};
+use super::simulated::{SimulatedErrors, simulate_training};
+use super::variant::TermVariant;
 use crate::constraints::LimitError;
 
 /// Ridge of a variant at its choices, as a solution.
 struct RidgeSolution {
     variant: usize,
-    choices: Choices,
+    choices: RidgeChoices,
 }
 
-impl Solution for RidgeSolution {
-    fn fit(&self, variants: &[Variant]) -> Result<Option<Fit>, RefineError> {
+impl CandidateSolution for RidgeSolution {
+    fn fit(&self, variants: &[TermVariant]) -> Result<Option<CoefficientFit>, RefineError> {
         let variant = &variants[self.variant];
-        let all = variant.together(|_| true)?;
-        let mut fitted = fit(&variant.blocks, &all, &variant.model, &self.choices);
+        let all = variant.merged_moments(|_| true)?;
+        let mut fitted = fit_regressions(&variant.blocks, &all, &variant.model, &self.choices);
         // The condition numbers are those of the unconstrained fit; the coefficients become the
         // nearest within the limits.
         if variant.limits.is_some() {
-            let fold = Fold::new(&variant.blocks, &variant.model, &all, &[]);
+            let fold = RegressionFold::new(&variant.blocks, &variant.model, &all, &[]);
             fitted.coefficients = variant.solve(&fold, &self.choices)?;
         }
         Ok(Some(fitted))
     }
 
-    fn errors(
+    fn coefficient_errors(
         &self,
-        problem: &Problem<'_>,
-        variants: &[Variant],
+        problem: &RefinementProblem<'_>,
+        variants: &[TermVariant],
     ) -> Result<Option<CoefficientErrors>, RefineError> {
-        variants[self.variant].errors(&problem.training, &self.choices)
+        variants[self.variant].ridge_errors(&problem.training, &self.choices)
     }
 
-    fn ridge(&self) -> Option<(usize, &Choices)> {
+    fn ridge_choices(&self) -> Option<(usize, &RidgeChoices)> {
         Some((self.variant, &self.choices))
     }
 }
@@ -51,12 +51,12 @@ impl Solution for RidgeSolution {
 /// # Errors
 /// Returns an error if a trial lacks a channel.
 pub(super) fn source_candidate(
-    problem: &Problem<'_>,
-    variants: &[Variant],
+    problem: &RefinementProblem<'_>,
+    variants: &[TermVariant],
 ) -> Result<CandidateFit, RefineError> {
     let limits = variants.iter().find_map(|variant| variant.limits.as_ref());
     let simulated = match limits.map(|limits| limits.check(&problem.transferred)) {
-        Some(Err(reason)) => Simulated::refused(reason.to_string()),
+        Some(Err(reason)) => SimulatedErrors::with_refusal(reason.to_string()),
         _ => simulate_training(problem, std::slice::from_ref(&problem.transferred), &|_| 0)?,
     };
     Ok(CandidateFit::new(problem, (SOURCE_STEP.into(), None), UnchangedSource, 0, simulated))
@@ -68,14 +68,14 @@ pub(super) fn source_candidate(
 /// # Errors
 /// Returns an error if a trial lacks a channel.
 pub(super) fn ridge_candidate(
-    problem: &Problem<'_>,
+    problem: &RefinementProblem<'_>,
     (name, lambda_min): (String, f64),
-    (index, variant): (usize, &Variant),
-    choices: Choices,
-    folds: &[Fold<'_>],
+    (index, variant): (usize, &TermVariant),
+    choices: RidgeChoices,
+    folds: &[RegressionFold<'_>],
 ) -> Result<CandidateFit, RefineError> {
     let step = (name, Some(lambda_min));
-    let model = |fold: &Fold<'_>| Ok(problem.model_with(&variant.solve(fold, &choices)?));
+    let model = |fold: &RegressionFold<'_>| Ok(problem.model_with(&variant.solve(fold, &choices)?));
     let models: Vec<Model> = match folds.par_iter().map(model).collect::<Result<_, LimitError>>() {
         Ok(models) => models,
         Err(reason) => {
@@ -85,7 +85,7 @@ pub(super) fn ridge_candidate(
                 step,
                 ridge,
                 0,
-                Simulated::refused(reason.to_string()),
+                SimulatedErrors::with_refusal(reason.to_string()),
             ));
         }
     };
@@ -102,22 +102,27 @@ pub(super) fn ridge_candidate(
 }
 
 /// Work on a variant: its place and itself, its folds, and the callback for progress.
-pub(super) type WithFolds<'a> =
-    &'a mut dyn FnMut((usize, &Variant), &[Fold<'_>], PartProgress<'_>) -> Result<(), RefineError>;
+pub(super) type VariantWork<'a> = &'a mut dyn FnMut(
+    (usize, &TermVariant),
+    &[RegressionFold<'_>],
+    PartProgress<'_>,
+) -> Result<(), RefineError>;
 
 /// Does some work on each variant with its folds, one after the other.
 ///
 /// # Errors
 /// Returns an error if a fold has no sample, or the error of `work`.
-pub(super) fn each_variant(
-    problem: &Problem<'_>,
-    variants: &[Variant],
+pub(super) fn for_each_variant(
+    problem: &RefinementProblem<'_>,
+    variants: &[TermVariant],
     progress: Progress<'_>,
-    work: WithFolds<'_>,
+    work: VariantWork<'_>,
 ) -> Result<(), RefineError> {
     for (index, variant) in variants.iter().enumerate() {
-        let folds = variant.folds(problem)?;
-        let told = |done: f64, what: &str| step(progress, share(index, done, variants.len()), what);
+        let folds = variant.training_folds(problem)?;
+        let told = |done: f64, what: &str| {
+            report_progress(progress, progress_fraction(index, done, variants.len()), what)
+        };
         work((index, variant), &folds, &told)?;
     }
     Ok(())
@@ -125,6 +130,6 @@ pub(super) fn each_variant(
 
 /// Fraction of a refinement at the fraction `done` of a variant: candidates are seven tenths of the
 /// work.
-pub(super) fn share(index: usize, done: f64, variants: usize) -> f64 {
+pub(super) fn progress_fraction(index: usize, done: f64, variants: usize) -> f64 {
     0.1 + 0.7 / variants as f64 * (index as f64 + done)
 }

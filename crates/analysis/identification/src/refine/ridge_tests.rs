@@ -4,13 +4,13 @@ use sistership_model::Zoo;
 use super::*;
 
 /// One axis, its forces regressed on two terms.
-fn blocks() -> (Blocks, Model) {
-    let zoo = Zoo::embedded().unwrap();
-    let mut model = zoo.model("mariner").unwrap();
+fn blocks() -> (RegressionBlocks, Model) {
+    let zoo = Zoo::load_embedded().unwrap();
+    let mut model = zoo.find_model("mariner").unwrap();
     model.coefficients.retain(|name, _| ["X_u", "X_vv"].contains(&name.as_str()));
     model.coefficients.get_mut("X_u").unwrap().value = 3.0;
     model.coefficients.get_mut("X_vv").unwrap().value = -2.0;
-    let mut blocks = Blocks::new(&model, zoo.law("abkowitz").unwrap()).unwrap();
+    let mut blocks = RegressionBlocks::new(&model, zoo.law("abkowitz").unwrap()).unwrap();
     blocks.blocks.retain(|block| block.axes == [Axis::X]);
     (blocks, model)
 }
@@ -28,19 +28,20 @@ fn table(fold: usize) -> Vec<Vec<f64>> {
 }
 
 /// Each of the folds held out, with the moments of the others.
-fn folds<'a>(blocks: &'a Blocks, model: &Model) -> Vec<Fold<'a>> {
-    let moments: Vec<Moments> = (0..3).map(|k| Moments::about_zero(&table(k), 2, 1.0)).collect();
+fn folds<'a>(blocks: &'a RegressionBlocks, model: &Model) -> Vec<RegressionFold<'a>> {
+    let moments: Vec<RegressionMoments> =
+        (0..3).map(|k| RegressionMoments::about_zero(&table(k), 2, 1.0)).collect();
     let one = |held_out: usize| {
         let others = (0..3).filter(|other| *other != held_out).map(|other| &moments[other]);
-        let training = Moments::sum(others).unwrap();
-        Fold::new(blocks, model, &[training], &[moments[held_out].clone()])
+        let training = RegressionMoments::merge_all(others).unwrap();
+        RegressionFold::new(blocks, model, &[training], &[moments[held_out].clone()])
     };
     (0..3).map(one).collect()
 }
 
 /// The sum over the folds of the mean square of what is left, sample by sample.
-fn error(folds: &[Fold<'_>], choice: RidgeChoice) -> f64 {
-    let of_fold = |(held_out, fold): (usize, &Fold<'_>)| {
+fn error(folds: &[RegressionFold<'_>], choice: RidgeChoice) -> f64 {
+    let of_fold = |(held_out, fold): (usize, &RegressionFold<'_>)| {
         let solved = fold.solve(&vec![vec![choice]]);
         let [a, b, y] = <[Vec<f64>; 3]>::try_from(table(held_out)).unwrap();
         let left = |k: usize| y[k] - solved["X_u"].value * a[k] - solved["X_vv"].value * b[k];
@@ -49,14 +50,14 @@ fn error(folds: &[Fold<'_>], choice: RidgeChoice) -> f64 {
     folds.iter().enumerate().map(of_fold).sum()
 }
 
-const RANGE: Range = Range { lambda_min: 1e-2, lambda_max: 1e2, alpha_max: 1.0 };
+const RANGE: TuningRange = TuningRange { lambda_min: 1e-2, lambda_max: 1e2, alpha_max: 1.0 };
 const COUNT: usize = 9;
 
 #[test]
 fn a_choice_has_the_least_error_over_all_folds_together() {
     let (blocks, model) = blocks();
     let folds = folds(&blocks, &model);
-    let tuned = tune(&folds, &RANGE, COUNT).unwrap()[0][0];
+    let tuned = tune_choices(&folds, &RANGE, COUNT).unwrap()[0][0];
     let least = error(&folds, tuned);
     for lambda in log_spaced(RANGE.lambda_min, RANGE.lambda_max, COUNT) {
         for step in 0..=50 {
@@ -71,10 +72,10 @@ fn a_choice_has_the_least_error_over_all_folds_together() {
 fn the_mean_of_the_choices_of_each_fold_is_another() {
     let (blocks, model) = blocks();
     let folds = folds(&blocks, &model);
-    let lambda = tune(&folds, &RANGE, COUNT).unwrap()[0][0].lambda;
-    let at = |folds: &[Fold<'_>]| {
-        let only = Range { lambda_min: lambda, lambda_max: lambda, alpha_max: 1.0 };
-        tune(folds, &only, 2).unwrap()[0][0]
+    let lambda = tune_choices(&folds, &RANGE, COUNT).unwrap()[0][0].lambda;
+    let at = |folds: &[RegressionFold<'_>]| {
+        let only = TuningRange { lambda_min: lambda, lambda_max: lambda, alpha_max: 1.0 };
+        tune_choices(folds, &only, 2).unwrap()[0][0]
     };
     let together = at(&folds);
     let mean = folds.chunks(1).map(|fold| at(fold).alpha).sum::<f64>() / 3.0;
@@ -85,12 +86,12 @@ fn the_mean_of_the_choices_of_each_fold_is_another() {
 #[test]
 fn samples_that_are_not_finite_are_refused_by_their_axis() {
     let (blocks, model) = blocks();
-    let good = Moments::about_zero(&table(0), 2, 1.0);
+    let good = RegressionMoments::about_zero(&table(0), 2, 1.0);
     let mut columns = table(1);
     columns[2][7] = f64::NAN;
-    let bad = Moments::about_zero(&columns, 2, 1.0);
-    let folds = [Fold::new(&blocks, &model, &[good], &[bad])];
-    let refusal = tune(&folds, &RANGE, COUNT).unwrap_err().to_string();
+    let bad = RegressionMoments::about_zero(&columns, 2, 1.0);
+    let folds = [RegressionFold::new(&blocks, &model, &[good], &[bad])];
+    let refusal = tune_choices(&folds, &RANGE, COUNT).unwrap_err().to_string();
     assert!(refusal.contains("of the X axis is not finite"), "{refusal}");
 }
 
@@ -105,14 +106,14 @@ fn strengths_are_even_in_their_logarithm() {
 /// Sway and yaw of a law whose mass matrix couples them: what is unmixed is what was mixed.
 #[test]
 fn coefficients_come_back_through_the_mixture() {
-    let zoo = Zoo::embedded().unwrap();
-    let model = zoo.model("mariner").unwrap();
-    let blocks = Blocks::new(&model, zoo.law("abkowitz").unwrap()).unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = zoo.find_model("mariner").unwrap();
+    let blocks = RegressionBlocks::new(&model, zoo.law("abkowitz").unwrap()).unwrap();
     let coupled = blocks.blocks.iter().find(|block| block.axes.len() == 2).unwrap();
     let mixed = mixed_source(coupled, &model);
     let is_mixed = coupled.mixing[(0, 1)] != 0.0 || coupled.mixing[(1, 0)] != 0.0;
     assert!(is_mixed, "{}", coupled.mixing);
-    for i in 0..coupled.regressors() {
+    for i in 0..coupled.regressor_count() {
         let seen = DVector::from_fn(2, |target, _| mixed[target][i]);
         let own = &coupled.unmixing * seen;
         for axis in 0..2 {

@@ -3,11 +3,11 @@
 use sistership_model::coefficient::Axis;
 use sistership_model::effect::input_channel;
 use sistership_model::trial::{Channel, Trial};
-use sistership_simulation::tape::{Lanes, Slots};
+use sistership_simulation::tape::{LaneValues, TapeResults};
 
-use super::blocks::{Block, Blocks};
+use super::blocks::{RegressionBlock, RegressionBlocks};
 use super::outcome::RefineError;
-use sistership_numerics::Moments;
+use sistership_numerics::RegressionMoments;
 
 /// Samples that the tape evaluates together.
 pub(super) const LANES: usize = 8;
@@ -19,17 +19,19 @@ pub(super) const LANES: usize = 8;
 /// # Errors
 /// Returns an error with the channel that the trial lacks.
 pub fn trial_moments(
-    blocks: &Blocks,
+    blocks: &RegressionBlocks,
     trial: &Trial,
     difference_s: Option<f64>,
-) -> Result<Vec<Moments>, RefineError> {
+) -> Result<Vec<RegressionMoments>, RefineError> {
     let tables = trial_tables(blocks, trial, difference_s, &|_, _| 0.0)?;
     let pairs = blocks.blocks.iter().zip(&tables);
-    Ok(pairs.map(|(block, table)| Moments::of_columns(table, block.regressors())).collect())
+    Ok(pairs
+        .map(|(block, table)| RegressionMoments::from_columns(table, block.regressor_count()))
+        .collect())
 }
 
 /// Columns of a regression over the samples of a trial: regressors, then targets.
-pub type Table = Vec<Vec<f64>>;
+pub type RegressionTable = Vec<Vec<f64>>;
 
 /// Returns the rows behind [`trial_moments`], less accelerations that have a cause outside the law:
 /// `known` gives those of an axis at a sample, m/s2 (rad/s2).
@@ -37,15 +39,16 @@ pub type Table = Vec<Vec<f64>>;
 /// # Errors
 /// As [`trial_moments`].
 pub fn trial_tables(
-    blocks: &Blocks,
+    blocks: &RegressionBlocks,
     trial: &Trial,
     difference_s: Option<f64>,
     known: &dyn Fn(Axis, usize) -> f64,
-) -> Result<Vec<Table>, RefineError> {
+) -> Result<Vec<RegressionTable>, RefineError> {
     let record = RegressionRecord::new(blocks, trial)?;
-    let left =
-        |axis: Axis, pair: (usize, usize)| record.acceleration(axis, pair) - known(axis, pair.0);
-    Ok(tables(blocks, &record, &pairs(trial, difference_s), &left))
+    let left = |axis: Axis, pair: (usize, usize)| {
+        record.axis_acceleration(axis, pair) - known(axis, pair.0)
+    };
+    Ok(build_tables(blocks, &record, &difference_pairs(trial, difference_s), &left))
 }
 
 /// Returns the rows of each regression over the samples of a trial for given accelerations; `known`
@@ -54,36 +57,39 @@ pub fn trial_tables(
 /// # Errors
 /// As [`trial_moments`].
 pub(super) fn known_tables<'k>(
-    blocks: &Blocks,
+    blocks: &RegressionBlocks,
     trial: &Trial,
     known: &dyn Fn(Axis) -> &'k [f64],
-) -> Result<Vec<Table>, RefineError> {
+) -> Result<Vec<RegressionTable>, RefineError> {
     let record = RegressionRecord::new(blocks, trial)?;
     let samples: Vec<(usize, usize)> = (0..trial.len()).map(|k| (k, k)).collect();
-    Ok(tables(blocks, &record, &samples, &|axis, (k, _)| known(axis)[k]))
+    Ok(build_tables(blocks, &record, &samples, &|axis, (k, _)| known(axis)[k]))
 }
 
 /// The acceleration of an axis at a pair of samples.
-type Acceleration<'a> = &'a dyn Fn(Axis, (usize, usize)) -> f64;
+type AccelerationFn<'a> = &'a dyn Fn(Axis, (usize, usize)) -> f64;
 
 /// The rows of each regression over pairs of samples; regressors are evaluated at the first of a
 /// pair.
-fn tables(
-    blocks: &Blocks,
+fn build_tables(
+    blocks: &RegressionBlocks,
     record: &RegressionRecord<'_>,
     pairs: &[(usize, usize)],
-    acceleration: Acceleration<'_>,
-) -> Vec<Table> {
+    acceleration: AccelerationFn<'_>,
+) -> Vec<RegressionTable> {
     // The tape evaluates a chunk of samples in the lanes of a vector.
-    let mut tables: Vec<Table> =
-        blocks.blocks.iter().map(|b| vec![Vec::with_capacity(pairs.len()); b.width()]).collect();
-    let mut work = Slots::default();
+    let mut tables: Vec<RegressionTable> = blocks
+        .blocks
+        .iter()
+        .map(|b| vec![Vec::with_capacity(pairs.len()); b.column_count()])
+        .collect();
+    let mut work = TapeResults::default();
     let mut lanes = vec![[0.0; LANES]; record.columns.len()];
     for chunk in pairs.chunks(LANES) {
-        record.load(chunk, &mut lanes);
-        blocks.tape.run(&lanes, &mut work);
+        record.load_lanes(chunk, &mut lanes);
+        blocks.tape.evaluate(&lanes, &mut work);
         for (block, table) in blocks.blocks.iter().zip(&mut tables) {
-            append(blocks, block, acceleration, chunk, &work, table);
+            append_rows(blocks, block, acceleration, chunk, &work, table);
         }
     }
     tables
@@ -91,7 +97,7 @@ fn tables(
 
 /// Pairs of samples for differences: each sample with the one `difference_s` later in the same
 /// part.
-fn pairs(trial: &Trial, difference_s: Option<f64>) -> Vec<(usize, usize)> {
+fn difference_pairs(trial: &Trial, difference_s: Option<f64>) -> Vec<(usize, usize)> {
     // At least one sampling interval, whatever the time is.
     let stride = difference_s.map_or(1, |s| (s / trial.interval_s()).round().max(1.0) as usize);
     let within = |segment: std::ops::Range<usize>| {
@@ -112,7 +118,7 @@ pub(super) struct RegressionRecord<'a> {
 impl<'a> RegressionRecord<'a> {
     /// Reads the channels that the regressions of a law need: velocities always, roll for laws with
     /// roll, inputs as recorded or at their defaults.
-    pub(super) fn new(blocks: &Blocks, trial: &'a Trial) -> Result<Self, RefineError> {
+    pub(super) fn new(blocks: &RegressionBlocks, trial: &'a Trial) -> Result<Self, RefineError> {
         let missing =
             |channel: Channel| RefineError::Channel { trial: trial.name.clone(), channel };
         let need = |channel: Channel| trial.channel(channel).ok_or_else(|| missing(channel));
@@ -151,7 +157,7 @@ impl<'a> RegressionRecord<'a> {
 
     /// Loads the first samples of a chunk of pairs into lanes; a short chunk repeats its last
     /// sample.
-    pub(super) fn load(&self, chunk: &[(usize, usize)], lanes: &mut [Lanes<LANES>]) {
+    pub(super) fn load_lanes(&self, chunk: &[(usize, usize)], lanes: &mut [LaneValues<LANES>]) {
         for (lane, column) in lanes.iter_mut().zip(&self.columns) {
             *lane = std::array::from_fn(|i| {
                 let (k, _) = chunk[i.min(chunk.len() - 1)];
@@ -161,13 +167,13 @@ impl<'a> RegressionRecord<'a> {
     }
 
     /// The velocity of an axis; empty if it is not recorded.
-    pub(super) fn velocity(&self, axis: Axis) -> &'a [f64] {
+    pub(super) fn axis_velocity(&self, axis: Axis) -> &'a [f64] {
         self.velocities[axis as usize].unwrap_or_default()
     }
 
     /// The acceleration of an axis between two samples, m/s2 (rad/s2); 0 if the velocity is not
     /// recorded.
-    fn acceleration(&self, axis: Axis, (k, later): (usize, usize)) -> f64 {
+    fn axis_acceleration(&self, axis: Axis, (k, later): (usize, usize)) -> f64 {
         let velocity = self.velocities[axis as usize].unwrap_or_default();
         match (velocity.get(later), velocity.get(k)) {
             (Some(after), Some(before)) => (after - before) / (self.t_s[later] - self.t_s[k]),
@@ -177,15 +183,15 @@ impl<'a> RegressionRecord<'a> {
 }
 
 /// Appends the rows of a chunk to a block's table.
-fn append(
-    blocks: &Blocks,
-    block: &Block,
-    acceleration: Acceleration<'_>,
+fn append_rows(
+    blocks: &RegressionBlocks,
+    block: &RegressionBlock,
+    acceleration: AccelerationFn<'_>,
     chunk: &[(usize, usize)],
-    work: &[Lanes<LANES>],
+    work: &[LaneValues<LANES>],
     table: &mut [Vec<f64>],
 ) {
-    let read = |output: usize| blocks.tape.read(output, work);
+    let read = |output: usize| blocks.tape.output_lanes(output, work);
     // A single uncoupled axis is divided by its mass, so that its target is an acceleration.
     let own_mass =
         if block.is_force() || block.axes.len() > 1 { None } else { block.mass[0][0].map(read) };
@@ -197,7 +203,7 @@ fn append(
     }
     let targets = &mut table[block.terms.len()..];
     for (lane, &pair) in chunk.iter().enumerate() {
-        let values = target(blocks, block, acceleration, pair, work, lane);
+        let values = target_values(blocks, block, acceleration, pair, work, lane);
         for (column, value) in targets.iter_mut().zip(values.iter()) {
             column.push(divided(*value, lane));
         }
@@ -206,15 +212,15 @@ fn append(
 
 /// The targets at a sample: mass times acceleration less the rest; for axes that are solved
 /// together, accelerations less those that the rests cause.
-fn target(
-    blocks: &Blocks,
-    block: &Block,
-    acceleration: Acceleration<'_>,
+fn target_values(
+    blocks: &RegressionBlocks,
+    block: &RegressionBlock,
+    acceleration: AccelerationFn<'_>,
     pair: (usize, usize),
-    work: &[Lanes<LANES>],
+    work: &[LaneValues<LANES>],
     lane: usize,
 ) -> nalgebra::DVector<f64> {
-    let read = |output: usize| blocks.tape.read(output, work)[lane];
+    let read = |output: usize| blocks.tape.output_lanes(output, work)[lane];
     let q = block.axes.len();
     let added = |place: usize| block.additions[place].map_or(0.0, read);
     let moved = |place: usize| acceleration(block.columns[place], pair) - added(place);

@@ -8,32 +8,35 @@ use sistership_simulation::error::standard_deviations;
 
 use super::across::SourceEnvelopes;
 use super::candidate::CandidateFit;
-use super::estimators::estimator;
-use super::finish::{best_model, finish, is_empty};
+use super::estimators::estimator_for;
+use super::finish::{best_model, finish_refinement, has_only_zeros};
 use super::longer::compare_longer;
 use super::mixture;
-use super::mixture_position::chosen;
+use super::mixture_position::choose_position;
 use super::outcome::{RefineError, Refinement};
-use super::parts::parts;
-use super::problem::Problem;
-use super::progress::{MonotoneProgress, Progress, Watch, step};
+use super::parts::trial_parts;
+use super::problem::RefinementProblem;
+use super::progress::{IterateObserver, MonotoneProgress, Progress, report_progress};
 use super::replayed_trials::ReplayedTrials;
-use super::request::Request;
+use super::request::RefinementSpec;
 use super::ridge_candidates::source_candidate;
-use super::settings::{Prior, Settings};
-use super::settings_check::refused;
-use super::starting::Starting;
+use super::settings::{Prior, RefinementSettings};
+use super::settings_check::combined_error;
+use super::starting::StartingPoint;
 use super::thresholds::SELECTION;
-use super::variant::{Variant, variants};
-use super::weighed::{Extent, Weighed, weighed};
+use super::variant::{TermVariant, family_variants};
+use super::weighed::{CandidateEvaluation, RefinementExtent, evaluate_best};
 use sistership_priors::steering::{RateWindow, measured_rate};
-use sistership_priors::transfer::approach_of;
+use sistership_priors::transfer::trial_approach;
 
 /// Refines a source model against trials.
 ///
 /// # Errors
 /// Returns an error with the setting, trial or channel at fault; no model is left half refined.
-pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinement, RefineError> {
+pub fn refine(
+    request: &RefinementSpec<'_>,
+    progress: Progress<'_>,
+) -> Result<Refinement, RefineError> {
     refine_watched(request, progress, &|_| ())
 }
 
@@ -42,23 +45,36 @@ pub fn refine(request: &Request<'_>, progress: Progress<'_>) -> Result<Refinemen
 /// # Errors
 /// As [`refine`].
 pub fn refine_watched(
-    request: &Request<'_>,
+    request: &RefinementSpec<'_>,
     progress: Progress<'_>,
-    watch: Watch<'_>,
+    watch: IterateObserver<'_>,
 ) -> Result<Refinement, RefineError> {
     let known = SourceEnvelopes::default();
-    let weighed = |settings: &Settings| {
-        let request = Request { settings, ..*request };
+    let weighed = |settings: &RefinementSettings| {
+        let request = RefinementSpec { settings, ..*request };
         let goes_on = |_, _: &str| progress(0.02, "where between source and estimate");
-        weigh((&request, &known), Extent::Estimator, &goes_on)
+        evaluate_candidates((&request, &known), RefinementExtent::Estimator, &goes_on)
     };
     // The position of a mixture is chosen first, by complete evaluations at each position.
-    let Some(position) = chosen(request.settings, weighed)? else {
-        return with_candidates((request, &known), Extent::Estimator, progress, watch, finish);
+    let Some(position) = choose_position(request.settings, weighed)? else {
+        return with_candidates(
+            (request, &known),
+            RefinementExtent::Estimator,
+            progress,
+            watch,
+            finish_refinement,
+        );
     };
-    let settings = &Settings { mixture_positions: vec![position], ..request.settings.clone() };
-    let request = Request { settings, ..*request };
-    with_candidates((&request, &known), Extent::Estimator, progress, watch, finish)
+    let settings =
+        &RefinementSettings { mixture_positions: vec![position], ..request.settings.clone() };
+    let request = RefinementSpec { settings, ..*request };
+    with_candidates(
+        (&request, &known),
+        RefinementExtent::Estimator,
+        progress,
+        watch,
+        finish_refinement,
+    )
 }
 
 /// Evaluates the source as it is, and the best fit to the given extent, on held-out manoeuvres,
@@ -67,15 +83,15 @@ pub fn refine_watched(
 ///
 /// # Errors
 /// As [`refine`].
-pub fn weigh(
-    (request, known): (&Request<'_>, &SourceEnvelopes),
-    extent: Extent,
+pub fn evaluate_candidates(
+    (request, known): (&RefinementSpec<'_>, &SourceEnvelopes),
+    extent: RefinementExtent,
     progress: Progress<'_>,
-) -> Result<Vec<Weighed>, RefineError> {
-    let weigh = |problem: &Problem<'_>,
+) -> Result<Vec<CandidateEvaluation>, RefineError> {
+    let weigh = |problem: &RefinementProblem<'_>,
                  fits: Vec<CandidateFit>,
-                 variants: &[Variant],
-                 _: Progress<'_>| Ok(weighed(problem, &fits, variants));
+                 variants: &[TermVariant],
+                 _: Progress<'_>| Ok(evaluate_best(problem, &fits, variants));
     with_candidates((request, known), extent, progress, &|_| (), weigh)
 }
 
@@ -84,23 +100,23 @@ pub fn weigh(
 ///
 /// # Errors
 /// As [`refine`].
-pub fn refine_wanted(
-    (request, known): (&Request<'_>, &SourceEnvelopes),
-    wanted: impl FnOnce(&[Weighed]) -> Result<bool, RefineError>,
+pub fn refine_if_wanted(
+    (request, known): (&RefinementSpec<'_>, &SourceEnvelopes),
+    wanted: impl FnOnce(&[CandidateEvaluation]) -> Result<bool, RefineError>,
     progress: Progress<'_>,
-) -> Result<(Vec<Weighed>, Option<Refinement>), RefineError> {
-    let both = |problem: &Problem<'_>,
+) -> Result<(Vec<CandidateEvaluation>, Option<Refinement>), RefineError> {
+    let both = |problem: &RefinementProblem<'_>,
                 fits: Vec<CandidateFit>,
-                variants: &[Variant],
+                variants: &[TermVariant],
                 progress: Progress<'_>| {
-        let weighed = weighed(problem, &fits, variants);
+        let weighed = evaluate_best(problem, &fits, variants);
         let refinement = match wanted(&weighed)? {
-            true => Some(finish(problem, fits, variants, progress)?),
+            true => Some(finish_refinement(problem, fits, variants, progress)?),
             false => None,
         };
         Ok((weighed, refinement))
     };
-    with_candidates((request, known), Extent::Estimator, progress, &|_| (), both)
+    with_candidates((request, known), RefinementExtent::Estimator, progress, &|_| (), both)
 }
 
 /// Returns the model that a refinement gives, without standard manoeuvres, uncertainty bands and
@@ -108,46 +124,46 @@ pub fn refine_wanted(
 ///
 /// # Errors
 /// As [`refine`].
-pub fn fit_model(request: &Request<'_>) -> Result<Model, RefineError> {
+pub fn fit_model(request: &RefinementSpec<'_>) -> Result<Model, RefineError> {
     let known = SourceEnvelopes::default();
-    let fitted = |problem: &Problem<'_>,
+    let fitted = |problem: &RefinementProblem<'_>,
                   fits: Vec<CandidateFit>,
-                  variants: &[Variant],
+                  variants: &[TermVariant],
                   _: Progress<'_>| best_model(problem, &fits, variants);
-    with_candidates((request, &known), Extent::Estimator, &|_, _| true, &|_| (), fitted)
+    with_candidates((request, &known), RefinementExtent::Estimator, &|_, _| true, &|_| (), fitted)
 }
 
 /// Sets up the problem, computes its candidates to the given extent, and passes them to `then`.
 fn with_candidates<T>(
-    (request, known): (&Request<'_>, &SourceEnvelopes),
-    extent: Extent,
+    (request, known): (&RefinementSpec<'_>, &SourceEnvelopes),
+    extent: RefinementExtent,
     progress: Progress<'_>,
-    watch: Watch<'_>,
+    watch: IterateObserver<'_>,
     then: impl FnOnce(
-        &Problem<'_>,
+        &RefinementProblem<'_>,
         Vec<CandidateFit>,
-        &[Variant],
+        &[TermVariant],
         Progress<'_>,
     ) -> Result<T, RefineError>,
 ) -> Result<T, RefineError> {
-    request.settings.check().map_err(refused)?;
-    let (judged, whole) = divided(request)?;
+    request.settings.check().map_err(combined_error)?;
+    let (judged, whole) = divide_trials(request)?;
     let progress = MonotoneProgress::new(progress);
     // Parts of the work report overlapping fractions; users see them never decrease.
-    let progress: Progress<'_> = &|fraction, what| progress.tell(fraction, what);
+    let progress: Progress<'_> = &|fraction, what| progress.report_fraction(fraction, what);
     let lpp_m = request.target.particular("lpp_m");
-    let mut settings = resolved(request.settings, request.law, lpp_m, &whole);
+    let mut settings = resolve_settings(request.settings, request.law, lpp_m, &whole);
     if settings.prior == Prior::Mixture {
         // A stored version names its regressions; others are refused.
         let asked = settings.regressions_sha256.as_deref();
         settings.regressions_sha256 = Some(mixture::regressions_sha256(asked)?);
     }
     // Parts must be known before the prior, whose measure depends on them.
-    let estimator = estimator(settings.method);
-    let equations = estimator.equations(&settings);
-    let parts = parts(&whole, request.law, equations, &settings);
-    let started = Starting { request, known, whole: &whole, approach: approach_of(&whole) };
-    let (mut transferred, measure) = started.prior(!parts.is_empty())?;
+    let estimator = estimator_for(settings.method);
+    let equations = estimator.equation_form(&settings);
+    let parts = trial_parts(&whole, request.law, equations, &settings);
+    let started = StartingPoint { request, known, whole: &whole, approach: trial_approach(&whole) };
+    let (mut transferred, measure) = started.starting_prior(!parts.is_empty())?;
     if settings.steering_from_trials {
         let window = match settings.steering_above_noise {
             true => RateWindow::AboveNoise,
@@ -158,12 +174,12 @@ fn with_candidates<T>(
     // Parts replace whole trials in fit and comparison alike.
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
     // A source with coefficients of zero is a placeholder and has no name.
-    let named = Some(&*request.source.name).filter(|_| !is_empty(request.source));
-    let source = settings.origin(named).to_owned();
+    let named = Some(&*request.source.name).filter(|_| !has_only_zeros(request.source));
+    let source = settings.prior_origin(named).to_owned();
     let (law, watch) = (request.law, Some(watch));
     let replayed = ReplayedTrials::new(law, lpp_m, &training, (&settings).into());
     let deviations = standard_deviations(&training);
-    let problem = Problem {
+    let problem = RefinementProblem {
         law,
         target: Some(request.target),
         source: &source,
@@ -177,21 +193,21 @@ fn with_candidates<T>(
         settings,
         watch,
     };
-    step(progress, 0.05, "sufficient statistics of each trial")?;
-    let variants = variants(&problem, equations)?;
+    report_progress(progress, 0.05, "sufficient statistics of each trial")?;
+    let variants = family_variants(&problem, equations)?;
     let mut candidates = vec![source_candidate(&problem, &variants)?];
-    if extent == Extent::Estimator {
-        estimator.candidates(&problem, &variants, &mut candidates, progress)?;
+    if extent == RefinementExtent::Estimator {
+        estimator.add_candidates(&problem, &variants, &mut candidates, progress)?;
     }
     // After all candidates, since it excludes those that are far from the least error.
     compare_longer(&problem, &mut candidates)?;
-    step(progress, 0.8, "fitting all trials")?;
+    report_progress(progress, 0.8, "fitting all trials")?;
     then(&problem, candidates, &variants, progress)
 }
 
 /// Sets a model's rudder rate to that of the recorded rudder movements, where these show it.
 fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial], window: RateWindow) {
-    let length_s = target.particular("lpp_m").zip(approach_of(trials));
+    let length_s = target.particular("lpp_m").zip(trial_approach(trials));
     let rate =
         length_s.and_then(|(l, approach)| measured_rate(trials, l / approach.speed_m_s, window));
     if let Some(rate) = rate {
@@ -201,7 +217,9 @@ fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial], wind
 }
 
 /// Divides the trials into those that are kept out of fit and choice, and the others.
-fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Trial>), RefineError> {
+fn divide_trials<'a>(
+    request: &'a RefinementSpec<'a>,
+) -> Result<(Vec<&'a Trial>, Vec<&'a Trial>), RefineError> {
     let names = &request.settings.held_out;
     if let Some(unknown) =
         names.iter().find(|name| !request.trials.iter().any(|trial| trial.name == **name))
@@ -219,15 +237,15 @@ fn divided<'a>(request: &'a Request<'a>) -> Result<(Vec<&'a Trial>, Vec<&'a Tria
 
 /// Returns the settings with the times that depend on the ship filled in, so that a version records
 /// those that were used.
-pub(super) fn resolved(
-    settings: &Settings,
+pub(super) fn resolve_settings(
+    settings: &RefinementSettings,
     law: &Law,
     lpp_m: Option<f64>,
     training: &[&Trial],
-) -> Settings {
-    let length_s = lpp_m.zip(approach_of(training)).map(|(l, approach)| l / approach.speed_m_s);
+) -> RefinementSettings {
+    let length_s = lpp_m.zip(trial_approach(training)).map(|(l, approach)| l / approach.speed_m_s);
     let mut settings = settings.clone();
-    estimator(settings.method).resolve(&mut settings, law, length_s);
+    estimator_for(settings.method).resolve_settings(&mut settings, law, length_s);
     settings.restart_s = settings.restart_s.or(length_s.map(|s| SELECTION.restart * s));
     settings
 }

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::cma_es::CmaEs;
-use super::family::Family;
+use super::family::TermFamily;
 use super::thresholds::ESTIMATE_POSITION;
 use crate::constraints::Constraints;
 use sistership_assessment::uncertainty::Sampling;
@@ -13,7 +13,7 @@ use sistership_assessment::uncertainty::Sampling;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "Estimator")]
-pub enum Method {
+pub enum EstimationMethod {
     /// One-step differences and the ridge with the source as l2 prior: Kanazawa 2023, Eqs.
     /// 5.4-5.17.
     #[default]
@@ -30,7 +30,7 @@ pub enum Method {
     CmaEs,
 }
 
-impl Method {
+impl EstimationMethod {
     /// Every estimator.
     pub const ALL: [Self; 4] = [Self::Published, Self::Weak, Self::Trajectory, Self::CmaEs];
 
@@ -106,7 +106,7 @@ impl Prior {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "TuningRange")]
-pub struct Range {
+pub struct TuningRange {
     /// Least strength of the prior.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub lambda_min: f64,
@@ -122,9 +122,9 @@ pub struct Range {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "RefinementSettings")]
-pub struct Settings {
+pub struct RefinementSettings {
     /// The estimator.
-    pub method: Method,
+    pub method: EstimationMethod,
     /// Mean of the prior.
     #[serde(skip_serializing_if = "Prior::is_source")]
     pub prior: Prior,
@@ -140,7 +140,7 @@ pub struct Settings {
     pub mixture_positions: Vec<f64>,
     /// Tuning ranges from the source outwards; each gives an option, the best of which is chosen.
     #[schemars(length(min = 1, max = 20))]
-    pub ranges: Vec<Range>,
+    pub ranges: Vec<TuningRange>,
     /// Values of lambda tried in a range, evenly spaced in their logarithm.
     #[schemars(range(min = 2, max = 1000))]
     pub lambda_count: usize,
@@ -179,7 +179,7 @@ pub struct Settings {
     pub cma_es: Option<CmaEs>,
     /// Families of terms among which the weak and the trajectory form choose. Default: all of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub families: Vec<Family>,
+    pub families: Vec<TermFamily>,
     /// Strengths of the prior among which the weak and the trajectory form choose, from the source
     /// outwards. Default: half decades from 10 to 1e-8.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -287,16 +287,16 @@ pub struct Settings {
     pub bands: Sampling,
 }
 
-impl Default for Settings {
+impl Default for RefinementSettings {
     fn default() -> Self {
         // Each range reaches a decade further from the source, and allows a tenth more of alpha.
-        let range = |exponent: i32| Range {
+        let range = |exponent: i32| TuningRange {
             lambda_min: 10_f64.powi(-exponent),
             lambda_max: 1e10,
             alpha_max: (0.1 * f64::from(1 + exponent)).min(1.0),
         };
         Self {
-            method: Method::Published,
+            method: EstimationMethod::Published,
             prior: Prior::Source,
             regressions_sha256: None,
             mixture_positions: Vec::new(),
@@ -337,10 +337,10 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl RefinementSettings {
     /// Returns the settings with the defaults of a new request. Settings of stored versions are
     /// used as they are.
-    pub fn as_ordered(mut self) -> Self {
+    pub fn with_request_defaults(mut self) -> Self {
         if self.prior == Prior::Mixture && self.mixture_positions.is_empty() {
             self.mixture_positions = MIXTURE_POSITIONS.to_vec();
         }
@@ -354,7 +354,7 @@ impl Settings {
 
     /// Fills in the families and strengths among which model selection chooses, so that a version
     /// records them.
-    pub(super) fn fill_selection(&mut self, families: &[Family]) {
+    pub(super) fn fill_selection(&mut self, families: &[TermFamily]) {
         if self.families.is_empty() {
             self.families = families.to_vec();
         }
@@ -365,7 +365,7 @@ impl Settings {
 
     /// Returns the origin of a refinement with these settings, for reports: the source's name, or
     /// the prior that replaces it; [`TRIALS_ALONE`] if there is no source.
-    pub fn origin<'a>(&self, source: Option<&'a str>) -> &'a str {
+    pub fn prior_origin<'a>(&self, source: Option<&'a str>) -> &'a str {
         match self.prior {
             Prior::Mixture if self.mixture_positions == [ESTIMATE_POSITION] => {
                 "the estimate from particulars"
@@ -391,8 +391,9 @@ mod tests {
     fn what_stands_in_the_place_of_a_source_is_named() {
         let of = |prior, positions: &[f64], source: Option<&str>| {
             let mixture_positions = positions.to_vec();
-            let settings = Settings { prior, mixture_positions, ..Settings::default() };
-            settings.origin(source).to_owned()
+            let settings =
+                RefinementSettings { prior, mixture_positions, ..RefinementSettings::default() };
+            settings.prior_origin(source).to_owned()
         };
         assert_eq!(of(Prior::Source, &[], Some("wpcc/1")), "wpcc/1");
         assert_eq!(of(Prior::Source, &[], None), TRIALS_ALONE);

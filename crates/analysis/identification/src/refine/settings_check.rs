@@ -2,7 +2,7 @@
 
 use super::cma_es::CmaEs;
 use super::outcome::RefineError;
-use super::settings::{Prior, Range, Settings};
+use super::settings::{Prior, RefinementSettings, TuningRange};
 
 /// A setting that cannot be used.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub struct SettingFault {
     pub message: String,
 }
 
-impl Settings {
+impl RefinementSettings {
     /// Checks that all settings are in range and consistent.
     ///
     /// # Errors
@@ -22,7 +22,7 @@ impl Settings {
         let fault =
             |field: &str, message: String| SettingFault { field: field.to_owned(), message };
         // All rules are checked, so that one answer names every fault.
-        let rules = [self.choices(), self.counts(), self.times()].concat();
+        let rules = [self.choice_rules(), self.count_rules(), self.time_rules()].concat();
         let broken = rules.into_iter().filter(|(.., is_kept)| !is_kept);
         let cma_es = self.cma_es.as_ref().map_or(Ok(()), CmaEs::check);
         let parts = [
@@ -40,8 +40,8 @@ impl Settings {
     }
 
     /// Rules for ranges, strengths and positions.
-    fn choices(&self) -> Vec<Rule> {
-        let is_ordered = |range: &Range| {
+    fn choice_rules(&self) -> Vec<SettingRule> {
+        let is_ordered = |range: &TuningRange| {
             range.lambda_min > 0.0
                 && range.lambda_min <= range.lambda_max
                 && range.lambda_max.is_finite()
@@ -65,7 +65,7 @@ impl Settings {
     }
 
     /// Rules for numbers of values, folds and samples, and for the methods that keep constraints.
-    fn counts(&self) -> Vec<Rule> {
+    fn count_rules(&self) -> Vec<SettingRule> {
         let kept = self.method.keeps_constraints() || self.constraints.is_empty();
         vec![
             ("lambda_count", "must be from 2 to 1000", (2..=1000).contains(&self.lambda_count)),
@@ -76,7 +76,7 @@ impl Settings {
     }
 
     /// Rules for times: all are above 0 s.
-    fn times(&self) -> Vec<Rule> {
+    fn time_rules(&self) -> Vec<SettingRule> {
         let times = [
             ("difference_s", self.difference_s),
             ("restart_s", self.restart_s),
@@ -99,7 +99,7 @@ impl Settings {
 }
 
 /// Combines faults into one error with the field of the first.
-pub(super) fn refused(faults: Vec<SettingFault>) -> RefineError {
+pub(super) fn combined_error(faults: Vec<SettingFault>) -> RefineError {
     // The error has one field; further faults follow in its message.
     let further =
         faults.iter().skip(1).map(|fault| format!("; {}: {}", fault.field, fault.message));
@@ -109,7 +109,7 @@ pub(super) fn refused(faults: Vec<SettingFault>) -> RefineError {
 }
 
 /// A rule: field, allowed values, and true if it is kept.
-type Rule = (&'static str, &'static str, bool);
+type SettingRule = (&'static str, &'static str, bool);
 
 fn is_positive(value: &f64) -> bool {
     *value > 0.0 && value.is_finite()
@@ -121,15 +121,15 @@ mod tests {
 
     #[test]
     fn every_setting_that_cannot_be_used_is_named() {
-        assert_eq!(Settings::default().check(), Ok(()));
-        let settings = Settings {
+        assert_eq!(RefinementSettings::default().check(), Ok(()));
+        let settings = RefinementSettings {
             folds: 1,
             strengths: vec![1.0, f64::NAN],
             roll_strength: Some(-1.0),
             window_s: Some(0.0),
             hop_s: Some(f64::INFINITY),
             mixture_positions: vec![2.0],
-            ..Settings::default()
+            ..RefinementSettings::default()
         };
         let faults = settings.check().err().unwrap_or_default();
         let fields: Vec<&str> = faults.iter().map(|fault| fault.field.as_str()).collect();
@@ -143,7 +143,7 @@ mod tests {
             "hop_s",
         ];
         assert_eq!(fields, expected);
-        let told = refused(faults).to_string();
+        let told = combined_error(faults).to_string();
         assert!(told.contains("strengths") && told.contains("hop_s: must be above 0 s"), "{told}");
     }
 }

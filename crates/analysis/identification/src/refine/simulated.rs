@@ -6,18 +6,18 @@ use sistership_model::trial::Trial;
 use sistership_simulation::Ship;
 use sistership_simulation::error::SquaredError;
 use sistership_simulation::horizons::HorizonErrors;
-use sistership_simulation::recorded::{Recorded, Replay, ReplaySettings, replay_all};
+use sistership_simulation::recorded::{RecordedTrial, ReplaySettings, TrialReplay, replay_trials};
 
 use super::outcome::RefineError;
-use super::problem::Problem;
-use sistership_priors::transfer::ready_for_sisters;
+use super::problem::RefinementProblem;
+use sistership_priors::transfer::prepare_sister_ships;
 
 /// Number of trials that are simulated in lockstep.
-const TOGETHER: usize = 8;
+const LOCKSTEP_TRIALS: usize = 8;
 
 /// The errors of simulated trials.
 #[derive(Default)]
-pub(super) struct Simulated {
+pub(super) struct SimulatedErrors {
     /// Squared errors over all trials.
     pub total: SquaredError,
     /// Standardised errors at the restart interval of the simulations; empty if the models cannot
@@ -27,19 +27,22 @@ pub(super) struct Simulated {
     pub reason: Option<String>,
 }
 
-impl Simulated {
+impl SimulatedErrors {
     /// Creates the errors of an option that is refused without simulations.
-    pub fn refused(reason: String) -> Self {
+    pub fn with_refusal(reason: String) -> Self {
         Self { reason: Some(reason), ..Self::default() }
     }
 
-    fn new(problem: &Problem<'_>, trials: &[&Trial], runs: &[Replay]) -> Self {
+    fn new(problem: &RefinementProblem<'_>, trials: &[&Trial], runs: &[TrialReplay]) -> Self {
         let mut total = SquaredError::default();
-        let each: Vec<SquaredError> =
-            trials.iter().zip(runs).map(|(trial, run)| SquaredError::of(trial, run)).collect();
+        let each: Vec<SquaredError> = trials
+            .iter()
+            .zip(runs)
+            .map(|(trial, run)| SquaredError::from_trial(trial, run))
+            .collect();
         each.iter().for_each(|error| total.add(error));
         // A single stopped simulation excludes the candidate; its errors are kept for the report.
-        let stopped = |(trial, run): (&&Trial, &Replay)| {
+        let stopped = |(trial, run): (&&Trial, &TrialReplay)| {
             Some(format!("{} {}", trial.name, run.stopped.as_ref()?))
         };
         let reason = trials.iter().zip(runs).find_map(stopped);
@@ -55,13 +58,13 @@ impl Simulated {
 /// Returns an error if a trial lacks a channel, or the models differ in more than their
 /// coefficients.
 pub(super) fn simulate_training(
-    problem: &Problem<'_>,
+    problem: &RefinementProblem<'_>,
     models: &[Model],
     model_of: &(dyn Fn(usize) -> usize + Sync),
-) -> Result<Simulated, RefineError> {
+) -> Result<SimulatedErrors, RefineError> {
     let trials = problem.replayed.trials.iter().collect::<Vec<_>>();
     let how = (problem.settings.restart_s, problem.replayed.step_s);
-    simulate(problem, (&trials, how), models, model_of)
+    simulate_errors(problem, (&trials, how), models, model_of)
 }
 
 /// Simulates the training trials at the longer restart intervals, where a simulation that stops
@@ -70,14 +73,14 @@ pub(super) fn simulate_training(
 /// # Errors
 /// As [`simulate_training`]; also returns an error if the models cannot be simulated.
 pub(super) fn simulate_longer(
-    problem: &Problem<'_>,
+    problem: &RefinementProblem<'_>,
     models: &[Model],
     model_of: &(dyn Fn(usize) -> usize + Sync),
 ) -> Result<Vec<HorizonErrors>, RefineError> {
     let trials = problem.replayed.trials.iter().collect::<Vec<_>>();
     let one = |&restart_s: &f64| {
         let how = (Some(restart_s), problem.replayed.step_s);
-        let runs = match runs(problem, (&trials, how), models, model_of)? {
+        let runs = match replay_runs(problem, (&trials, how), models, model_of)? {
             Ok(runs) => runs,
             Err(reason) => return Err(RefineError::Diverged(reason)),
         };
@@ -92,60 +95,60 @@ pub(super) fn simulate_longer(
 /// # Errors
 /// As [`simulate_training`].
 pub(super) fn simulate_all(
-    problem: &Problem<'_>,
+    problem: &RefinementProblem<'_>,
     trials: &[&Trial],
     models: &[Model],
     model_of: &(dyn Fn(usize) -> usize + Sync),
-) -> Result<Simulated, RefineError> {
+) -> Result<SimulatedErrors, RefineError> {
     let how = (problem.settings.restart_s, ReplaySettings::default().step_s);
-    simulate(problem, (trials, how), models, model_of)
+    simulate_errors(problem, (trials, how), models, model_of)
 }
 
 /// Trials with the restart interval and the longest step, s.
-type Simulation<'a> = (&'a [&'a Trial], (Option<f64>, f64));
+type ReplayPlan<'a> = (&'a [&'a Trial], (Option<f64>, f64));
 
 /// The errors of a simulation, refused if the models cannot be simulated.
-fn simulate(
-    problem: &Problem<'_>,
-    simulation: Simulation<'_>,
+fn simulate_errors(
+    problem: &RefinementProblem<'_>,
+    simulation: ReplayPlan<'_>,
     models: &[Model],
     model_of: &(dyn Fn(usize) -> usize + Sync),
-) -> Result<Simulated, RefineError> {
-    Ok(match runs(problem, simulation, models, model_of)? {
-        Ok(runs) => Simulated::new(problem, simulation.0, &runs),
-        Err(reason) => Simulated::refused(reason),
+) -> Result<SimulatedErrors, RefineError> {
+    Ok(match replay_runs(problem, simulation, models, model_of)? {
+        Ok(runs) => SimulatedErrors::new(problem, simulation.0, &runs),
+        Err(reason) => SimulatedErrors::with_refusal(reason),
     })
 }
 
 /// The simulations, or the reason (inner error) why the models cannot be simulated at all.
-fn runs(
-    problem: &Problem<'_>,
-    (trials, (restart_s, step_s)): Simulation<'_>,
+fn replay_runs(
+    problem: &RefinementProblem<'_>,
+    (trials, (restart_s, step_s)): ReplayPlan<'_>,
     models: &[Model],
     model_of: &(dyn Fn(usize) -> usize + Sync),
-) -> Result<Result<Vec<Replay>, String>, RefineError> {
+) -> Result<Result<Vec<TrialReplay>, String>, RefineError> {
     let Some(first) = models.first().filter(|_| !trials.is_empty()) else {
         return Ok(Ok(Vec::new()));
     };
     // Models of one candidate differ in their coefficients only, so that one ship with exchanged
     // coefficients simulates all of them in lockstep.
-    let ship = match ready_for_sisters(first, problem.law, trials) {
+    let ship = match prepare_sister_ships(first, problem.law, trials) {
         Ok(ship) => ship,
         Err(error) => return Ok(Err(error.to_string())),
     };
-    let coefficients = sisters(&ship, models)?;
+    let coefficients = sister_coefficients(&ship, models)?;
     let numbered = trials.iter().enumerate();
     let all: Vec<_> = numbered
-        .map(|(k, trial)| Recorded { trial, coefficients: &coefficients[model_of(k)] })
+        .map(|(k, trial)| RecordedTrial { trial, coefficients: &coefficients[model_of(k)] })
         .collect();
     let settings = ReplaySettings { restart_s, step_s, ..ReplaySettings::default() };
-    let together = |some: &[Recorded<'_>]| {
-        replay_all(&ship, some, &settings)
+    let together = |some: &[RecordedTrial<'_>]| {
+        replay_trials(&ship, some, &settings)
             .map_err(|e| RefineError::Channel { trial: e.trial, channel: e.channel })
     };
-    let runs: Vec<Vec<Replay>> =
+    let runs: Vec<Vec<TrialReplay>> =
         // Chunks are simulated in parallel and keep their order.
-        all.par_chunks(TOGETHER).map(together).collect::<Result<_, _>>()?;
+        all.par_chunks(LOCKSTEP_TRIALS).map(together).collect::<Result<_, _>>()?;
     Ok(Ok(runs.concat()))
 }
 
@@ -153,12 +156,15 @@ fn runs(
 ///
 /// # Errors
 /// Returns an error if the models differ in more than their coefficients.
-pub(super) fn sisters(ship: &Ship, models: &[Model]) -> Result<Vec<Vec<f64>>, RefineError> {
+pub(super) fn sister_coefficients(
+    ship: &Ship,
+    models: &[Model],
+) -> Result<Vec<Vec<f64>>, RefineError> {
     let one = |model: &Model| {
         let differ = || {
             RefineError::Law(format!("`{}` has not the coefficients of its sisters", model.name))
         };
-        ship.sister(model).ok_or_else(differ)
+        ship.open_coefficient_values(model).ok_or_else(differ)
     };
     models.iter().map(one).collect()
 }

@@ -9,16 +9,16 @@ use std::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
 use sistership_model::trial::Channel;
-use sistership_simulation::error::wrapped;
-use sistership_simulation::state::RECORDED;
+use sistership_simulation::error::wrap_angle;
+use sistership_simulation::state::RECORDED_CHANNELS;
 
 /// Fewest readings that determine a parabola despite their noise.
-const LEAST: usize = 5;
+const MIN_READINGS: usize = 5;
 
 /// Returns true if a channel belongs to the ship's motion. Inputs are not smoothed: they change
 /// abruptly.
 pub(super) fn is_motion(channel: Channel) -> bool {
-    RECORDED.iter().any(|(recorded, _)| *recorded == channel)
+    RECORDED_CHANNELS.iter().any(|(recorded, _)| *recorded == channel)
 }
 
 /// The readings in a window about a time, with their weights.
@@ -31,8 +31,8 @@ impl ReadingsAbout {
     /// Selects the readings of a part of a record in a window of `window_s` about `t`; `None` if
     /// they are too few.
     pub fn new(t_s: &[f64], part: &Range<usize>, t: f64, window_s: f64) -> Option<Self> {
-        let range = within(t_s, part, t, window_s);
-        if range.len() < LEAST {
+        let range = window_samples(t_s, part, t, window_s);
+        if range.len() < MIN_READINGS {
             return None;
         }
         let powers = |s: f64| {
@@ -59,7 +59,7 @@ impl ReadingsAbout {
         // not matter.
         let near = readings[readings.len() / 2];
         let apart = |reading: &f64| match channel {
-            Channel::Psi => wrapped(reading - near),
+            Channel::Psi => wrap_angle(reading - near),
             _ => reading - near,
         };
         near + readings.iter().zip(&self.weights).map(|(r, weight)| weight * apart(r)).sum::<f64>()
@@ -68,7 +68,7 @@ impl ReadingsAbout {
 
 /// Samples of a part in a window about a time; near an end of the part the window is shifted
 /// inside.
-fn within(t_s: &[f64], part: &Range<usize>, t: f64, window_s: f64) -> Range<usize> {
+fn window_samples(t_s: &[f64], part: &Range<usize>, t: f64, window_s: f64) -> Range<usize> {
     let times = &t_s[part.clone()];
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return 0..0 };
     let from = (t - 0.5 * window_s).min(last - window_s).max(*first);
@@ -116,9 +116,9 @@ mod tests {
     fn a_heading_is_smoothed_across_north() {
         let t_s = times();
         let column: Vec<f64> =
-            t_s.iter().map(|t| wrapped(std::f64::consts::PI + 0.2 * (t - 2.0))).collect();
+            t_s.iter().map(|t| wrap_angle(std::f64::consts::PI + 0.2 * (t - 2.0))).collect();
         let about = ReadingsAbout::new(&t_s, &(0..40), t_s[21], 1.0).unwrap();
-        assert!(wrapped(about.value(Channel::Psi, &column) - column[21]).abs() < 1e-10);
+        assert!(wrap_angle(about.value(Channel::Psi, &column) - column[21]).abs() < 1e-10);
     }
 
     #[test]

@@ -88,7 +88,7 @@ pub(super) const ESTIMATE_POSITION: f64 = 1.0;
 /// Covariance of the errors of a source and an estimate in a ship's acceleration, relative to the
 /// mean square of that acceleration over its standard manoeuvres, dimensionless.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Misfit {
+pub(super) struct ErrorCovariance {
     /// Mean square of the source's error.
     pub source: f64,
     /// Mean square of the estimate's error.
@@ -103,16 +103,16 @@ pub(super) struct MixtureThresholds {
     /// `C_a`: covariance of both errors by axis, in the order of `Axis`; none for roll, on which an
     /// estimate gives no information. Source: medians over the zoo's ships for work, each left out
     /// (`cargo run -p sistership-tests --example strangers -- misfit`, docs/evidence/strangers.md).
-    pub misfit: [Option<Misfit>; 4],
+    pub misfit: [Option<ErrorCovariance>; 4],
 }
 
 /// The values.
 pub(super) const MIXTURE: MixtureThresholds = MixtureThresholds {
     misfit: [
-        Some(Misfit { source: 6.744, estimate: 0.707, common: -0.162 }),
-        Some(Misfit { source: 3.139, estimate: 2.339, common: 0.798 }),
+        Some(ErrorCovariance { source: 6.744, estimate: 0.707, common: -0.162 }),
+        Some(ErrorCovariance { source: 3.139, estimate: 2.339, common: 0.798 }),
         None,
-        Some(Misfit { source: 7.824, estimate: 4.620, common: 3.040 }),
+        Some(ErrorCovariance { source: 7.824, estimate: 4.620, common: 3.040 }),
     ],
 };
 

@@ -15,18 +15,19 @@ use sistership_model::{Model, Trial};
 
 /// Removes the coefficients from a model that are zero and whose terms depend on an input that no
 /// trial records.
-pub(super) fn forget(model: &mut Model, law: &Law, trials: &[&Trial]) {
-    let unrecorded = unrecorded(law, trials);
+pub(super) fn remove_unrecorded_terms(model: &mut Model, law: &Law, trials: &[&Trial]) {
+    let unrecorded = unrecorded_inputs(law, trials);
     if unrecorded.is_empty() {
         return;
     }
-    let depends =
-        |name: &str| law.term(name).is_ok_and(|(_, term)| mentions(&term, law, &unrecorded));
+    let depends = |name: &str| {
+        law.unscaled_regressor(name).is_ok_and(|(_, term)| depends_on_any(&term, law, &unrecorded))
+    };
     model.coefficients.retain(|name, quantity| quantity.value != 0.0 || !depends(name));
 }
 
 /// Names of the inputs with a default whose channel no trial has.
-fn unrecorded<'a>(law: &'a Law, trials: &[&Trial]) -> BTreeSet<&'a str> {
+fn unrecorded_inputs<'a>(law: &'a Law, trials: &[&Trial]) -> BTreeSet<&'a str> {
     let nowhere = |name: &str| {
         input_channel(name)
             .is_some_and(|channel| trials.iter().all(|trial| trial.channel(channel).is_none()))
@@ -36,10 +37,10 @@ fn unrecorded<'a>(law: &'a Law, trials: &[&Trial]) -> BTreeSet<&'a str> {
 }
 
 /// Returns true if a formula depends on any of some inputs, directly or by the law's values.
-fn mentions(formula: &Expr, law: &Law, inputs: &BTreeSet<&str>) -> bool {
-    formula.names().into_iter().any(|name| {
+fn depends_on_any(formula: &Expr, law: &Law, inputs: &BTreeSet<&str>) -> bool {
+    formula.mentioned_names().into_iter().any(|name| {
         inputs.contains(name)
-            || law.values.get(name).is_some_and(|value| mentions(value, law, inputs))
+            || law.values.get(name).is_some_and(|value| depends_on_any(value, law, inputs))
     })
 }
 
@@ -49,32 +50,32 @@ mod tests {
     use super::*;
     use sistership_model::Zoo;
     use sistership_model::trial::Channel;
-    use sistership_priors::transfer::blank;
+    use sistership_priors::transfer::blank_model;
 
     #[test]
     fn wind_terms_need_a_recorded_wind() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let law = zoo.law("low-speed").unwrap();
-        let all = blank(law, zoo.vessel("esso-osaka-3m").unwrap(), None).unwrap();
+        let all = blank_model(law, zoo.vessel("esso-osaka-3m").unwrap(), None).unwrap();
         let (mut calm, mut trial) = (all.clone(), Trial::default());
-        forget(&mut calm, law, &[&trial]);
+        remove_unrecorded_terms(&mut calm, law, &[&trial]);
         let forgotten = |name: &str| !calm.coefficients.contains_key(name);
         assert!(forgotten("X_ahead") && forgotten("Y_beam") && !forgotten("Y_v"));
         for channel in [Channel::WindSpeed, Channel::WindFrom] {
             trial.channels.insert(channel, vec![0.0]);
         }
         let mut windy = all.clone();
-        forget(&mut windy, law, &[&trial]);
+        remove_unrecorded_terms(&mut windy, law, &[&trial]);
         assert_eq!(windy, all);
     }
 
     #[test]
     fn what_a_source_knows_stays() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let law = zoo.law("low-speed").unwrap();
-        let mut model = blank(law, zoo.vessel("esso-osaka-3m").unwrap(), None).unwrap();
+        let mut model = blank_model(law, zoo.vessel("esso-osaka-3m").unwrap(), None).unwrap();
         model.coefficients.get_mut("Y_beam").unwrap().value = -0.001;
-        forget(&mut model, law, &[&Trial::default()]);
+        remove_unrecorded_terms(&mut model, law, &[&Trial::default()]);
         assert!(model.coefficients.contains_key("Y_beam"));
     }
 }

@@ -9,56 +9,56 @@ use sistership_model::coefficient::Axis;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 
-use super::blocks::Blocks;
-use super::equations::Equations;
+use super::blocks::RegressionBlocks;
+use super::equations::EquationForm;
 use super::errors::CoefficientErrors;
-use super::family::Family;
+use super::family::TermFamily;
 use super::outcome::RefineError;
-use super::parts::slice;
-use super::posterior::{SequencedRows, errors, rows};
-use super::problem::Problem;
-use super::ridge::{Choices, Fitted, Fold, most_likely};
-use super::rows::Table;
-use super::settings::Range;
+use super::parts::trial_slice;
+use super::posterior::{SequencedRows, posterior_errors, sequence_rows};
+use super::problem::RefinementProblem;
+use super::ridge::{FittedCoefficient, RegressionFold, RidgeChoices, most_likely};
+use super::rows::RegressionTable;
+use super::settings::TuningRange;
 use super::thresholds::SELECTION;
 use crate::constraints::{CoefficientLimits, LimitError};
-use sistership_numerics::{Moments, RidgeChoice, merged};
+use sistership_numerics::{RegressionMoments, RidgeChoice, merge_trials};
 
 /// A variant: one family of terms with its regressions.
-pub(super) struct Variant {
+pub(super) struct TermVariant {
     /// Family of terms.
-    pub family: Family,
+    pub family: TermFamily,
     /// Transferred source with these terms.
     pub model: Model,
     /// Its regressions.
-    pub blocks: Blocks,
+    pub blocks: RegressionBlocks,
     /// Method by which its rows were made.
-    pub equations: Equations,
+    pub equations: EquationForm,
     /// Its statistics, by trial and regression.
-    pub moments: Vec<Vec<Moments>>,
+    pub moments: Vec<Vec<RegressionMoments>>,
     /// Limits of its coefficients, if any.
     pub limits: Option<CoefficientLimits>,
 }
 
-impl Variant {
+impl TermVariant {
     /// Creates the variant of a family for a model with its terms.
     ///
     /// # Errors
     /// Returns an error if the trials lack a channel or have too few samples, or the constraints
     /// refer to a coefficient that the model does not have.
     fn new(
-        problem: &Problem<'_>,
-        equations: Equations,
-        family: Family,
+        problem: &RefinementProblem<'_>,
+        equations: EquationForm,
+        family: TermFamily,
         mut model: Model,
     ) -> Result<Self, RefineError> {
-        let mut blocks = Blocks::new(&model, problem.law)?;
-        let moments = moments(problem, equations, &blocks)?;
+        let mut blocks = RegressionBlocks::new(&model, problem.law)?;
+        let moments = training_moments(problem, equations, &blocks)?;
         // The prior may set coefficients of the model, so that the limits are built after it.
-        if let Some(all) = merged(&moments, |_| true) {
-            problem.measure.hold(&mut blocks, &mut model, &all)?;
+        if let Some(all) = merge_trials(&moments, |_| true) {
+            problem.measure.apply_to(&mut blocks, &mut model, &all)?;
         }
-        let limits = limits(problem, &model)?;
+        let limits = coefficient_limits(problem, &model)?;
         Ok(Self { family, model, blocks, equations, moments, limits })
     }
 
@@ -68,16 +68,16 @@ impl Variant {
     /// Returns an error with the limits that cannot be kept together.
     pub fn solve(
         &self,
-        fold: &Fold<'_>,
-        choices: &Choices,
-    ) -> Result<BTreeMap<String, Fitted>, LimitError> {
+        fold: &RegressionFold<'_>,
+        choices: &RidgeChoices,
+    ) -> Result<BTreeMap<String, FittedCoefficient>, LimitError> {
         let mut fitted = fold.solve(choices);
         let Some(limits) = &self.limits else { return Ok(fitted) };
-        let (names, curvature) = fold.curvature(choices);
+        let (names, curvature) = fold.solution_curvature(choices);
         let solution = fitted.iter().map(|(name, fitted)| (name.clone(), fitted.value)).collect();
         let prior = |name: &str| fitted.get(name).map_or(0.0, |fitted| fitted.prior_deviation);
         // Standard errors remain those of the unconstrained solution.
-        let nearest = limits.nearest(&solution, &names, &curvature, &prior)?;
+        let nearest = limits.nearest_coefficients(&solution, &names, &curvature, &prior)?;
         nearest.into_iter().for_each(|(name, value)| {
             fitted.get_mut(&name).into_iter().for_each(|fitted| fitted.value = value);
         });
@@ -88,8 +88,11 @@ impl Variant {
     ///
     /// # Errors
     /// Returns an error if the trials have no sample.
-    pub fn together(&self, keep: impl Fn(usize) -> bool) -> Result<Vec<Moments>, RefineError> {
-        merged(&self.moments, keep)
+    pub fn merged_moments(
+        &self,
+        keep: impl Fn(usize) -> bool,
+    ) -> Result<Vec<RegressionMoments>, RefineError> {
+        merge_trials(&self.moments, keep)
             .ok_or_else(|| RefineError::Data("the trials have no sample".into()))
     }
 
@@ -103,28 +106,30 @@ impl Variant {
     }
 
     /// Joint errors of a ridge's coefficients on all trials.
-    pub fn errors(
+    pub fn ridge_errors(
         &self,
         training: &[&Trial],
-        choices: &Choices,
+        choices: &RidgeChoices,
     ) -> Result<Option<CoefficientErrors>, RefineError> {
-        let Some(all) = merged(&self.moments, |_| true) else { return Ok(None) };
-        errors(&self.blocks, &all, &self.rows(training)?, &self.model, choices).map(Some)
+        let Some(all) = merge_trials(&self.moments, |_| true) else { return Ok(None) };
+        posterior_errors(&self.blocks, &all, &self.sequenced_rows(training)?, &self.model, choices)
+            .map(Some)
     }
 
     /// The rows behind the statistics. Differences of neighbouring samples share most of their
     /// information: they are merged over the time of a difference.
-    fn rows(&self, training: &[&Trial]) -> Result<SequencedRows, RefineError> {
+    fn sequenced_rows(&self, training: &[&Trial]) -> Result<SequencedRows, RefineError> {
         let parts = |trial: &&Trial| {
-            trial.segments().into_iter().map(|part| slice(trial, part)).collect::<Vec<_>>()
+            trial.segments().into_iter().map(|part| trial_slice(trial, part)).collect::<Vec<_>>()
         };
         let parts: Vec<Trial> =
             training.iter().flat_map(parts).filter(|part| part.len() > 1).collect();
-        let one = |part: &Trial| self.equations.tables(&self.blocks, part);
-        let tables: Vec<Vec<Table>> = parts.par_iter().map(one).collect::<Result<_, _>>()?;
+        let one = |part: &Trial| self.equations.regression_tables(&self.blocks, part);
+        let tables: Vec<Vec<RegressionTable>> =
+            parts.par_iter().map(one).collect::<Result<_, _>>()?;
         // All trials are assumed to have the sampling interval of the first part.
         let dependent = self.equations.dependent_rows(parts.first().map_or(1.0, Trial::interval_s));
-        Ok(rows(&self.blocks, &tables, dependent, self.equations.are_differences()))
+        Ok(sequence_rows(&self.blocks, &tables, dependent, self.equations.are_differences()))
     }
 
     /// Returns the training set of each fold, with its trials held out; a single trial is fitted
@@ -132,14 +137,17 @@ impl Variant {
     ///
     /// # Errors
     /// Returns an error if a fold has no sample.
-    pub fn folds(&self, problem: &Problem<'_>) -> Result<Vec<Fold<'_>>, RefineError> {
+    pub fn training_folds(
+        &self,
+        problem: &RefinementProblem<'_>,
+    ) -> Result<Vec<RegressionFold<'_>>, RefineError> {
         let nothing = || RefineError::Data("a fold has no sample".into());
         let one = |fold: usize| {
-            let training = merged(&self.moments, |trial| problem.is_fitted(trial, fold))
+            let training = merge_trials(&self.moments, |trial| problem.is_fitted(trial, fold))
                 .ok_or_else(nothing)?;
-            let left_out = merged(&self.moments, |trial| problem.fold_of(trial) == fold)
+            let left_out = merge_trials(&self.moments, |trial| problem.fold_of(trial) == fold)
                 .ok_or_else(nothing)?;
-            Ok(Fold::new(&self.blocks, &self.model, &training, &left_out))
+            Ok(RegressionFold::new(&self.blocks, &self.model, &training, &left_out))
         };
         (0..problem.fold_count()).into_par_iter().map(one).collect()
     }
@@ -148,21 +156,21 @@ impl Variant {
     /// gives no information on roll, so that its strength is the one with the greatest marginal
     /// likelihood on all training samples; held-out windows could choose it only if every fold kept
     /// something that excites roll. `roll` multiplies this strength.
-    pub fn common_choices(&self, lambda: f64, roll: f64) -> Result<Choices, RefineError> {
+    pub fn common_choices(&self, lambda: f64, roll: f64) -> Result<RidgeChoices, RefineError> {
         let blocks = &self.blocks.blocks;
         let [lambda_min, lambda_max] = SELECTION.roll_strengths;
-        let free = Range { lambda_min, lambda_max, alpha_max: 0.0 };
+        let free = TuningRange { lambda_min, lambda_max, alpha_max: 0.0 };
         // `tuned` is read for roll only, so that it may be empty for laws without roll.
         let tuned = if blocks.iter().any(|block| block.axes.contains(&Axis::K)) {
             most_likely(
                 &self.blocks,
-                &self.together(|_| true)?,
+                &self.merged_moments(|_| true)?,
                 &self.model,
                 &free,
                 SELECTION.roll_strength_count,
             )
         } else {
-            Choices::new()
+            RidgeChoices::new()
         };
         let of_axis = |b: usize, (target, axis): (usize, &Axis)| match axis {
             Axis::K => RidgeChoice { lambda: roll * tuned[b][target].lambda, alpha: 0.0 },
@@ -179,16 +187,16 @@ impl Variant {
 ///
 /// # Errors
 /// Returns the error of the first omitted family if none remains.
-pub(super) fn variants(
-    problem: &Problem<'_>,
-    equations: Equations,
-) -> Result<Vec<Variant>, RefineError> {
+pub(super) fn family_variants(
+    problem: &RefinementProblem<'_>,
+    equations: EquationForm,
+) -> Result<Vec<TermVariant>, RefineError> {
     let families = &problem.settings.families;
-    let families = if families.is_empty() { &[Family::Own][..] } else { families };
+    let families = if families.is_empty() { &[TermFamily::Own][..] } else { families };
     let (mut variants, mut lacking) = (Vec::new(), None);
     for &family in families {
-        let Some(model) = family.of(&problem.transferred, problem.law) else { continue };
-        match Variant::new(problem, equations, family, model) {
+        let Some(model) = family.extend_model(&problem.transferred, problem.law) else { continue };
+        match TermVariant::new(problem, equations, family, model) {
             Ok(variant) => variants.push(variant),
             // Too little data for one family is no error as long as another one can be fitted.
             Err(error @ RefineError::Data(_)) => drop(lacking.get_or_insert(error)),
@@ -199,7 +207,10 @@ pub(super) fn variants(
 }
 
 /// The limits that the settings set on a model's coefficients, over the speeds of the whole trials.
-fn limits(problem: &Problem<'_>, model: &Model) -> Result<Option<CoefficientLimits>, RefineError> {
+fn coefficient_limits(
+    problem: &RefinementProblem<'_>,
+    model: &Model,
+) -> Result<Option<CoefficientLimits>, RefineError> {
     let asked = &problem.settings.constraints;
     if asked.is_empty() {
         return Ok(None);
@@ -216,16 +227,17 @@ fn limits(problem: &Problem<'_>, model: &Model) -> Result<Option<CoefficientLimi
 }
 
 /// Statistics by trial and regression.
-fn moments(
-    problem: &Problem<'_>,
-    equations: Equations,
-    blocks: &Blocks,
-) -> Result<Vec<Vec<Moments>>, RefineError> {
-    let one = |trial: &&Trial| equations.moments(blocks, trial);
-    let moments: Vec<Vec<Moments>> =
+fn training_moments(
+    problem: &RefinementProblem<'_>,
+    equations: EquationForm,
+    blocks: &RegressionBlocks,
+) -> Result<Vec<Vec<RegressionMoments>>, RefineError> {
+    let one = |trial: &&Trial| equations.regression_moments(blocks, trial);
+    let moments: Vec<Vec<RegressionMoments>> =
         problem.training.par_iter().map(one).collect::<Result<_, _>>()?;
     let samples: f64 = moments.iter().map(|m| m.first().map_or(0.0, |m| m.count)).sum();
-    let widest = blocks.blocks.iter().map(super::Block::regressors).max().unwrap_or(0) as f64;
+    let widest =
+        blocks.blocks.iter().map(super::RegressionBlock::regressor_count).max().unwrap_or(0) as f64;
     // With the prior of a source of another law, or of a population, rows may be fewer than
     // coefficients.
     let least = if problem.measure.is_source() { 1.0 } else { equations.least_samples(widest) };
@@ -233,7 +245,7 @@ fn moments(
         let message = format!(
             "the trials give {samples:.0} {} for {widest} coefficients an axis, at least {least} \
              are needed: give more or longer trials",
-            equations.rows()
+            equations.describe_rows()
         );
         return Err(RefineError::Data(message));
     }

@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 use sistership_model::Model;
 use sistership_model::trial::Trial;
 
-use super::candidate::{CandidateFit, best};
-use super::family::Family;
+use super::candidate::{CandidateFit, best_candidate};
+use super::family::TermFamily;
 use super::fold_variance::fold_variance;
-use super::problem::Problem;
-use super::variant::Variant;
+use super::problem::RefinementProblem;
+use super::variant::TermVariant;
 
 /// Extent of a refinement before its candidates are evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Extent {
+pub enum RefinementExtent {
     /// The transferred source alone.
     Source,
     /// All candidates of the estimator.
@@ -24,7 +24,7 @@ pub enum Extent {
 /// of the measured channels over all training trials, so that candidates on the same trials can be
 /// compared whatever their source, law and estimator.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Weighed {
+pub struct CandidateEvaluation {
     /// Name for reports.
     pub step: String,
     /// Standardised mean squared error, the geometric mean over restart intervals; none if a
@@ -41,7 +41,7 @@ pub struct Weighed {
     /// Number of fitted coefficients; 0 for the transferred source.
     pub coefficients: usize,
     /// Family of terms and strength of the prior, for a ridge.
-    pub ridge: Option<(Family, f64)>,
+    pub ridge: Option<(TermFamily, f64)>,
     /// Model of each fold, fitted without it; empty for the transferred source, and if trials were
     /// held out in parts.
     pub folds: Vec<FoldModel>,
@@ -58,9 +58,9 @@ pub struct FoldModel {
     pub held_out: Vec<usize>,
 }
 
-impl Weighed {
+impl CandidateEvaluation {
     /// Returns the evaluation of a candidate that cannot be fitted.
-    pub fn refused(reason: String) -> Self {
+    pub fn with_refusal(reason: String) -> Self {
         Self {
             step: String::new(),
             error: None,
@@ -77,40 +77,47 @@ impl Weighed {
 
 /// Returns the evaluations of the source and of the best other candidate; if all others diverge, of
 /// the first of them.
-pub(super) fn weighed(
-    problem: &Problem<'_>,
+pub(super) fn evaluate_best(
+    problem: &RefinementProblem<'_>,
     candidates: &[CandidateFit],
-    variants: &[Variant],
-) -> Vec<Weighed> {
+    variants: &[TermVariant],
+) -> Vec<CandidateEvaluation> {
     let Some((source, fits)) = candidates.split_first() else { return Vec::new() };
-    let fit = best(fits).and_then(|index| fits.get(index)).or_else(|| fits.first());
-    std::iter::once(source).chain(fit).map(|candidate| one(problem, candidate, variants)).collect()
+    let fit = best_candidate(fits).and_then(|index| fits.get(index)).or_else(|| fits.first());
+    std::iter::once(source)
+        .chain(fit)
+        .map(|candidate| evaluate_candidate(problem, candidate, variants))
+        .collect()
 }
 
 /// Evaluation of one candidate.
-fn one(problem: &Problem<'_>, candidate: &CandidateFit, variants: &[Variant]) -> Weighed {
+fn evaluate_candidate(
+    problem: &RefinementProblem<'_>,
+    candidate: &CandidateFit,
+    variants: &[TermVariant],
+) -> CandidateEvaluation {
     let ridge =
         |(place, _): (usize, _)| Some((variants.get(place)?.family, candidate.option.lambda_min?));
-    Weighed {
+    CandidateEvaluation {
         step: candidate.option.step.clone(),
         error: candidate.option.error.filter(|error| error.is_finite()),
         shortest: candidate.horizons.first().map(|horizon| horizon.mean),
-        each: by_trial(problem, &candidate.each),
+        each: errors_by_trial(problem, &candidate.each),
         // The source is no fit, so that no trial affects it.
         variance: match candidate.size {
             0 => Some(0.0),
             _ => fold_variance(problem, &candidate.left_out),
         },
         coefficients: candidate.size,
-        ridge: candidate.solution.ridge().and_then(ridge),
-        folds: folds(problem, &candidate.left_out),
+        ridge: candidate.solution.ridge_choices().and_then(ridge),
+        folds: fold_models(problem, &candidate.left_out),
         reason: candidate.option.reason.clone(),
     }
 }
 
 /// Models of the folds with the trials that each was fitted without; none if trials were held out
 /// in parts, since every model has then seen a part of each trial.
-fn folds(problem: &Problem<'_>, left_out: &[Model]) -> Vec<FoldModel> {
+fn fold_models(problem: &RefinementProblem<'_>, left_out: &[Model]) -> Vec<FoldModel> {
     if problem.training.len() != problem.whole.len() || problem.training.len() < 2 {
         return Vec::new();
     }
@@ -124,7 +131,7 @@ fn folds(problem: &Problem<'_>, left_out: &[Model]) -> Vec<FoldModel> {
 
 /// Mean errors by trial. Parts of one trial count together, since they depend on each other, unless
 /// only parts of one or two trials can show a scatter.
-fn by_trial(problem: &Problem<'_>, each: &[f64]) -> BTreeMap<String, f64> {
+fn errors_by_trial(problem: &RefinementProblem<'_>, each: &[f64]) -> BTreeMap<String, f64> {
     if problem.settings.in_parts {
         let named = |(k, (trial, error)): (usize, (&&Trial, &f64))| {
             (format!("{} ({})", trial.name, k + 1), *error)

@@ -2,7 +2,7 @@
 
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::Ship;
-use sistership_simulation::recorded::{Recorded, ReplaySettings, replay_all};
+use sistership_simulation::recorded::{RecordedTrial, ReplaySettings, replay_trials};
 use sistership_simulation::state::StateVector;
 
 use super::error::HorizonError;
@@ -13,17 +13,17 @@ use super::error::HorizonError;
 /// # Errors
 /// Returns an error that names the missing channel, or the sample from which the foundation cannot
 /// be simulated.
-pub fn ahead(
+pub fn predict_tracks(
     ship: &Ship,
     trial: &Trial,
     starts: &[usize],
     steps: usize,
 ) -> Result<Vec<Vec<StateVector>>, HorizonError> {
-    let parts: Vec<Trial> = starts.iter().map(|k| part(trial, *k, steps)).collect();
-    let recorded: Vec<Recorded<'_>> =
-        parts.iter().map(|trial| Recorded { trial, coefficients: &[] }).collect();
-    let replays = replay_all(ship, &recorded, &ReplaySettings::default())?;
-    let of = |(replay, k): (sistership_simulation::recorded::Replay, &usize)| {
+    let parts: Vec<Trial> = starts.iter().map(|k| constant_wind_part(trial, *k, steps)).collect();
+    let recorded: Vec<RecordedTrial<'_>> =
+        parts.iter().map(|trial| RecordedTrial { trial, coefficients: &[] }).collect();
+    let replays = replay_trials(ship, &recorded, &ReplaySettings::default())?;
+    let of = |(replay, k): (sistership_simulation::recorded::TrialReplay, &usize)| {
         let (trial, t_s) = (trial.name.clone(), trial.t_s[*k]);
         // A track that ends early gives no example.
         if replay.stopped.is_some() || replay.track.states.len() != steps + 1 {
@@ -38,7 +38,7 @@ pub fn ahead(
 }
 
 /// Part of a trial with the wind of its first sample throughout.
-fn part(trial: &Trial, start: usize, steps: usize) -> Trial {
+fn constant_wind_part(trial: &Trial, start: usize, steps: usize) -> Trial {
     let own = start..=start + steps;
     let wind = [
         Channel::WindSpeed,

@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::state::{StateVector, at};
 
-use super::axes::Axes;
+use super::axes::ShipAxes;
 
 /// Encoding of the future orders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Told {
+pub enum OrderEncoding {
     /// Position, heading and velocities of the foundation at the end of the horizon: three numbers
     /// each, independent of the length of the horizon (Kanazawa 2023, sec. 3.1.1).
     End,
@@ -24,7 +24,7 @@ pub enum Told {
 }
 
 /// Motion, orders and, if recorded, apparent wind at a sample.
-pub fn present(trial: &Trial, k: usize) -> Vec<f64> {
+pub fn present_inputs(trial: &Trial, k: usize) -> Vec<f64> {
     let of = |channel: Channel| trial.channel(channel).map(|column| column[k]);
     let known = [Channel::U, Channel::V, Channel::R, Channel::N, Channel::Delta];
     let mut row: Vec<f64> = known.into_iter().filter_map(of).collect();
@@ -49,13 +49,13 @@ fn apparent_wind(trial: &Trial, k: usize) -> Option<[f64; 2]> {
 }
 
 /// Position, heading and velocities at the end of a foundation's track, in the axes of its start.
-pub fn end(axes: &Axes, last: &StateVector) -> [f64; 6] {
-    let [ahead, aside] = axes.seen(last[at::X], last[at::Y]);
-    [ahead, aside, axes.turned(last[at::PSI]), last[at::U], last[at::V], last[at::R]]
+pub fn end_state(axes: &ShipAxes, last: &StateVector) -> [f64; 6] {
+    let [ahead, aside] = axes.to_ship_axes(last[at::X], last[at::Y]);
+    [ahead, aside, axes.relative_heading(last[at::PSI]), last[at::U], last[at::V], last[at::R]]
 }
 
 /// Means of revolutions and rudder angle over parts of a horizon.
-pub fn orders(trial: &Trial, k: usize, steps: usize, parts: usize) -> Vec<f64> {
+pub fn mean_orders(trial: &Trial, k: usize, steps: usize, parts: usize) -> Vec<f64> {
     let channels = [Channel::N, Channel::Delta];
     let mut row = Vec::with_capacity(2 * parts);
     for column in channels.into_iter().filter_map(|channel| trial.channel(channel)) {

@@ -12,10 +12,10 @@ mod predictor;
 mod scaling;
 mod training;
 
-pub use ahead::ahead;
-pub use axes::Axes;
+pub use ahead::predict_tracks;
+pub use axes::ShipAxes;
 pub use error::HorizonError;
-pub use example::{Example, OneShot};
-pub use inputs::Told;
-pub use predictor::Predictor;
-pub use training::{HorizonTraining, train};
+pub use example::{OneShotSettings, TrackExample};
+pub use inputs::OrderEncoding;
+pub use predictor::TrackPredictor;
+pub use training::{HorizonTraining, train_predictor};

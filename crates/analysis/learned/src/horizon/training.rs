@@ -4,18 +4,20 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::error::HorizonError;
-use super::example::Example;
-use super::predictor::Predictor;
-use super::scaling::Scaling;
-use crate::draws::Draws;
-use crate::recurrent::{Adam, Cell, Memory, Recurrent, Shape};
+use super::example::TrackExample;
+use super::predictor::TrackPredictor;
+use super::scaling::ColumnScaling;
+use crate::draws::RandomStream;
+use crate::recurrent::{
+    AdamOptimizer, NetworkMemory, NetworkShape, RecurrentCell, RecurrentNetwork,
+};
 
 /// Settings of the training of a predictor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HorizonTraining {
     /// Kind of cell; an RNN with a memory of one sample is a perceptron of three hidden layers.
-    pub cell: Cell,
+    pub cell: RecurrentCell,
     /// Number of neurons of each layer.
     pub width: usize,
     /// Largest number of epochs.
@@ -34,7 +36,7 @@ pub struct HorizonTraining {
 const FEWEST: usize = 20;
 
 /// Example with scaled inputs and target.
-struct Scaled {
+struct ScaledExample {
     inputs: Vec<Vec<f64>>,
     target: Vec<f64>,
 }
@@ -44,44 +46,44 @@ struct Scaled {
 ///
 /// # Errors
 /// Returns an error if there are too few examples, or if their sizes do not match.
-pub fn train(
-    seen: &[Example],
-    kept: &[Example],
+pub fn train_predictor(
+    seen: &[TrackExample],
+    kept: &[TrackExample],
     training: &HorizonTraining,
-    start: Option<&Predictor>,
-) -> Result<Predictor, HorizonError> {
+    start: Option<&TrackPredictor>,
+) -> Result<TrackPredictor, HorizonError> {
     if seen.len() < FEWEST || kept.is_empty() {
         return Err(HorizonError::Few { found: seen.len().min(kept.len()), wanted: FEWEST });
     }
-    let first = start.cloned().unwrap_or_else(|| drawn(seen, training));
-    check(seen, &first)?;
-    check(kept, &first)?;
-    let (seen, kept) = (scaled(seen, &first), scaled(kept, &first));
-    Ok(descend(first, &seen, &kept, training))
+    let first = start.cloned().unwrap_or_else(|| random_predictor(seen, training));
+    check_sizes(seen, &first)?;
+    check_sizes(kept, &first)?;
+    let (seen, kept) = (scale_examples(seen, &first), scale_examples(kept, &first));
+    Ok(minimize_error(first, &seen, &kept, training))
 }
 
 /// Predictor with random weights, and the scaling of the training examples.
-fn drawn(seen: &[Example], training: &HorizonTraining) -> Predictor {
+fn random_predictor(seen: &[TrackExample], training: &HorizonTraining) -> TrackPredictor {
     let rows: Vec<&[f64]> = seen.iter().flat_map(|one| &one.inputs).map(Vec::as_slice).collect();
     // Targets are errors of the foundation, not positions.
-    let targets: Vec<Vec<f64>> = seen.iter().map(Example::lacking).collect();
+    let targets: Vec<Vec<f64>> = seen.iter().map(TrackExample::foundation_error).collect();
     let targets: Vec<&[f64]> = targets.iter().map(Vec::as_slice).collect();
-    let (inputs, answers) = (Scaling::of(&rows), Scaling::of(&targets));
-    let shape = Shape {
+    let (inputs, answers) = (ColumnScaling::from_rows(&rows), ColumnScaling::from_rows(&targets));
+    let shape = NetworkShape {
         cell: training.cell,
-        memory: Memory::All,
+        memory: NetworkMemory::All,
         inputs: inputs.width(),
         width: training.width,
         outputs: answers.width(),
     };
-    let network = Recurrent::drawn(shape, training.seed);
-    Predictor { network, inputs, answers, spread_m: Vec::new(), validation: Vec::new() }
+    let network = RecurrentNetwork::with_random_weights(shape, training.seed);
+    TrackPredictor { network, inputs, answers, spread_m: Vec::new(), validation: Vec::new() }
 }
 
 /// Checks that the examples fit the predictor.
-fn check(examples: &[Example], predictor: &Predictor) -> Result<(), HorizonError> {
+fn check_sizes(examples: &[TrackExample], predictor: &TrackPredictor) -> Result<(), HorizonError> {
     let (inputs, answers) = (predictor.inputs.width(), predictor.answers.width());
-    let wrong = |one: &Example| {
+    let wrong = |one: &TrackExample| {
         let row = one.inputs.iter().map(Vec::len).find(|found| *found != inputs);
         let row = row.map(|found| HorizonError::Shape { found, wanted: inputs });
         let found = one.sailed.len();
@@ -90,30 +92,30 @@ fn check(examples: &[Example], predictor: &Predictor) -> Result<(), HorizonError
     examples.iter().find_map(wrong).map_or(Ok(()), Err)
 }
 
-fn scaled(examples: &[Example], predictor: &Predictor) -> Vec<Scaled> {
-    let of = |one: &Example| Scaled {
-        inputs: one.inputs.iter().map(|row| predictor.inputs.scaled(row)).collect(),
-        target: predictor.answers.scaled(&one.lacking()),
+fn scale_examples(examples: &[TrackExample], predictor: &TrackPredictor) -> Vec<ScaledExample> {
+    let of = |one: &TrackExample| ScaledExample {
+        inputs: one.inputs.iter().map(|row| predictor.inputs.scale_row(row)).collect(),
+        target: predictor.answers.scale_row(&one.foundation_error()),
     };
     examples.iter().map(of).collect()
 }
 
 /// Minimises the mean squared error, and keeps the network of least validation error.
-fn descend(
-    mut predictor: Predictor,
-    seen: &[Scaled],
-    kept: &[Scaled],
+fn minimize_error(
+    mut predictor: TrackPredictor,
+    seen: &[ScaledExample],
+    kept: &[ScaledExample],
     training: &HorizonTraining,
-) -> Predictor {
-    let mut adam = Adam::new(predictor.network.numbers.len());
-    let mut draws = Draws::new(training.seed, 1);
+) -> TrackPredictor {
+    let mut adam = AdamOptimizer::new(predictor.network.numbers.len());
+    let mut draws = RandomStream::new(training.seed, 1);
     let mut network = predictor.network.clone();
     // The starting network counts as the best so far, so pre-training is never made worse.
     let (mut best, mut last_gain) = (mean_square(&network, kept), 0);
     for epoch in 1..=training.epochs {
-        for batch in draws.some_of(seen.len(), seen.len()).chunks(training.batch.max(1)) {
-            let gradient = gradient(&network, seen, batch);
-            adam.step(&mut network.numbers, &gradient, training.rate);
+        for batch in draws.sample_indices(seen.len(), seen.len()).chunks(training.batch.max(1)) {
+            let gradient = batch_gradient(&network, seen, batch);
+            adam.apply_gradient(&mut network.numbers, &gradient, training.rate);
         }
         let loss = mean_square(&network, kept);
         predictor.validation.push(loss);
@@ -125,7 +127,7 @@ fn descend(
             break;
         }
     }
-    predictor.spread_m = spread(&predictor, kept);
+    predictor.spread_m = validation_rms(&predictor, kept);
     predictor
 }
 
@@ -134,17 +136,17 @@ const CHUNK: usize = 8;
 
 /// Gradient of the mean squared error of a batch. Fixed parts are summed in a fixed order, so the
 /// result does not depend on the threads.
-fn gradient(network: &Recurrent, seen: &[Scaled], batch: &[u32]) -> Vec<f64> {
+fn batch_gradient(network: &RecurrentNetwork, seen: &[ScaledExample], batch: &[u32]) -> Vec<f64> {
     let share = 2.0 / (batch.len() * network.shape.outputs) as f64;
     let part = |part: &[u32]| {
         let mut gradient = vec![0.0; network.numbers.len()];
         for k in part {
-            let Scaled { inputs, target } = &seen[*k as usize];
-            let unrolled = network.unrolled(inputs.iter().map(Vec::as_slice));
+            let ScaledExample { inputs, target } = &seen[*k as usize];
+            let unrolled = network.unroll_steps(inputs.iter().map(Vec::as_slice));
             // Derivative of the mean over examples and outputs.
             let off = unrolled.outputs.iter().zip(target);
             let blame: Vec<f64> = off.map(|(answer, target)| share * (answer - target)).collect();
-            network.back(&unrolled, &blame, &mut gradient);
+            network.propagate_back(&unrolled, &blame, &mut gradient);
         }
         gradient
     };
@@ -157,9 +159,9 @@ fn gradient(network: &Recurrent, seen: &[Scaled], batch: &[u32]) -> Vec<f64> {
 }
 
 /// Mean squared error of each output over the examples, scaled.
-fn squares(network: &Recurrent, examples: &[Scaled]) -> Vec<f64> {
-    let one = |Scaled { inputs, target }: &Scaled| -> Vec<f64> {
-        let outputs = network.unrolled(inputs.iter().map(Vec::as_slice)).outputs;
+fn squared_errors(network: &RecurrentNetwork, examples: &[ScaledExample]) -> Vec<f64> {
+    let one = |ScaledExample { inputs, target }: &ScaledExample| -> Vec<f64> {
+        let outputs = network.unroll_steps(inputs.iter().map(Vec::as_slice)).outputs;
         outputs.iter().zip(target).map(|(answer, target)| (answer - target).powi(2)).collect()
     };
     let each: Vec<Vec<f64>> = examples.par_iter().map(one).collect();
@@ -170,13 +172,13 @@ fn squares(network: &Recurrent, examples: &[Scaled]) -> Vec<f64> {
     sums
 }
 
-fn mean_square(network: &Recurrent, examples: &[Scaled]) -> f64 {
-    squares(network, examples).iter().sum::<f64>() / network.shape.outputs as f64
+fn mean_square(network: &RecurrentNetwork, examples: &[ScaledExample]) -> f64 {
+    squared_errors(network, examples).iter().sum::<f64>() / network.shape.outputs as f64
 }
 
 /// Root mean squared error of each output, m.
-fn spread(predictor: &Predictor, kept: &[Scaled]) -> Vec<f64> {
-    let squares = squares(&predictor.network, kept);
+fn validation_rms(predictor: &TrackPredictor, kept: &[ScaledExample]) -> Vec<f64> {
+    let squares = squared_errors(&predictor.network, kept);
     let scales = predictor.answers.scales();
     squares.iter().zip(scales).map(|(square, scale)| scale * square.sqrt()).collect()
 }

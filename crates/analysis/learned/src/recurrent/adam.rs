@@ -6,20 +6,20 @@ const DECAYS: [f64; 2] = [0.9, 0.999];
 const EPSILON: f64 = 1e-8;
 
 /// Optimiser state: moments of the gradient.
-pub struct Adam {
+pub struct AdamOptimizer {
     moments: Vec<[f64; 2]>,
     /// Bias of the moments relative to their full size: powers of the decay rates.
     lacks: [f64; 2],
 }
 
-impl Adam {
+impl AdamOptimizer {
     /// Creates the state for `count` numbers, with zero moments.
     pub fn new(count: usize) -> Self {
         Self { moments: vec![[0.0; 2]; count], lacks: [1.0; 2] }
     }
 
     /// Applies one step against a gradient, with the given learning rate.
-    pub fn step(&mut self, numbers: &mut [f64], gradient: &[f64], rate: f64) {
+    pub fn apply_gradient(&mut self, numbers: &mut [f64], gradient: &[f64], rate: f64) {
         self.lacks.iter_mut().zip(DECAYS).for_each(|(lack, decay)| *lack *= decay);
         // The moments start at zero; this corrects their bias.
         let full = self.lacks.map(|lack| 1.0 - lack);

@@ -1,20 +1,26 @@
 //! Gradient of the loss on simulated states, and its propagation back through a simulation.
 
-use super::motion::Motion;
-use super::scales::Scales;
-use super::simulated::Simulated;
+use super::motion::RecordedMotion;
+use super::scales::MotionScales;
+use super::simulated::SimulatedMotion;
 
 /// Loss and its derivatives with respect to each simulated state.
-pub struct Blame {
+pub struct LossGradient {
     pub loss: f64,
     pub positions: Vec<[f64; 3]>,
     pub velocities: Vec<[f64; 3]>,
 }
 
-impl Blame {
+impl LossGradient {
     /// Computes the weighted squared differences between a simulation and the recorded motion, and
     /// their derivatives with respect to the simulated states.
-    pub fn of(run: &Simulated, motion: &Motion, start: usize, scales: &Scales, share: f64) -> Self {
+    pub fn from_states(
+        run: &SimulatedMotion,
+        motion: &RecordedMotion,
+        start: usize,
+        scales: &MotionScales,
+        share: f64,
+    ) -> Self {
         let mut loss = 0.0;
         let mut one = |simulated: &[f64; 3], recorded: &[f64; 3], scales: &[f64; 3]| {
             std::array::from_fn(|axis| {
@@ -35,7 +41,7 @@ impl Blame {
 
     /// Adds to the derivatives at a step those that act through the next step: the transposed
     /// Jacobian of Eqs. 21 to 23.
-    pub fn through_positions(&mut self, run: &Simulated, step: usize, dt: f64) {
+    pub fn propagate_step(&mut self, run: &SimulatedMotion, step: usize, dt: f64) {
         let ([_, _, psi], [u, v, _]) = (run.positions[step], run.velocities[step]);
         let (sin, cos) = psi.sin_cos();
         // Derivatives at the next step. Euler's method has state(k + 1) = state(k) + dt

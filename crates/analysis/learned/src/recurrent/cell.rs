@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Kind of recurrent cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Cell {
+pub enum RecurrentCell {
     /// Simple recurrent cell without offset: zero input gives zero output (Wakita 2022, Eq. 8).
     Rnn,
     /// Long short-term memory with a forget gate (Gers and others 2000).
@@ -35,36 +35,36 @@ pub struct CellStep {
 }
 
 /// Indices of the blocks of an LSTM: input gate, forget gate, output gate, and candidate memory.
-const ENTERS: usize = 0;
-const STAYS: usize = 1;
-const SHOWN: usize = 2;
-const NEW: usize = 3;
+const INPUT_GATE: usize = 0;
+const FORGET_GATE: usize = 1;
+const OUTPUT_GATE: usize = 2;
+const CANDIDATE_MEMORY: usize = 3;
 
 /// Activation of a neuron at its weighted sum, and the derivative there.
 #[inline(always)]
-pub fn neuron(sum: f64) -> (f64, f64) {
+pub fn activate_neuron(sum: f64) -> (f64, f64) {
     let root = 1.0 / (1.0 + sum * sum).sqrt();
     (sum * root, root * root * root)
 }
 
 /// Activation of a gate, between 0 and 1, and the derivative there.
 #[inline(always)]
-fn gate(sum: f64) -> (f64, f64) {
-    let (answer, slope) = neuron(sum);
+fn activate_gate(sum: f64) -> (f64, f64) {
+    let (answer, slope) = activate_neuron(sum);
     // Maps the activation from (-1, 1) to (0, 1).
     (0.5 + 0.5 * answer, 0.5 * slope)
 }
 
 impl CellState {
     /// State of zeros: no memory of the past.
-    pub fn empty(width: usize) -> Self {
+    pub fn zeros(width: usize) -> Self {
         Self { answer: vec![0.0; width], kept: vec![0.0; width] }
     }
 }
 
-impl Cell {
+impl RecurrentCell {
     /// Number of blocks of neurons.
-    pub(super) fn blocks(self) -> usize {
+    pub(super) fn block_count(self) -> usize {
         match self {
             Self::Rnn => 1,
             Self::Lstm => 4,
@@ -73,33 +73,37 @@ impl Cell {
 
     /// Number of parameters of one block: for each neuron, weights of inputs and of outputs, and a
     /// bias.
-    fn block(inputs: usize, width: usize) -> usize {
+    fn block_size(inputs: usize, width: usize) -> usize {
         width * (inputs + width + 1)
     }
 
     /// Number of parameters of a cell.
-    pub fn numbers(self, inputs: usize, width: usize) -> usize {
-        self.blocks() * Self::block(inputs, width)
+    pub fn parameter_count(self, inputs: usize, width: usize) -> usize {
+        self.block_count() * Self::block_size(inputs, width)
     }
 
     /// Activation of a neuron of a block, and its derivative: the blocks of an LSTM are gates,
     /// except the candidate memory.
-    fn answer_of(self, block: usize, sum: f64) -> (f64, f64) {
-        if self == Self::Lstm && block != NEW { gate(sum) } else { neuron(sum) }
+    fn activate_block(self, block: usize, sum: f64) -> (f64, f64) {
+        if self == Self::Lstm && block != CANDIDATE_MEMORY {
+            activate_gate(sum)
+        } else {
+            activate_neuron(sum)
+        }
     }
 
     /// Replaces the weighted sums of a block's neurons by their activations.
     #[inline(always)]
-    pub(super) fn answers<const N: usize>(self, block: usize, sums: &mut [f64; N]) {
-        match self == Self::Lstm && block != NEW {
-            true => sums.iter_mut().for_each(|sum| *sum = gate(*sum).0),
-            false => sums.iter_mut().for_each(|sum| *sum = neuron(*sum).0),
+    pub(super) fn activate_sums<const N: usize>(self, block: usize, sums: &mut [f64; N]) {
+        match self == Self::Lstm && block != CANDIDATE_MEMORY {
+            true => sums.iter_mut().for_each(|sum| *sum = activate_gate(*sum).0),
+            false => sums.iter_mut().for_each(|sum| *sum = activate_neuron(*sum).0),
         }
     }
 
     /// Evaluates one step from the state before it. Returns the next state, and what the gradient
     /// needs.
-    pub fn forward(
+    pub fn propagate_forward(
         self,
         numbers: &[f64],
         inputs: &[f64],
@@ -111,18 +115,21 @@ impl Cell {
             let neuron = |weights: &[f64]| {
                 let seen = inputs.iter().chain(&before.answer).zip(weights);
                 let sum = weights[row - 1] + seen.map(|(x, w)| x * w).sum::<f64>();
-                self.answer_of(block, sum)
+                self.activate_block(block, sum)
             };
             numbers.chunks_exact(row).map(neuron).collect()
         };
-        let blocks: Vec<Vec<(f64, f64)>> =
-            numbers.chunks_exact(Self::block(inputs.len(), width)).enumerate().map(one).collect();
-        let (state, squashed) = self.state(numbers, row, &blocks, before);
+        let blocks: Vec<Vec<(f64, f64)>> = numbers
+            .chunks_exact(Self::block_size(inputs.len(), width))
+            .enumerate()
+            .map(one)
+            .collect();
+        let (state, squashed) = self.next_state(numbers, row, &blocks, before);
         (state, CellStep { inputs: inputs.to_vec(), before: before.clone(), blocks, squashed })
     }
 
     /// State after a step, from the outputs of the blocks, with the activation of the memory.
-    fn state(
+    fn next_state(
         self,
         numbers: &[f64],
         row: usize,
@@ -134,7 +141,7 @@ impl Cell {
             Self::Rnn => {
                 // Subtracting the activation of the bias makes the output zero at zero input and
                 // state.
-                let bias = |k: usize| neuron(numbers[(k + 1) * row - 1]).0;
+                let bias = |k: usize| activate_neuron(numbers[(k + 1) * row - 1]).0;
                 let answer = (0..width).map(|k| blocks[0][k].0 - bias(k)).collect();
                 (CellState { answer, kept: vec![0.0; width] }, Vec::new())
             }
@@ -143,10 +150,13 @@ impl Cell {
                 let kept: Vec<f64> = (0..width)
                     // c = forget * c_before + input * candidate; the output is the output gate
                     // times its activation.
-                    .map(|k| of(STAYS, k) * before.kept[k] + of(ENTERS, k) * of(NEW, k))
+                    .map(|k| {
+                        of(FORGET_GATE, k) * before.kept[k]
+                            + of(INPUT_GATE, k) * of(CANDIDATE_MEMORY, k)
+                    })
                     .collect();
-                let squashed: Vec<(f64, f64)> = kept.iter().map(|x| neuron(*x)).collect();
-                let answer = (0..width).map(|k| of(SHOWN, k) * squashed[k].0).collect();
+                let squashed: Vec<(f64, f64)> = kept.iter().map(|x| activate_neuron(*x)).collect();
+                let answer = (0..width).map(|k| of(OUTPUT_GATE, k) * squashed[k].0).collect();
                 (CellState { answer, kept }, squashed)
             }
         }
@@ -155,7 +165,7 @@ impl Cell {
     /// Propagates error derivatives from the state after a step to the state before it and to the
     /// inputs, which are returned; derivatives with respect to the parameters are added to
     /// `gradient`.
-    pub fn backward(
+    pub fn propagate_back(
         self,
         numbers: &[f64],
         step: &CellStep,
@@ -163,7 +173,7 @@ impl Cell {
         gradient: &mut [f64],
     ) -> (CellState, Vec<f64>) {
         let width = after.answer.len();
-        let (sums, kept) = self.sums(step, &after);
+        let (sums, kept) = self.sum_derivatives(step, &after);
         let row = step.inputs.len() + width + 1;
         let mut seen = vec![0.0; row - 1];
         let rows = numbers.chunks_exact(row).zip(gradient.chunks_exact_mut(row));
@@ -182,7 +192,7 @@ impl Cell {
             // path.
             for (k, blame) in after.answer.iter().enumerate() {
                 let bias = (k + 1) * row - 1;
-                gradient[bias] -= blame * neuron(numbers[bias]).1;
+                gradient[bias] -= blame * activate_neuron(numbers[bias]).1;
             }
         }
         // The weights of a neuron are those of the inputs, then those of the cell's outputs.
@@ -192,7 +202,7 @@ impl Cell {
 
     /// Error derivatives with respect to the weighted sum of each neuron, and to the memory before
     /// the step.
-    fn sums(self, step: &CellStep, after: &CellState) -> (Vec<Vec<f64>>, Vec<f64>) {
+    fn sum_derivatives(self, step: &CellStep, after: &CellState) -> (Vec<Vec<f64>>, Vec<f64>) {
         let width = after.answer.len();
         let of = |block: usize, k: usize| step.blocks[block][k];
         if self == Self::Rnn {
@@ -203,12 +213,12 @@ impl Cell {
         let mut before = vec![0.0; width];
         for k in 0..width {
             // The memory acts on the error directly and through the output of the cell.
-            let kept = after.kept[k] + after.answer[k] * of(SHOWN, k).0 * step.squashed[k].1;
-            sums[SHOWN][k] = after.answer[k] * step.squashed[k].0 * of(SHOWN, k).1;
-            sums[STAYS][k] = kept * step.before.kept[k] * of(STAYS, k).1;
-            sums[ENTERS][k] = kept * of(NEW, k).0 * of(ENTERS, k).1;
-            sums[NEW][k] = kept * of(ENTERS, k).0 * of(NEW, k).1;
-            before[k] = kept * of(STAYS, k).0;
+            let kept = after.kept[k] + after.answer[k] * of(OUTPUT_GATE, k).0 * step.squashed[k].1;
+            sums[OUTPUT_GATE][k] = after.answer[k] * step.squashed[k].0 * of(OUTPUT_GATE, k).1;
+            sums[FORGET_GATE][k] = kept * step.before.kept[k] * of(FORGET_GATE, k).1;
+            sums[INPUT_GATE][k] = kept * of(CANDIDATE_MEMORY, k).0 * of(INPUT_GATE, k).1;
+            sums[CANDIDATE_MEMORY][k] = kept * of(INPUT_GATE, k).0 * of(CANDIDATE_MEMORY, k).1;
+            before[k] = kept * of(FORGET_GATE, k).0;
         }
         (sums, before)
     }

@@ -1,56 +1,56 @@
 //! Loss of one sequence and its gradient: on positions and velocities that the network simulates
 //! (Wakita 2022, Eq. 24), or on accelerations (Eq. 17).
 
-use super::blame::Blame;
-use super::motion::Motion;
-use super::network::{Memory, Recurrent, Unrolled};
-use super::scales::Scales;
-use super::sequence::{Loss, SequenceTraining};
-use super::simulated::Simulated;
+use super::blame::LossGradient;
+use super::motion::RecordedMotion;
+use super::network::{NetworkMemory, RecurrentNetwork, UnrolledNetwork};
+use super::scales::MotionScales;
+use super::sequence::{LossKind, SequenceTraining};
+use super::simulated::SimulatedMotion;
 
 /// Network in training, with the settings of its loss.
-pub struct Judged<'a> {
-    pub network: &'a Recurrent,
-    pub scales: &'a Scales,
+pub struct SequenceLoss<'a> {
+    pub network: &'a RecurrentNetwork,
+    pub scales: &'a MotionScales,
     pub training: &'a SequenceTraining,
 }
 
-impl Judged<'_> {
+impl SequenceLoss<'_> {
     /// Loss of the sequence that starts at a sample, and its gradient with respect to the network's
     /// parameters.
-    pub fn loss(&self, motion: &Motion, start: usize) -> (f64, Vec<f64>) {
+    pub fn with_gradient(&self, motion: &RecordedMotion, start: usize) -> (f64, Vec<f64>) {
         match self.training.loss {
-            Loss::States => self.states(motion, start),
-            Loss::Accelerations => self.accelerations(motion, start),
+            LossKind::States => self.state_loss(motion, start),
+            LossKind::Accelerations => self.acceleration_loss(motion, start),
         }
     }
 
     /// Number of recorded steps that fill the memory: Eq. 20.
-    fn given(&self) -> usize {
+    fn given_steps(&self) -> usize {
         match self.network.shape.memory {
-            Memory::Steps(steps) => steps,
-            Memory::All => 1,
+            NetworkMemory::Steps(steps) => steps,
+            NetworkMemory::All => 1,
         }
     }
 
     /// Evaluates the network over the past that it sees at a step.
-    fn unrolled(&self, inputs: &[Vec<f64>], step: usize) -> Unrolled {
-        let from = self.network.sees_from(step);
-        self.network.unrolled(inputs[from..=step].iter().map(Vec::as_slice))
+    fn unroll_step(&self, inputs: &[Vec<f64>], step: usize) -> UnrolledNetwork {
+        let from = self.network.memory_start(step);
+        self.network.unroll_steps(inputs[from..=step].iter().map(Vec::as_slice))
     }
 
     /// Loss on accelerations (Eq. 17) and its gradient.
-    fn accelerations(&self, motion: &Motion, start: usize) -> (f64, Vec<f64>) {
+    fn acceleration_loss(&self, motion: &RecordedMotion, start: usize) -> (f64, Vec<f64>) {
         let steps = self.training.steps;
         let inputs: Vec<Vec<f64>> = (start..start + steps)
-            .map(|k| self.scales.inputs(&motion.velocities[k], &motion.known[k]))
+            .map(|k| self.scales.scale_inputs(&motion.velocities[k], &motion.known[k]))
             .collect();
         let mut gradient = vec![0.0; self.network.numbers.len()];
         let mut loss = 0.0;
         // The first steps only fill the memory.
-        for step in self.given() - 1..steps {
-            let unrolled = self.unrolled(&inputs, step);
-            let measured = motion.differences(start + step);
+        for step in self.given_steps() - 1..steps {
+            let unrolled = self.unroll_step(&inputs, step);
+            let measured = motion.unexplained_acceleration(start + step);
             let blame: Vec<f64> = (0..3)
                 .map(|axis| {
                     unrolled.outputs[axis] - measured[axis] / self.scales.accelerations[axis]
@@ -59,40 +59,45 @@ impl Judged<'_> {
             loss += blame.iter().map(|x| x * x).sum::<f64>() / steps as f64;
             // Derivative of the mean of squares.
             let blame: Vec<f64> = blame.iter().map(|x| 2.0 * x / steps as f64).collect();
-            self.network.back(&unrolled, &blame, &mut gradient);
+            self.network.propagate_back(&unrolled, &blame, &mut gradient);
         }
         (loss, gradient)
     }
 
     /// Loss on states (Eq. 24) of a simulation by Euler's method, and its gradient back through the
     /// simulation.
-    fn states(&self, motion: &Motion, start: usize) -> (f64, Vec<f64>) {
-        let (run, unrolled) = self.simulated(motion, start);
-        let share = 1.0 / (self.training.steps - self.given() + 1) as f64;
-        let blame = Blame::of(&run, motion, start, self.scales, share);
-        (blame.loss, self.through_simulation(&run, &unrolled, blame, motion.interval_s))
+    fn state_loss(&self, motion: &RecordedMotion, start: usize) -> (f64, Vec<f64>) {
+        let (run, unrolled) = self.simulate_sequence(motion, start);
+        let share = 1.0 / (self.training.steps - self.given_steps() + 1) as f64;
+        let blame = LossGradient::from_states(&run, motion, start, self.scales, share);
+        (blame.loss, self.propagate_back(&run, &unrolled, blame, motion.interval_s))
     }
 
     /// Simulates a sequence. Also returns the intermediate values of the network at each step,
     /// `None` at the given ones.
-    fn simulated(&self, motion: &Motion, start: usize) -> (Simulated, Vec<Option<Unrolled>>) {
+    fn simulate_sequence(
+        &self,
+        motion: &RecordedMotion,
+        start: usize,
+    ) -> (SimulatedMotion, Vec<Option<UnrolledNetwork>>) {
         let steps = self.training.steps;
-        let mut run = Simulated::begin(motion, start, self.given());
+        let mut run = SimulatedMotion::from_recorded(motion, start, self.given_steps());
         let mut inputs: Vec<Vec<f64>> = Vec::with_capacity(steps);
-        let mut unrolled: Vec<Option<Unrolled>> = Vec::with_capacity(steps);
+        let mut unrolled: Vec<Option<UnrolledNetwork>> = Vec::with_capacity(steps);
         for step in 0..steps {
-            inputs.push(self.scales.inputs(&run.velocities[step], &motion.known[start + step]));
-            if step + 1 < self.given() {
+            inputs
+                .push(self.scales.scale_inputs(&run.velocities[step], &motion.known[start + step]));
+            if step + 1 < self.given_steps() {
                 // Recorded states follow, so the network need not be evaluated.
                 unrolled.push(None);
                 continue;
             }
-            let one = self.unrolled(&inputs, step);
+            let one = self.unroll_step(&inputs, step);
             // The network gives scaled accelerations on top of those of the foundation.
             let own = |axis: usize| one.outputs[axis] * self.scales.accelerations[axis];
             let acceleration =
                 std::array::from_fn(|axis| own(axis) + motion.given[start + step][axis]);
-            run.advance(&acceleration, motion.interval_s);
+            run.advance_euler(&acceleration, motion.interval_s);
             unrolled.push(Some(one));
         }
         (run, unrolled)
@@ -100,25 +105,27 @@ impl Judged<'_> {
 
     /// Propagates the derivatives of the loss back through all steps (backpropagation through
     /// time).
-    fn through_simulation(
+    fn propagate_back(
         &self,
-        run: &Simulated,
-        unrolled: &[Option<Unrolled>],
-        mut blame: Blame,
+        run: &SimulatedMotion,
+        unrolled: &[Option<UnrolledNetwork>],
+        mut blame: LossGradient,
         dt: f64,
     ) -> Vec<f64> {
         let mut gradient = vec![0.0; self.network.numbers.len()];
-        for step in (self.given() - 1..self.training.steps).rev() {
+        for step in (self.given_steps() - 1..self.training.steps).rev() {
             // First through the kinematics to the step before; then the velocity at the next step
             // gives the derivative of the accelerations, and with it of the network's parameters
             // and inputs.
-            blame.through_positions(run, step, dt);
+            blame.propagate_step(run, step, dt);
             let outputs: Vec<f64> = (0..3)
                 .map(|axis| dt * blame.velocities[step + 1][axis] * self.scales.accelerations[axis])
                 .collect();
             let Some(one) = &unrolled[step] else { continue };
-            let from = self.network.sees_from(step);
-            for (back, seen) in self.network.back(one, &outputs, &mut gradient).iter().enumerate() {
+            let from = self.network.memory_start(step);
+            for (back, seen) in
+                self.network.propagate_back(one, &outputs, &mut gradient).iter().enumerate()
+            {
                 // The inputs are velocities divided by their scales, of every step in the memory.
                 let at = &mut blame.velocities[from + back];
                 let scaled = seen.iter().zip(&self.scales.velocities);

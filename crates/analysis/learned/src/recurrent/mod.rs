@@ -18,10 +18,10 @@ mod simulated;
 mod training;
 mod windows;
 
-pub(crate) use adam::Adam;
-pub use cell::Cell;
-pub use motion::Motion;
-pub use network::{Memory, Recurrent, Shape};
-pub use scales::Scales;
-pub use sequence::{Loss, SequenceTraining};
-pub use training::{Fit, fit};
+pub(crate) use adam::AdamOptimizer;
+pub use cell::RecurrentCell;
+pub use motion::RecordedMotion;
+pub use network::{NetworkMemory, NetworkShape, RecurrentNetwork};
+pub use scales::MotionScales;
+pub use sequence::{LossKind, SequenceTraining};
+pub use training::{TrainedNetwork, train_network};

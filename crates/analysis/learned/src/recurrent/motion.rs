@@ -1,11 +1,11 @@
 //! Recorded motion for the training of networks.
 
 use sistership_model::trial::{Channel, Trial};
-use sistership_simulation::branch::Instant;
+use sistership_simulation::branch::CorrectionInstant;
 
 /// Recorded motion, sample by sample.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Motion {
+pub struct RecordedMotion {
     /// Sampling interval, s.
     pub interval_s: f64,
     /// Positions and headings x, y, psi: m, m, rad.
@@ -20,10 +20,13 @@ pub struct Motion {
     pub given: Vec<[f64; 3]>,
 }
 
-impl Motion {
+impl RecordedMotion {
     /// Returns the parts of a trial between gaps, `None` if it lacks a channel or holds a value
     /// that is not finite. `foundation` holds the instants of a foundation along the trial.
-    pub fn parts(trial: &Trial, foundation: Option<&[Instant]>) -> Option<Vec<Self>> {
+    pub fn from_trial(
+        trial: &Trial,
+        foundation: Option<&[CorrectionInstant]>,
+    ) -> Option<Vec<Self>> {
         let channel = |channel: Channel| trial.channel(channel);
         let three = |channels: [Channel; 3]| -> Option<[&[f64]; 3]> {
             let [a, b, c] = channels.map(channel);
@@ -52,11 +55,11 @@ impl Motion {
         };
         let parts: Vec<Self> = trial.segments().into_iter().map(part).collect();
         // One value that is not finite makes the whole trial unusable.
-        parts.iter().all(Self::is_number).then_some(parts)
+        parts.iter().all(Self::is_finite).then_some(parts)
     }
 
     /// True if all values are finite.
-    fn is_number(&self) -> bool {
+    fn is_finite(&self) -> bool {
         let states = self.positions.iter().chain(&self.velocities).chain(&self.given).flatten();
         states.chain(self.known.iter().flatten()).all(|number| number.is_finite())
     }
@@ -73,7 +76,7 @@ impl Motion {
 
     /// Accelerations by differences from one sample to the next, less those of the foundation:
     /// m/s2, m/s2, rad/s2.
-    pub fn differences(&self, k: usize) -> [f64; 3] {
+    pub fn unexplained_acceleration(&self, k: usize) -> [f64; 3] {
         std::array::from_fn(|axis| {
             let change = self.velocities[k + 1][axis] - self.velocities[k][axis];
             change / self.interval_s - self.given[k][axis]

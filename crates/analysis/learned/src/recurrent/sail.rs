@@ -1,33 +1,34 @@
 //! Simulation with a trained network.
 
-use super::motion::Motion;
-use super::simulated::Simulated;
-use super::training::Fit;
-use super::windows::Windows;
+use super::motion::RecordedMotion;
+use super::simulated::SimulatedMotion;
+use super::training::TrainedNetwork;
+use super::windows::ActiveWindows;
 
-impl Fit {
+impl TrainedNetwork {
     /// Simulates the samples of `own` by Euler's method, the first `given` of them as recorded.
     /// Returns positions and velocities at each. `foundation` returns the accelerations of a
     /// foundation at a sample and simulated velocities, m/s2, m/s2, rad/s2.
-    pub fn sail(
+    pub fn simulate_motion(
         &self,
-        motion: &Motion,
+        motion: &RecordedMotion,
         own: std::ops::Range<usize>,
         given: usize,
         foundation: &mut dyn FnMut(usize, &[f64; 3]) -> [f64; 3],
     ) -> Vec<([f64; 3], [f64; 3])> {
-        let mut run = Simulated::begin(motion, own.start, given.clamp(1, own.len()));
-        let mut windows = Windows::new(&self.network);
+        let mut run = SimulatedMotion::from_recorded(motion, own.start, given.clamp(1, own.len()));
+        let mut windows = ActiveWindows::new(&self.network);
         for (step, k) in own.clone().enumerate() {
             let velocities = run.velocities[step];
-            let outputs = windows.step(&self.scales.inputs(&velocities, &motion.known[k]));
+            let outputs =
+                windows.advance_step(&self.scales.scale_inputs(&velocities, &motion.known[k]));
             // The network also sees the given samples, which fill its memory, but does not advance
             // them.
             if step + 1 >= run.velocities.len() && k + 1 < own.end {
                 let law = foundation(k, &velocities);
                 let scales = &self.scales.accelerations;
                 let sum = std::array::from_fn(|axis| outputs[axis] * scales[axis] + law[axis]);
-                run.advance(&sum, motion.interval_s);
+                run.advance_euler(&sum, motion.interval_s);
             }
         }
         run.positions.into_iter().zip(run.velocities).collect()

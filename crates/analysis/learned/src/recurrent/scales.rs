@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::motion::Motion;
+use super::motion::RecordedMotion;
 use crate::sample::centre_and_scale;
 
 /// Standard deviations by which inputs, outputs and states are divided.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Scales {
+pub struct MotionScales {
     /// Scales of x, y, psi.
     pub positions: [f64; 3],
     /// Scales of u, v, r.
@@ -19,15 +19,15 @@ pub struct Scales {
     pub accelerations: [f64; 3],
 }
 
-impl Scales {
+impl MotionScales {
     /// Computes the scales of some motions.
-    pub fn of(motions: &[Motion]) -> Self {
-        let scale = |of: &dyn Fn(&Motion) -> Vec<f64>| {
+    pub fn from_motions(motions: &[RecordedMotion]) -> Self {
+        let scale = |of: &dyn Fn(&RecordedMotion) -> Vec<f64>| {
             centre_and_scale(&motions.iter().flat_map(of).collect::<Vec<f64>>()).1
         };
-        let three = |of: &dyn Fn(&Motion, usize, usize) -> f64, less: usize| {
+        let three = |of: &dyn Fn(&RecordedMotion, usize, usize) -> f64, less: usize| {
             let axis = |axis: usize| {
-                let column = |motion: &Motion| {
+                let column = |motion: &RecordedMotion| {
                     (0..motion.len() - less).map(|k| of(motion, k, axis)).collect()
                 };
                 scale(&column)
@@ -42,13 +42,13 @@ impl Scales {
                 .map(|at| scale(&|motion| motion.known.iter().map(|known| known[at]).collect()))
                 .collect(),
             // Differences need a following sample, so there is one less.
-            accelerations: three(&|motion, k, axis| motion.differences(k)[axis], 1),
+            accelerations: three(&|motion, k, axis| motion.unexplained_acceleration(k)[axis], 1),
         }
     }
 
     /// Scaled inputs of a step. They are not centred, so that zero motion and rudder are zero
     /// inputs.
-    pub fn inputs(&self, velocities: &[f64; 3], known: &[f64]) -> Vec<f64> {
+    pub fn scale_inputs(&self, velocities: &[f64; 3], known: &[f64]) -> Vec<f64> {
         let own = velocities.iter().zip(&self.velocities);
         own.chain(known.iter().zip(&self.known)).map(|(value, scale)| value / scale).collect()
     }

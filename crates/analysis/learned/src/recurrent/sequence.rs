@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::network::Shape;
+use super::network::NetworkShape;
 
 /// Loss that is minimised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Loss {
+pub enum LossKind {
     /// Squared differences of simulated and recorded positions and velocities: Eq. 24.
     States,
     /// Squared differences between accelerations and differences of the recorded velocities: Eq.
@@ -20,9 +20,9 @@ pub enum Loss {
 #[serde(deny_unknown_fields)]
 pub struct SequenceTraining {
     /// Structure of the network; its number of inputs follows from the motions.
-    pub shape: Shape,
+    pub shape: NetworkShape,
     /// Loss that is minimised.
-    pub loss: Loss,
+    pub loss: LossKind,
     /// Number of samples of a sequence, including those given to fill the memory: Table 8's N_T.
     pub steps: usize,
     /// Number of samples between the starts of successive sequences.

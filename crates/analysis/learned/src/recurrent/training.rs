@@ -4,22 +4,22 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::adam::Adam;
-use super::loss::Judged;
-use super::motion::Motion;
-use super::network::{Recurrent, Shape};
-use super::scales::Scales;
+use super::adam::AdamOptimizer;
+use super::loss::SequenceLoss;
+use super::motion::RecordedMotion;
+use super::network::{NetworkShape, RecurrentNetwork};
+use super::scales::MotionScales;
 use super::sequence::SequenceTraining;
-use crate::draws::Draws;
+use crate::draws::RandomStream;
 
 /// Result of a training.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Fit {
+pub struct TrainedNetwork {
     /// Network of the least loss on the validation sequences.
-    pub network: Recurrent,
+    pub network: RecurrentNetwork,
     /// Divisors of its inputs and outputs.
-    pub scales: Scales,
+    pub scales: MotionScales,
     /// Loss on the validation sequences after each epoch.
     pub validation: Vec<f64>,
 }
@@ -28,17 +28,20 @@ pub struct Fit {
 const VALIDATION: usize = 5;
 
 /// Start of a sequence: index of its motion, and its first sample.
-type Place = (usize, usize);
+type SequenceStart = (usize, usize);
 
 /// Trains a network. Returns `None` if the motions have too few samples, or different channels.
-pub fn fit(motions: &[Motion], training: &SequenceTraining) -> Option<Fit> {
+pub fn train_network(
+    motions: &[RecordedMotion],
+    training: &SequenceTraining,
+) -> Option<TrainedNetwork> {
     let known = motions.first()?.known.first()?.len();
     if motions.iter().any(|motion| motion.known.iter().any(|there| there.len() != known)) {
         return None;
     }
-    let scales = Scales::of(motions);
-    let places = places(motions, training);
-    let part = |kept: bool| -> Vec<Place> {
+    let scales = MotionScales::from_motions(motions);
+    let places = sequence_starts(motions, training);
+    let part = |kept: bool| -> Vec<SequenceStart> {
         // Validation sequences are spread evenly over all motions.
         let own = places.iter().enumerate().filter(|(k, _)| (k % VALIDATION == 0) == kept);
         own.map(|(_, place)| *place).collect()
@@ -47,13 +50,16 @@ pub fn fit(motions: &[Motion], training: &SequenceTraining) -> Option<Fit> {
     if seen.is_empty() {
         return None;
     }
-    let network = Recurrent::drawn(Shape { inputs: 3 + known, ..training.shape }, training.seed);
-    Some(Trainee { motions, training, scales, network }.descend(&seen, &kept))
+    let network = RecurrentNetwork::with_random_weights(
+        NetworkShape { inputs: 3 + known, ..training.shape },
+        training.seed,
+    );
+    Some(TrainingState { motions, training, scales, network }.minimize_loss(&seen, &kept))
 }
 
 /// Starts of all sequences in the motions.
-fn places(motions: &[Motion], training: &SequenceTraining) -> Vec<Place> {
-    let of = |(number, motion): (usize, &Motion)| {
+fn sequence_starts(motions: &[RecordedMotion], training: &SequenceTraining) -> Vec<SequenceStart> {
+    let of = |(number, motion): (usize, &RecordedMotion)| {
         let last = (motion.len() + 1).saturating_sub(training.steps + 1);
         (0..last).step_by(training.hop.max(1)).map(move |start| (number, start))
     };
@@ -61,39 +67,40 @@ fn places(motions: &[Motion], training: &SequenceTraining) -> Vec<Place> {
 }
 
 /// State of the training.
-struct Trainee<'a> {
-    motions: &'a [Motion],
+struct TrainingState<'a> {
+    motions: &'a [RecordedMotion],
     training: &'a SequenceTraining,
-    scales: Scales,
-    network: Recurrent,
+    scales: MotionScales,
+    network: RecurrentNetwork,
 }
 
-impl Trainee<'_> {
+impl TrainingState<'_> {
     /// Minimises the loss on `seen`, and keeps the network of least loss on `kept`.
-    fn descend(mut self, seen: &[Place], kept: &[Place]) -> Fit {
-        let mut adam = Adam::new(self.network.numbers.len());
-        let mut draws = Draws::new(self.training.seed, 1);
+    fn minimize_loss(mut self, seen: &[SequenceStart], kept: &[SequenceStart]) -> TrainedNetwork {
+        let mut adam = AdamOptimizer::new(self.network.numbers.len());
+        let mut draws = RandomStream::new(self.training.seed, 1);
         let (mut best, mut validation) = (self.network.clone(), Vec::new());
         for _ in 0..self.training.epochs {
-            for batch in draws.some_of(seen.len(), seen.len()).chunks(self.training.batch) {
-                let places: Vec<Place> = batch.iter().map(|k| seen[*k as usize]).collect();
-                let (_, gradient) = self.sum(&places);
-                adam.step(&mut self.network.numbers, &gradient, self.training.rate);
+            for batch in draws.sample_indices(seen.len(), seen.len()).chunks(self.training.batch) {
+                let places: Vec<SequenceStart> = batch.iter().map(|k| seen[*k as usize]).collect();
+                let (_, gradient) = self.mean_loss(&places);
+                adam.apply_gradient(&mut self.network.numbers, &gradient, self.training.rate);
             }
             // Very short motions leave no validation sequence; then the training loss decides.
-            let loss = self.sum(if kept.is_empty() { seen } else { kept }).0;
+            let loss = self.mean_loss(if kept.is_empty() { seen } else { kept }).0;
             if validation.iter().all(|earlier| loss < *earlier) {
                 best = self.network.clone();
             }
             validation.push(loss);
         }
-        Fit { network: best, scales: self.scales, validation }
+        TrainedNetwork { network: best, scales: self.scales, validation }
     }
 
     /// Mean loss of some sequences, and its gradient. They are summed in a fixed order, so the
     /// result does not depend on the threads.
-    fn sum(&self, places: &[Place]) -> (f64, Vec<f64>) {
-        let each: Vec<(f64, Vec<f64>)> = places.par_iter().map(|place| self.one(*place)).collect();
+    fn mean_loss(&self, places: &[SequenceStart]) -> (f64, Vec<f64>) {
+        let each: Vec<(f64, Vec<f64>)> =
+            places.par_iter().map(|place| self.sequence_loss(*place)).collect();
         let mut gradient = vec![0.0; self.network.numbers.len()];
         let share = 1.0 / places.len() as f64;
         for (_, own) in &each {
@@ -103,22 +110,22 @@ impl Trainee<'_> {
         (share * each.iter().map(|(loss, _)| loss).sum::<f64>(), gradient)
     }
 
-    fn one(&self, (motion, start): Place) -> (f64, Vec<f64>) {
+    fn sequence_loss(&self, (motion, start): SequenceStart) -> (f64, Vec<f64>) {
         let Self { motions, training, ref scales, ref network } = *self;
-        Judged { network, scales, training }.loss(&motions[motion], start)
+        SequenceLoss { network, scales, training }.with_gradient(&motions[motion], start)
     }
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::cell::Cell;
-    use super::super::network::Memory;
-    use super::super::sequence::Loss;
+    use super::super::cell::RecurrentCell;
+    use super::super::network::NetworkMemory;
+    use super::super::sequence::LossKind;
     use super::*;
 
     /// A motion with a rudder that swings.
-    fn motion() -> Motion {
+    fn motion() -> RecordedMotion {
         let at = |k: usize| 0.1 * k as f64;
         let velocities = |k: usize| {
             let t = at(k);
@@ -132,7 +139,7 @@ mod tests {
             let (north, east) = (u * cos - v * sin, u * sin + v * cos);
             positions.push([x + 0.1 * north, y + 0.1 * east, psi + 0.1 * r]);
         }
-        Motion {
+        RecordedMotion {
             interval_s: 0.1,
             positions,
             velocities: (0..200).map(velocities).collect(),
@@ -141,16 +148,16 @@ mod tests {
         }
     }
 
-    fn training(cell: Cell, memory: Memory, loss: Loss) -> SequenceTraining {
-        let shape = Shape { cell, memory, inputs: 5, width: 4, outputs: 3 };
+    fn training(cell: RecurrentCell, memory: NetworkMemory, loss: LossKind) -> SequenceTraining {
+        let shape = NetworkShape { cell, memory, inputs: 5, width: 4, outputs: 3 };
         let (steps, hop, epochs, batch) = (12, 5, 60, 4);
         SequenceTraining { shape, loss, steps, hop, epochs, batch, rate: 0.01, seed: 3 }
     }
 
     fn all() -> impl Iterator<Item = SequenceTraining> {
-        let memories = [Memory::Steps(3), Memory::All];
-        let losses = [Loss::States, Loss::Accelerations];
-        [Cell::Rnn, Cell::Lstm].into_iter().flat_map(move |cell| {
+        let memories = [NetworkMemory::Steps(3), NetworkMemory::All];
+        let losses = [LossKind::States, LossKind::Accelerations];
+        [RecurrentCell::Rnn, RecurrentCell::Lstm].into_iter().flat_map(move |cell| {
             memories.into_iter().flat_map(move |memory| {
                 losses.into_iter().map(move |loss| training(cell, memory, loss))
             })
@@ -161,18 +168,19 @@ mod tests {
     fn gradients_are_those_of_differences() {
         let motions = [motion()];
         for training in all() {
-            let mut network = Recurrent::drawn(training.shape, 5);
+            let mut network = RecurrentNetwork::with_random_weights(training.shape, 5);
             // Biases that are not nothing.
             let numbers = network.numbers.iter_mut().enumerate();
             numbers.for_each(|(k, number)| *number += 0.02 * ((k % 7) as f64 - 3.0));
-            let scales = Scales::of(&motions);
-            let mut trainee = Trainee { motions: &motions, training: &training, scales, network };
-            let (_, gradient) = trainee.one((0, 4));
+            let scales = MotionScales::from_motions(&motions);
+            let mut trainee =
+                TrainingState { motions: &motions, training: &training, scales, network };
+            let (_, gradient) = trainee.sequence_loss((0, 4));
             for k in (0..gradient.len()).step_by(5) {
                 let mut loss_at = |by: f64| {
                     let kept = trainee.network.numbers[k];
                     trainee.network.numbers[k] = kept + by;
-                    let loss = trainee.one((0, 4)).0;
+                    let loss = trainee.sequence_loss((0, 4)).0;
                     trainee.network.numbers[k] = kept;
                     loss
                 };
@@ -191,22 +199,22 @@ mod tests {
     fn training_lowers_the_loss_and_repeats_itself() {
         let motions = [motion()];
         for training in all() {
-            let first = fit(&motions, &training).unwrap();
+            let first = train_network(&motions, &training).unwrap();
             let (start, best) =
                 (first.validation[0], first.validation.iter().copied().fold(f64::MAX, f64::min));
             assert!(best < 0.7 * start, "{training:?}: {start} {best}");
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-            assert_eq!(pool.install(|| fit(&motions, &training)).unwrap(), first);
+            assert_eq!(pool.install(|| train_network(&motions, &training)).unwrap(), first);
         }
     }
 
     #[test]
     fn an_rnn_makes_nothing_of_nothing() {
-        let shape = training(Cell::Rnn, Memory::Steps(3), Loss::States).shape;
-        let mut network = Recurrent::drawn(shape, 1);
+        let shape = training(RecurrentCell::Rnn, NetworkMemory::Steps(3), LossKind::States).shape;
+        let mut network = RecurrentNetwork::with_random_weights(shape, 1);
         network.numbers.iter_mut().for_each(|number| *number += 0.3);
         let nothing = [0.0; 5];
-        let outputs = network.unrolled([&nothing[..]; 3].into_iter()).outputs;
+        let outputs = network.unroll_steps([&nothing[..]; 3].into_iter()).outputs;
         assert!(outputs.iter().all(|output| output.abs() < 1e-15), "{outputs:?}");
     }
 }

@@ -8,94 +8,95 @@
 //! states alone; a lane is one of them. Sums are taken in the order of the cell's own forward step,
 //! so the outputs are the same to the last bit.
 
-use super::cell::{Cell, neuron};
+use super::cell::{RecurrentCell, activate_neuron};
 use super::head;
-use super::network::{Memory, Recurrent, Shape};
-use sistership_simulation::wide::{Wide, widest};
+use super::network::{NetworkMemory, NetworkShape, RecurrentNetwork};
+use sistership_simulation::wide::{SimdKernel, dispatch_simd};
 
 /// Number of cells that are computed together.
 const LANES: usize = 4;
 
 /// One number of each of these cells.
-type Lanes = [f64; LANES];
+type LaneValues = [f64; LANES];
 
 /// Active cells of a network.
-pub struct Windows<'a> {
-    network: &'a Recurrent,
+pub struct ActiveWindows<'a> {
+    network: &'a RecurrentNetwork,
     /// Number of active cells.
     cells: usize,
     /// Number of steps so far.
     steps: usize,
     /// Groups of cells that are computed together.
-    groups: Vec<Group>,
+    groups: Vec<CellGroup>,
 }
 
 /// States of a group of cells.
-struct Group {
+struct CellGroup {
     /// Outputs of the cells, neuron by neuron.
-    answers: Vec<Lanes>,
+    answers: Vec<LaneValues>,
     /// Internal memory of LSTM cells, likewise.
-    kept: Vec<Lanes>,
+    kept: Vec<LaneValues>,
     /// Outputs of each block's neurons, likewise, block by block.
-    blocks: Vec<Lanes>,
+    blocks: Vec<LaneValues>,
 }
 
-impl<'a> Windows<'a> {
+impl<'a> ActiveWindows<'a> {
     /// Creates the cells before the first step.
-    pub fn new(network: &'a Recurrent) -> Self {
+    pub fn new(network: &'a RecurrentNetwork) -> Self {
         let cells = match network.shape.memory {
-            Memory::Steps(steps) => steps.max(1),
-            Memory::All => 1,
+            NetworkMemory::Steps(steps) => steps.max(1),
+            NetworkMemory::All => 1,
         };
-        let groups = (0..cells.div_ceil(LANES)).map(|_| Group::empty(network)).collect();
+        let groups = (0..cells.div_ceil(LANES)).map(|_| CellGroup::with_zeros(network)).collect();
         Self { network, cells, steps: 0, groups }
     }
 
     /// Advances all cells by one step. Returns the network's outputs.
-    pub fn step(&mut self, inputs: &[f64]) -> Vec<f64> {
-        if self.network.shape.memory != Memory::All {
+    pub fn advance_step(&mut self, inputs: &[f64]) -> Vec<f64> {
+        if self.network.shape.memory != NetworkMemory::All {
             // Cells are reused in turn: the oldest one has left the memory and starts again.
             let begun = self.steps % self.cells;
-            self.groups[begun / LANES].forget(begun % LANES);
+            self.groups[begun / LANES].reset_lane(begun % LANES);
         }
         // Runs with the widest SIMD instructions that the processor has.
-        widest(Step { windows: self, inputs });
+        dispatch_simd(WindowStep { windows: self, inputs });
         // The output is that of the cell which started at the first step of the memory.
-        let seen = self.network.sees_from(self.steps) % self.cells;
+        let seen = self.network.memory_start(self.steps) % self.cells;
         self.steps += 1;
         let answers = &self.groups[seen / LANES].answers;
         let answer: Vec<f64> = answers.iter().map(|lanes| lanes[seen % LANES]).collect();
-        let (_, head) = self.network.parts();
-        head::forward(head, &answer, self.network.shape.outputs).0
+        let (_, head) = self.network.split_parameters();
+        head::propagate_forward(head, &answer, self.network.shape.outputs).0
     }
 }
 
 /// One step of all cells, for SIMD dispatch.
-struct Step<'s, 'a> {
-    windows: &'s mut Windows<'a>,
+struct WindowStep<'s, 'a> {
+    windows: &'s mut ActiveWindows<'a>,
     inputs: &'s [f64],
 }
 
-impl Wide for Step<'_, '_> {
+impl SimdKernel for WindowStep<'_, '_> {
     #[inline(always)]
-    fn go(mut self) {
+    fn run(mut self) {
         let network = self.windows.network;
-        self.sum(network);
+        self.evaluate_blocks(network);
         for group in &mut self.windows.groups {
             match network.shape.cell {
-                Cell::Rnn => group.answer_less_bias(network, self.inputs.len()),
-                Cell::Lstm => group.answer_by_gates(),
+                RecurrentCell::Rnn => group.answer_less_bias(network, self.inputs.len()),
+                RecurrentCell::Lstm => group.answer_by_gates(),
             }
         }
     }
 }
 
-impl Step<'_, '_> {
+impl WindowStep<'_, '_> {
     /// Evaluates the neurons of every block; the contribution of the inputs is the same for all
     /// cells.
     #[inline(always)]
-    fn sum(&mut self, network: &Recurrent) {
-        let (Shape { cell, width, .. }, (numbers, _)) = (network.shape, network.parts());
+    fn evaluate_blocks(&mut self, network: &RecurrentNetwork) {
+        let (NetworkShape { cell, width, .. }, (numbers, _)) =
+            (network.shape, network.split_parameters());
         let row = self.inputs.len() + width + 1;
         for (block, rows) in numbers.chunks_exact(row * width).enumerate() {
             for (neuron, weights) in rows.chunks_exact(row).enumerate() {
@@ -107,7 +108,7 @@ impl Step<'_, '_> {
                         sums.iter_mut().zip(answers).for_each(|(sum, x)| *sum += x * weight);
                     }
                     sums.iter_mut().for_each(|sum| *sum += weights[row - 1]);
-                    cell.answers(block, &mut sums);
+                    cell.activate_sums(block, &mut sums);
                     group.blocks[block * width + neuron] = sums;
                 }
             }
@@ -115,28 +116,28 @@ impl Step<'_, '_> {
     }
 }
 
-impl Group {
+impl CellGroup {
     /// Group of cells with an empty memory.
-    fn empty(network: &Recurrent) -> Self {
+    fn with_zeros(network: &RecurrentNetwork) -> Self {
         let width = network.shape.width;
         let nothing = |count: usize| vec![[0.0; LANES]; count];
-        let blocks = nothing(network.shape.cell.blocks() * width);
+        let blocks = nothing(network.shape.cell.block_count() * width);
         Self { answers: nothing(width), kept: nothing(width), blocks }
     }
 
     /// Resets the memory of a cell.
-    fn forget(&mut self, lane: usize) {
+    fn reset_lane(&mut self, lane: usize) {
         self.answers.iter_mut().chain(&mut self.kept).for_each(|lanes| lanes[lane] = 0.0);
     }
 
     /// Outputs of simple recurrent cells: the output at zero input is subtracted.
     #[inline(always)]
-    fn answer_less_bias(&mut self, network: &Recurrent, inputs: usize) {
-        let (cell, _) = network.parts();
+    fn answer_less_bias(&mut self, network: &RecurrentNetwork, inputs: usize) {
+        let (cell, _) = network.split_parameters();
         let row = inputs + network.shape.width + 1;
         let neurons = self.answers.iter_mut().zip(&self.blocks);
         for ((answers, sums), weights) in neurons.zip(cell.chunks_exact(row)) {
-            let bias = neuron(weights[row - 1]).0;
+            let bias = activate_neuron(weights[row - 1]).0;
             *answers = std::array::from_fn(|lane| sums[lane] - bias);
         }
     }
@@ -147,12 +148,12 @@ impl Group {
         let mut blocks = self.blocks.chunks_exact(self.answers.len());
         let mut next = || blocks.next().unwrap_or_default();
         // In the order of the cell's blocks.
-        let [enters, stays, shown, new]: [&[Lanes]; 4] = std::array::from_fn(|_| next());
+        let [enters, stays, shown, new]: [&[LaneValues]; 4] = std::array::from_fn(|_| next());
         for (k, (answers, kept)) in self.answers.iter_mut().zip(&mut self.kept).enumerate() {
             for lane in 0..LANES {
                 kept[lane] = stays[k][lane] * kept[lane] + enters[k][lane] * new[k][lane];
             }
-            *answers = std::array::from_fn(|lane| shown[k][lane] * neuron(kept[lane]).0);
+            *answers = std::array::from_fn(|lane| shown[k][lane] * activate_neuron(kept[lane]).0);
         }
     }
 }
@@ -167,21 +168,21 @@ mod tests {
         let inputs: Vec<Vec<f64>> = (0..40)
             .map(|k| (0..5).map(|place| (0.37 * k as f64 + f64::from(place)).sin()).collect())
             .collect();
-        for cell in [Cell::Rnn, Cell::Lstm] {
-            for memory in [Memory::Steps(1), Memory::Steps(7), Memory::All] {
-                let shape = Shape { cell, memory, inputs: 5, width: 6, outputs: 3 };
-                let mut network = Recurrent::drawn(shape, 3);
+        for cell in [RecurrentCell::Rnn, RecurrentCell::Lstm] {
+            for memory in [NetworkMemory::Steps(1), NetworkMemory::Steps(7), NetworkMemory::All] {
+                let shape = NetworkShape { cell, memory, inputs: 5, width: 6, outputs: 3 };
+                let mut network = RecurrentNetwork::with_random_weights(shape, 3);
                 network
                     .numbers
                     .iter_mut()
                     .enumerate()
                     .for_each(|(k, w)| *w += 0.01 * k as f64 % 0.1);
-                let mut windows = Windows::new(&network);
+                let mut windows = ActiveWindows::new(&network);
                 for k in 0..inputs.len() {
-                    let seen = inputs[network.sees_from(k)..=k].iter().map(Vec::as_slice);
+                    let seen = inputs[network.memory_start(k)..=k].iter().map(Vec::as_slice);
                     assert_eq!(
-                        windows.step(&inputs[k]),
-                        network.unrolled(seen).outputs,
+                        windows.advance_step(&inputs[k]),
+                        network.unroll_steps(seen).outputs,
                         "{shape:?}"
                     );
                 }

@@ -8,7 +8,7 @@ use super::hull::WaveHull;
 pub const GRAVITY: f64 = 9.80665;
 
 /// Common factors of heave and pitch.
-struct Shared {
+struct BoxResponse {
     /// Wave number, 1/m.
     k: f64,
     /// Half the ship length in wave phase: k_e L/2.
@@ -19,9 +19,9 @@ struct Shared {
     enlarged: f64,
 }
 
-impl Shared {
+impl BoxResponse {
     /// Computes the factors for a wave of frequency `omega`, rad/s, in direction `beta`, rad.
-    fn of(hull: &WaveHull, omega: f64, beta: f64) -> Self {
+    fn in_wave(hull: &WaveHull, omega: f64, beta: f64) -> Self {
         let k = omega * omega / GRAVITY;
         // A box of the same displacement: its breadth is the ship's beam times the block
         // coefficient.
@@ -40,14 +40,14 @@ impl Shared {
 }
 
 /// Heave amplitude per wave amplitude, m/m.
-pub fn heave(hull: &WaveHull, omega: f64, beta: f64) -> f64 {
-    let Shared { sigma, force, enlarged, .. } = Shared::of(hull, omega, beta);
+pub fn heave_response(hull: &WaveHull, omega: f64, beta: f64) -> f64 {
+    let BoxResponse { sigma, force, enlarged, .. } = BoxResponse::in_wave(hull, omega, beta);
     (enlarged * force * sinc(sigma)).abs()
 }
 
 /// Pitch amplitude per wave amplitude, rad/m.
-pub fn pitch(hull: &WaveHull, omega: f64, beta: f64) -> f64 {
-    let Shared { k, sigma, force, enlarged } = Shared::of(hull, omega, beta);
+pub fn pitch_response(hull: &WaveHull, omega: f64, beta: f64) -> f64 {
+    let BoxResponse { k, sigma, force, enlarged } = BoxResponse::in_wave(hull, omega, beta);
     if k == 0.0 {
         return 0.0;
     }

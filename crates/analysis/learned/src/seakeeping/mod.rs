@@ -12,9 +12,9 @@ mod spectrum;
 mod table;
 mod thinned;
 
-pub use factor::factor;
+pub use factor::fit_factor;
 pub use hull::WaveHull;
-pub use response::{Motion, Responses};
+pub use response::{ResponseOperator, WaveMotion};
 pub use spectrum::DirectionalSpectrum;
 pub use table::{ResponseGrid, ResponseTable, TableFault, TableFaults};
-pub use thinned::thinned;
+pub use thinned::balance_samples;

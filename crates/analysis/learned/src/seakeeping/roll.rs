@@ -11,7 +11,7 @@ const DENSITY: f64 = 1025.0;
 /// Roll amplitude per wave amplitude, rad/m. The moment follows from the radiation damping by
 /// Haskind's relation, for a section M^2 = (rho g^2/omega) b44; over the length the sections'
 /// moments add up as sin(sigma)/sigma.
-pub fn roll(hull: &WaveHull, omega: f64, beta: f64) -> f64 {
+pub fn roll_response(hull: &WaveHull, omega: f64, beta: f64) -> f64 {
     let WaveHull { lpp_m, beam_m, draught_m, .. } = *hull;
     if omega <= 0.0 {
         return 0.0;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::response::{Motion, Responses};
+use super::response::{ResponseOperator, WaveMotion};
 
 /// Variance density of the wave elevation by frequency and direction, m2 s/rad.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -19,16 +19,17 @@ pub struct DirectionalSpectrum {
 impl DirectionalSpectrum {
     /// Variance of the elevation, m2.
     pub fn variance_m2(&self) -> f64 {
-        self.moment(|_, _| 1.0)
+        self.weighted_integral(|_, _| 1.0)
     }
 
     /// Standard deviation of a motion, m or rad: Kanazawa 2023, Eqs. 2.12, 2.13 and 3.7.
-    pub fn deviation(&self, ship: &impl Responses, motion: Motion) -> f64 {
-        self.moment(|omega, beta| ship.response(motion, omega, beta).powi(2)).sqrt()
+    pub fn motion_deviation(&self, ship: &impl ResponseOperator, motion: WaveMotion) -> f64 {
+        self.weighted_integral(|omega, beta| ship.response_amplitude(motion, omega, beta).powi(2))
+            .sqrt()
     }
 
     /// Integral of the spectrum, weighted by a function of frequency and direction.
-    fn moment(&self, of: impl Fn(f64, f64) -> f64) -> f64 {
+    fn weighted_integral(&self, of: impl Fn(f64, f64) -> f64) -> f64 {
         let apart = |all: &[f64]| if all.len() > 1 { all[1] - all[0] } else { 0.0 };
         // The grid is equally spaced in both directions, so every cell has the same size.
         let cell = apart(&self.omegas) * apart(&self.betas);
@@ -51,11 +52,11 @@ mod tests {
         let hull = GUNNERUS;
         let (omega, beam) = (0.15, std::f64::consts::FRAC_PI_2);
         let slope = omega * omega / 9.80665;
-        assert!((hull.response(Motion::Heave, omega, beam) - 1.0).abs() < 0.01);
-        let pitch = hull.response(Motion::Pitch, omega, std::f64::consts::PI);
+        assert!((hull.response_amplitude(WaveMotion::Heave, omega, beam) - 1.0).abs() < 0.01);
+        let pitch = hull.response_amplitude(WaveMotion::Pitch, omega, std::f64::consts::PI);
         assert!((pitch / slope - 1.0).abs() < 0.05, "{}", pitch / slope);
-        assert!(hull.response(Motion::Pitch, omega, beam) < 1e-12);
-        assert!(hull.response(Motion::Roll, omega, 0.0) < 1e-12);
+        assert!(hull.response_amplitude(WaveMotion::Pitch, omega, beam) < 1e-12);
+        assert!(hull.response_amplitude(WaveMotion::Roll, omega, 0.0) < 1e-12);
     }
 
     /// Of one direction and one frequency: variance by response squared.

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
 
-use super::response::{Motion, Responses};
+use super::response::{ResponseOperator, WaveMotion};
 
 /// Amplitudes of motions per wave amplitude, on a grid of frequencies and directions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -80,7 +80,7 @@ impl TryFrom<ResponseGrid> for ResponseTable {
     type Error = TableFaults;
 
     fn try_from(grid: ResponseGrid) -> Result<Self, TableFaults> {
-        let faults = grid.faults();
+        let faults = grid.find_faults();
         if faults.is_empty() { Ok(Self(grid)) } else { Err(TableFaults(faults)) }
     }
 }
@@ -98,24 +98,24 @@ const SEAM: f64 = 2.0;
 
 impl ResponseGrid {
     /// Checks the grid and the values of each motion.
-    fn faults(&self) -> Vec<TableFault> {
+    fn find_faults(&self) -> Vec<TableFault> {
         let mut faults: Vec<TableFault> = [("omegas", &self.omegas), ("betas", &self.betas)]
             .into_iter()
-            .filter(|(_, grid)| !rises(grid))
+            .filter(|(_, grid)| !is_increasing(grid))
             .map(|(field, _)| TableFault::Grid(field))
             .collect();
-        if rises(&self.betas) {
-            faults.extend(self.around());
+        if is_increasing(&self.betas) {
+            faults.extend(self.direction_fault());
         }
         for (field, rows) in [("heave", &self.heave), ("pitch", &self.pitch), ("roll", &self.roll)]
         {
-            faults.extend(self.of_motion(field, rows));
+            faults.extend(self.motion_faults(field, rows));
         }
         faults
     }
 
     /// Checks that the directions cover the ship's surroundings.
-    fn around(&self) -> Option<TableFault> {
+    fn direction_fault(&self) -> Option<TableFault> {
         let over = self.betas[self.betas.len() - 1] - self.betas[0];
         let steps = self.betas.windows(2).map(|pair| pair[1] - pair[0]);
         let most = steps.fold(0.0, f64::max);
@@ -133,7 +133,7 @@ impl ResponseGrid {
     }
 
     /// Checks the size and the values of one motion.
-    fn of_motion(&self, field: &'static str, rows: &[Vec<f64>]) -> Vec<TableFault> {
+    fn motion_faults(&self, field: &'static str, rows: &[Vec<f64>]) -> Vec<TableFault> {
         let shape = |found: usize, wanted: usize| {
             (found != wanted).then_some(TableFault::Shape { field, found, wanted })
         };
@@ -151,25 +151,25 @@ impl ResponseGrid {
         faults
     }
 
-    fn rows(&self, motion: Motion) -> &[Vec<f64>] {
+    fn motion_rows(&self, motion: WaveMotion) -> &[Vec<f64>] {
         match motion {
-            Motion::Heave => &self.heave,
-            Motion::Pitch => &self.pitch,
-            Motion::Roll => &self.roll,
+            WaveMotion::Heave => &self.heave,
+            WaveMotion::Pitch => &self.pitch,
+            WaveMotion::Roll => &self.roll,
         }
     }
 }
 
-impl Responses for ResponseTable {
+impl ResponseOperator for ResponseTable {
     /// Bilinear interpolation; beyond the frequencies of the grid, the value at the nearest one.
-    fn response(&self, motion: Motion, omega: f64, beta: f64) -> f64 {
-        let (grid, rows) = (&self.0, self.0.rows(motion));
-        let (low, high, share) = between(&grid.omegas, omega);
+    fn response_amplitude(&self, motion: WaveMotion, omega: f64, beta: f64) -> f64 {
+        let (grid, rows) = (&self.0, self.0.motion_rows(motion));
+        let (low, high, share) = bracket_value(&grid.omegas, omega);
         let (left, right, turned) = match grid.is_one_side() {
             // Mirror image: of the angle and its negative, the one on the tabulated side is the
             // smaller.
-            true => between(&grid.betas, beta.rem_euclid(TAU).min((-beta).rem_euclid(TAU))),
-            false => around(&grid.betas, beta),
+            true => bracket_value(&grid.betas, beta.rem_euclid(TAU).min((-beta).rem_euclid(TAU))),
+            false => bracket_direction(&grid.betas, beta),
         };
         let along = |row: &[f64]| row[left] + turned * (row[right] - row[left]);
         let (below, above) = (along(&rows[low]), along(&rows[high]));
@@ -177,14 +177,14 @@ impl Responses for ResponseTable {
     }
 }
 
-fn rises(grid: &[f64]) -> bool {
+fn is_increasing(grid: &[f64]) -> bool {
     grid.len() > 1
         && grid.iter().all(|value| value.is_finite())
         && grid.windows(2).all(|pair| pair[0] < pair[1])
 }
 
 /// Indices of the neighbours of a value, and its position from the first to the second, 0 to 1.
-fn between(grid: &[f64], value: f64) -> (usize, usize, f64) {
+fn bracket_value(grid: &[f64], value: f64) -> (usize, usize, f64) {
     let value = value.clamp(grid[0], grid[grid.len() - 1]);
     let high = grid.partition_point(|x| *x < value).clamp(1, grid.len() - 1);
     let (a, b) = (grid[high - 1], grid[high]);
@@ -192,12 +192,12 @@ fn between(grid: &[f64], value: f64) -> (usize, usize, f64) {
 }
 
 /// The same for a direction around the ship: the last is a neighbour of the first.
-fn around(grid: &[f64], beta: f64) -> (usize, usize, f64) {
+fn bracket_direction(grid: &[f64], beta: f64) -> (usize, usize, f64) {
     let last = grid.len() - 1;
     let beta = grid[0] + (beta - grid[0]).rem_euclid(TAU);
     // Beyond the last direction, interpolation continues to the first one.
     if beta <= grid[last] {
-        return between(grid, beta);
+        return bracket_value(grid, beta);
     }
     (last, 0, (beta - grid[last]) / (grid[0] + TAU - grid[last]))
 }
@@ -214,7 +214,7 @@ mod tests {
         let betas: Vec<f64> = (0..directions).map(|k| (5.0 * f64::from(k)).to_radians()).collect();
         let of = |motion| {
             let row = |omega: &f64| {
-                betas.iter().map(|beta| HULL.response(motion, *omega, *beta)).collect()
+                betas.iter().map(|beta| HULL.response_amplitude(motion, *omega, *beta)).collect()
             };
             omegas.iter().map(row).collect::<Vec<Vec<f64>>>()
         };
@@ -245,14 +245,17 @@ mod tests {
             .iter()
             .flat_map(|table| WaveHull::MOTIONS.map(|motion| (table, motion)))
         {
-            let (by_table, closed) = (sea.deviation(table, motion), sea.deviation(&HULL, motion));
+            let (by_table, closed) =
+                (sea.motion_deviation(table, motion), sea.motion_deviation(&HULL, motion));
             assert!((by_table / closed - 1.0).abs() < 0.01, "{motion:?}: {by_table} for {closed}");
         }
     }
 
     #[test]
     fn directions_go_around_the_ship() {
-        let at = |directions: i32, beta: f64| table(directions).response(Motion::Roll, 0.8, beta);
+        let at = |directions: i32, beta: f64| {
+            table(directions).response_amplitude(WaveMotion::Roll, 0.8, beta)
+        };
         assert!((at(72, -0.02) - at(72, TAU - 0.02)).abs() < 1e-12);
         assert!((at(72, 6.25) - at(72, 6.25 + TAU)).abs() < 1e-12);
         assert!((at(37, 1.5 * PI) - at(37, 0.5 * PI)).abs() < 1e-12 && at(37, 1.5 * PI) > 0.1);

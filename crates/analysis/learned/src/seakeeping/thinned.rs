@@ -1,11 +1,11 @@
 //! Balanced samples: common samples are thinned out to the number of the rare ones (Kanazawa 2023,
 //! sec. 3.4.1).
 
-use crate::draws::Draws;
+use crate::draws::RandomStream;
 
 /// Returns the indices of the selected samples: all at or above a quantile of the measured values,
 /// and as many of the others, drawn by a seed.
-pub fn thinned(measured: &[f64], quantile: f64, seed: u64) -> Vec<usize> {
+pub fn balance_samples(measured: &[f64], quantile: f64, seed: u64) -> Vec<usize> {
     let mut sorted = measured.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     let place = (quantile * measured.len() as f64) as usize;
@@ -15,7 +15,7 @@ pub fn thinned(measured: &[f64], quantile: f64, seed: u64) -> Vec<usize> {
     };
     let (rare, common): (Vec<usize>, Vec<usize>) =
         (0..measured.len()).partition(|k| measured[*k] >= *limit);
-    let drawn = Draws::new(seed, 2).some_of(rare.len(), common.len());
+    let drawn = RandomStream::new(seed, 2).sample_indices(rare.len(), common.len());
     let mut kept: Vec<usize> = drawn.into_iter().map(|k| common[k as usize]).collect();
     kept.extend(rare);
     // In the order of the samples.
@@ -30,11 +30,11 @@ mod tests {
     #[test]
     fn as_many_common_samples_as_rare_ones_are_kept() {
         let measured: Vec<f64> = (0..100).map(|k| f64::from((37 * k) % 100)).collect();
-        let kept = thinned(&measured, 0.9, 3);
+        let kept = balance_samples(&measured, 0.9, 3);
         let rare = kept.iter().filter(|k| measured[**k] >= 90.0).count();
         assert_eq!((rare, kept.len()), (10, 20));
-        assert_eq!(kept, thinned(&measured, 0.9, 3));
-        assert_ne!(kept, thinned(&measured, 0.9, 4));
-        assert!(thinned(&[], 0.9, 3).is_empty());
+        assert_eq!(kept, balance_samples(&measured, 0.9, 3));
+        assert_ne!(kept, balance_samples(&measured, 0.9, 4));
+        assert!(balance_samples(&[], 0.9, 3).is_empty());
     }
 }

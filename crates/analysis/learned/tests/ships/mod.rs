@@ -1,14 +1,14 @@
 //! A foundation, and trials of a ship that it is not quite of.
 #![allow(dead_code)]
 
-use sistership_learned::{Training, train};
-use sistership_model::branch::{BranchMode, Learner, Signal};
+use sistership_learned::{CorrectionTraining, train_correction};
+use sistership_model::branch::{CorrectionMode, Learner, Signal};
 use sistership_model::coefficient::Axis;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, zigzag};
-use sistership_simulation::state::{RECORDED, Trajectory, at};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_zigzag};
+use sistership_simulation::state::{RECORDED_CHANNELS, Trajectory, at};
 
 /// A foundation with its law.
 pub struct Foundation {
@@ -18,8 +18,8 @@ pub struct Foundation {
 
 impl Foundation {
     pub fn of(name: &str) -> Self {
-        let zoo = Zoo::embedded().expect("the zoo");
-        let model = zoo.model(name).expect("a model of the zoo");
+        let zoo = Zoo::load_embedded().expect("the zoo");
+        let model = zoo.find_model(name).expect("a model of the zoo");
         let law = Law::clone(zoo.law(&model.law).expect("its law"));
         Self { model, law }
     }
@@ -43,29 +43,30 @@ impl Foundation {
             let n_rps = truth.has_propeller().then(|| full * [1.0, 0.6, 1.3, 0.8][k % 4]);
             let duration_s = Some(500.0);
             let settings = ManoeuvreSettings { duration_s, n_rps, ..Default::default() };
-            let track = zigzag(&truth, *angle, angle.abs(), &settings).expect("a zigzag").track;
+            let track =
+                simulate_zigzag(&truth, *angle, angle.abs(), &settings).expect("a zigzag").track;
             recorded(&format!("zigzag {angle}"), &track)
         };
         angles.iter().enumerate().map(sailed).collect()
     }
 
     /// The model with a branch trained on zigzags, and its weights.
-    pub fn trained(&self, training: &Training) -> (Model, Vec<u8>) {
+    pub fn trained(&self, training: &CorrectionTraining) -> (Model, Vec<u8>) {
         let trials = self.trials(&[10.0, -10.0, 20.0, -20.0]);
         let trials: Vec<&Trial> = trials.iter().collect();
         let (branch, weights) =
-            train(&self.model, &self.law, &trials, training).expect("a trained branch");
+            train_correction(&self.model, &self.law, &trials, training).expect("a trained branch");
         let model = Model { branch: Some(branch), ..self.model.clone() };
-        (model, weights.bytes().expect("bytes"))
+        (model, weights.to_bytes().expect("bytes"))
     }
 }
 
 /// A track as a trial of two samples a second.
 pub fn recorded(name: &str, track: &Trajectory) -> Trial {
     let thin = |column: Vec<f64>| column.into_iter().step_by(5).collect::<Vec<f64>>();
-    let columns = RECORDED[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
+    let columns = RECORDED_CHANNELS[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
     let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> =
-        columns.map(|&(channel, place)| (channel, thin(track.column(place)))).collect();
+        columns.map(|&(channel, place)| (channel, thin(track.state_column(place)))).collect();
     channels.insert(Channel::N, thin(track.n_rps.clone()));
     Trial { name: name.to_owned(), t_s: thin(track.t_s.clone()), channels, ..Trial::default() }
 }
@@ -81,11 +82,11 @@ pub fn learners() -> [Learner; 4] {
 }
 
 /// A training of that learner.
-pub fn training(learner: Learner, mode: BranchMode) -> Training {
+pub fn training(learner: Learner, mode: CorrectionMode) -> CorrectionTraining {
     let mut signals = vec![Signal::U, Signal::V, Signal::R, Signal::Delta];
-    if mode == BranchMode::Serial {
+    if mode == CorrectionMode::Serial {
         signals.extend([Signal::UDot, Signal::VDot, Signal::RDot]);
     }
     let inputs = [Axis::X, Axis::Y, Axis::N].map(|axis| (axis, signals.clone())).to_vec();
-    Training { mode, inputs, learner, seed: 1, window_s: 2.0, hop_s: 1.0, fade: 1.0 }
+    CorrectionTraining { mode, inputs, learner, seed: 1, window_s: 2.0, hop_s: 1.0, fade: 1.0 }
 }

@@ -4,11 +4,11 @@ use std::collections::VecDeque;
 
 use nalgebra::DVector;
 
-use super::strategy::Strategy;
+use super::strategy::EvolutionStrategy;
 
 /// Penalty weights of leaving a box from -`widths` to `widths`, by coordinate.
 #[derive(Debug, Clone)]
-pub(super) struct Bounds {
+pub(super) struct BoundPenalty {
     widths: Vec<f64>,
     weights: Vec<f64>,
     begun: bool,
@@ -16,7 +16,7 @@ pub(super) struct Bounds {
     spreads: VecDeque<f64>,
 }
 
-impl Bounds {
+impl BoundPenalty {
     /// Creates a penalty that is not active yet.
     pub fn new(widths: &[f64]) -> Self {
         Self {
@@ -28,12 +28,12 @@ impl Bounds {
     }
 
     /// Nearest point of the box.
-    pub fn inside(&self, point: &[f64]) -> Vec<f64> {
+    pub fn nearest_inside(&self, point: &[f64]) -> Vec<f64> {
         point.iter().zip(&self.widths).map(|(x, width)| x.clamp(-width, *width)).collect()
     }
 
     /// Penalty of a candidate outside the box.
-    pub fn penalty(&self, point: &[f64]) -> f64 {
+    pub fn penalty_at(&self, point: &[f64]) -> f64 {
         let beyond = |(x, width): (&f64, &f64)| (x.abs() - width).max(0.0);
         // Quadratic in the distance from the box, per coordinate.
         let one = |(weight, at): (&f64, (&f64, &f64))| weight * beyond(at).powi(2);
@@ -43,35 +43,35 @@ impl Bounds {
 
     /// Adapts the weights to the spread of the costs of a generation (without penalty) and to the
     /// distance of the mean from the box.
-    pub fn adapt(&mut self, strategy: &Strategy, costs: &[f64]) {
-        let variances = strategy.variances();
+    pub fn adapt_weights(&mut self, strategy: &EvolutionStrategy, costs: &[f64]) {
+        let variances = strategy.coordinate_variances();
         let n = variances.len() as f64;
-        self.remember(
+        self.record_spread(
             // The spread of costs per variance of the coordinates estimates the curvature of the
             // cost.
-            quartiles(costs) / (variances.sum() / n),
+            interquartile_range(costs) / (variances.sum() / n),
             20 + 3 * self.widths.len() / costs.len().max(1),
         );
         let mut recent: Vec<f64> = self.spreads.iter().copied().collect();
         recent.sort_by(f64::total_cmp);
         let Some(&typical) = recent.get(recent.len() / 2) else { return };
-        let beyond = self.beyond(strategy.mean(), &variances);
+        let beyond = self.distance_outside(strategy.mean(), &variances);
         // The penalty starts when the mean leaves the box for the first time.
         if !self.begun && beyond.iter().any(|far| *far > 0.0) {
             self.weights.fill(2.0 * typical);
             self.begun = true;
         }
         if self.begun {
-            let damping = (strategy.mass() / (10.0 * n)).min(1.0);
+            let damping = (strategy.selection_mass() / (10.0 * n)).min(1.0);
             // Distance at which the weight of a coordinate starts to increase, in standard
             // deviations.
-            let allowed = 3.0 * (n.sqrt() / strategy.mass()).max(1.0);
-            self.reweigh(&beyond, allowed, damping, typical);
+            let allowed = 3.0 * (n.sqrt() / strategy.selection_mass()).max(1.0);
+            self.update_weights(&beyond, allowed, damping, typical);
         }
     }
 
     /// Adds a spread to the recent ones, of which at most `count` are kept.
-    fn remember(&mut self, spread: f64, count: usize) {
+    fn record_spread(&mut self, spread: f64, count: usize) {
         if spread.is_finite() && spread > 0.0 {
             self.spreads.push_front(spread);
         }
@@ -79,13 +79,13 @@ impl Bounds {
     }
 
     /// Distance of the mean from the box, in standard deviations.
-    fn beyond(&self, mean: &DVector<f64>, variances: &DVector<f64>) -> Vec<f64> {
+    fn distance_outside(&self, mean: &DVector<f64>, variances: &DVector<f64>) -> Vec<f64> {
         let one = |((x, width), v): ((&f64, &f64), &f64)| (x.abs() - width).max(0.0) / v.sqrt();
         mean.iter().zip(&self.widths).zip(variances.iter()).map(one).collect()
     }
 
     /// Increases the weights of coordinates that are too far outside, and reduces very large ones.
-    fn reweigh(&mut self, beyond: &[f64], allowed: f64, damping: f64, typical: f64) {
+    fn update_weights(&mut self, beyond: &[f64], allowed: f64, damping: f64, typical: f64) {
         for (weight, far) in self.weights.iter_mut().zip(beyond) {
             if *far > allowed {
                 *weight *= (0.5 * damping * ((far - allowed) / 3.0).tanh()).exp();
@@ -98,7 +98,7 @@ impl Bounds {
 }
 
 /// Interquartile range of the costs.
-fn quartiles(costs: &[f64]) -> f64 {
+fn interquartile_range(costs: &[f64]) -> f64 {
     let mut sorted = costs.to_vec();
     sorted.sort_by(f64::total_cmp);
     let at = |k: usize| sorted.get(k.min(sorted.len().saturating_sub(1))).copied().unwrap_or(0.0);

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 /// Limits of a search; the first limit that is reached ends it after the current generation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Budget {
+pub struct SearchBudget {
     /// Number of evaluations.
     pub evaluations: usize,
     /// Largest elapsed time, s.
@@ -16,16 +16,16 @@ pub struct Budget {
 
 /// Resources that a search has used.
 #[derive(Debug, Clone, Copy)]
-pub struct Spent {
+pub struct SearchUsage {
     /// Largest number of evaluations.
     pub evaluations: usize,
     begun: Instant,
     cpu_s: Option<f64>,
 }
 
-impl Spent {
+impl SearchUsage {
     /// Starts counting, without any evaluation.
-    pub fn nothing() -> Self {
+    pub fn start_now() -> Self {
         Self { evaluations: 0, begun: Instant::now(), cpu_s: process_s() }
     }
 
@@ -40,7 +40,7 @@ impl Spent {
     }
 
     /// Used share of the budget: 1 or more when it is used up.
-    pub fn share(&self, budget: &Budget) -> f64 {
+    pub fn used_share(&self, budget: &SearchBudget) -> f64 {
         let wall = budget.wall_s.map_or(0.0, |limit| self.wall_s() / limit);
         let cpu = budget.cpu_s.zip(self.cpu_s()).map_or(0.0, |(limit, spent)| spent / limit);
         (self.evaluations as f64 / budget.evaluations.max(1) as f64).max(wall).max(cpu)

@@ -18,9 +18,9 @@ mod restarts;
 mod strategy;
 mod weights;
 
-pub use budget::{Budget, Spent};
+pub use budget::{SearchBudget, SearchUsage};
 pub use restarts::{CmaEsSearch, SearchCancelled, SearchOutcome, SearchState};
-pub use strategy::Strategy;
+pub use strategy::EvolutionStrategy;
 
 #[cfg(test)]
 mod tests;

@@ -7,9 +7,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
 use rayon::prelude::*;
 
-use super::bounds::Bounds;
-use super::budget::{Budget, Spent};
-use super::strategy::Strategy;
+use super::bounds::BoundPenalty;
+use super::budget::{SearchBudget, SearchUsage};
+use super::strategy::EvolutionStrategy;
 
 /// Settings of a search, which starts from zero in a box about it.
 #[derive(Debug, Clone)]
@@ -25,14 +25,14 @@ pub struct CmaEsSearch {
     /// Seed of all random numbers.
     pub seed: u64,
     /// Budget of the search.
-    pub budget: Budget,
+    pub budget: SearchBudget,
 }
 
 /// State of a search after a generation.
 #[derive(Debug)]
 pub struct SearchState<'a> {
     /// Resources used so far.
-    pub spent: &'a Spent,
+    pub spent: &'a SearchUsage,
     /// Best point so far, with its cost.
     pub best: (&'a [f64], f64),
     /// Mean of the present run, inside the box.
@@ -55,9 +55,9 @@ pub struct SearchOutcome {
     /// Cost of the best point.
     pub cost: f64,
     /// Distribution of the run that found it, at the end of that run.
-    pub strategy: Strategy,
+    pub strategy: EvolutionStrategy,
     /// Resources used.
-    pub spent: Spent,
+    pub spent: SearchUsage,
     /// Population of each run.
     pub populations: Vec<usize>,
 }
@@ -68,28 +68,33 @@ impl CmaEsSearch {
     ///
     /// # Errors
     /// Returns an error if the caller asked to stop.
-    pub fn least(
+    pub fn find_minimum(
         &self,
         cost: &(dyn Fn(&[f64]) -> f64 + Sync),
         told: &mut dyn FnMut(&SearchState<'_>) -> bool,
     ) -> Result<SearchOutcome, SearchCancelled> {
         let start = vec![0.0; self.widths.len()];
-        self.from(Strategy::new(&start, self.sigma, self.population, self.seed), cost, told)
+        self.search_from(
+            EvolutionStrategy::new(&start, self.sigma, self.population, self.seed),
+            cost,
+            told,
+        )
     }
 
     /// The same search with a given initial distribution of the first run.
     ///
     /// # Errors
     /// Returns an error if the caller asked to stop.
-    pub fn from(
+    pub fn search_from(
         &self,
-        first: Strategy,
+        first: EvolutionStrategy,
         cost: &(dyn Fn(&[f64]) -> f64 + Sync),
         told: &mut dyn FnMut(&SearchState<'_>) -> bool,
     ) -> Result<SearchOutcome, SearchCancelled> {
         // The first mean counts as a candidate, so the result is never worse than the start.
-        let start: Vec<f64> = Bounds::new(&self.widths).inside(first.mean().as_slice());
-        let (mut spent, worth) = (Spent::nothing(), cost(&start));
+        let start: Vec<f64> =
+            BoundPenalty::new(&self.widths).nearest_inside(first.mean().as_slice());
+        let (mut spent, worth) = (SearchUsage::start_now(), cost(&start));
         spent.evaluations += 1;
         let mut outcome = SearchOutcome {
             best: start,
@@ -100,26 +105,26 @@ impl CmaEsSearch {
         };
         let mut strategy = first;
         loop {
-            outcome.populations.push(strategy.population());
-            let found = self.run(&mut strategy, cost, &mut outcome, told)?;
+            outcome.populations.push(strategy.population_size());
+            let found = self.run_once(&mut strategy, cost, &mut outcome, told)?;
             if found {
                 outcome.strategy = strategy.clone();
             }
-            if outcome.spent.share(&self.budget) >= 1.0 {
+            if outcome.spent.used_share(&self.budget) >= 1.0 {
                 return Ok(outcome);
             }
-            strategy = self.restarted(outcome.populations.len(), strategy.population());
+            strategy = self.restart_strategy(outcome.populations.len(), strategy.population_size());
         }
     }
 
     /// Distribution of a restart: a random point in the box, and twice the population.
-    fn restarted(&self, restart: usize, population: usize) -> Strategy {
+    fn restart_strategy(&self, restart: usize, population: usize) -> EvolutionStrategy {
         // Another seed for each run, reproducible from the first.
         let seed = self.seed.wrapping_add(restart as u64);
         let mut rng = ChaCha12Rng::seed_from_u64(seed);
         let start: Vec<f64> =
             self.widths.iter().map(|width| rng.random_range(-1.0..=1.0) * width).collect();
-        Strategy::new(
+        EvolutionStrategy::new(
             &start,
             self.sigma,
             (2 * population).min(self.largest_population.max(self.population)),
@@ -129,20 +134,21 @@ impl CmaEsSearch {
 
     /// Runs one strategy until it has converged or the budget is used up. Returns true if it found
     /// a better point.
-    fn run(
+    fn run_once(
         &self,
-        strategy: &mut Strategy,
+        strategy: &mut EvolutionStrategy,
         cost: &(dyn Fn(&[f64]) -> f64 + Sync),
         outcome: &mut SearchOutcome,
         told: &mut dyn FnMut(&SearchState<'_>) -> bool,
     ) -> Result<bool, SearchCancelled> {
-        let mut bounds = Bounds::new(&self.widths);
+        let mut bounds = BoundPenalty::new(&self.widths);
         let (mut recent, mut found) = (VecDeque::new(), false);
         // Stagnation test over 10 + 30 n / population generations (Auger and Hansen 2005).
-        let patience = 10 + (30 * self.widths.len()).div_ceil(strategy.population());
-        while outcome.spent.share(&self.budget) < 1.0 {
-            let candidates = strategy.ask();
-            let (mut points, mut costs) = evaluated(&bounds, &candidates, strategy.mean(), cost);
+        let patience = 10 + (30 * self.widths.len()).div_ceil(strategy.population_size());
+        while outcome.spent.used_share(&self.budget) < 1.0 {
+            let candidates = strategy.draw_candidates();
+            let (mut points, mut costs) =
+                evaluate_candidates(&bounds, &candidates, strategy.mean(), cost);
             outcome.spent.evaluations += costs.len();
             // In hundreds of dimensions the mean is better than most candidates drawn about it, so
             // it is evaluated, too.
@@ -152,7 +158,7 @@ impl CmaEsSearch {
             let penalised: Vec<f64> = candidates
                 .column_iter()
                 .zip(&costs)
-                .map(|(x, cost)| cost + bounds.penalty(x.as_slice()))
+                .map(|(x, cost)| cost + bounds.penalty_at(x.as_slice()))
                 .collect();
             let generation = costs.iter().copied().zip(points).chain(of_mean);
             if let Some((cost, point)) = generation.min_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -162,20 +168,20 @@ impl CmaEsSearch {
                 }
             }
             recent.truncate(patience);
-            strategy.tell(&penalised);
-            bounds.adapt(strategy, &costs);
-            let mean = bounds.inside(strategy.mean().as_slice());
+            strategy.update_from_costs(&penalised);
+            bounds.adapt_weights(strategy, &costs);
+            let mean = bounds.nearest_inside(strategy.mean().as_slice());
             let standing = SearchState {
                 spent: &outcome.spent,
                 best: (&outcome.best, outcome.cost),
                 mean: &mean,
-                population: strategy.population(),
+                population: strategy.population_size(),
                 restarts: outcome.populations.len() - 1,
             };
             if !told(&standing) {
                 return Err(SearchCancelled);
             }
-            if converged(&recent, patience) || strategy.exhausted() {
+            if has_converged(&recent, patience) || strategy.is_exhausted() {
                 break;
             }
         }
@@ -184,14 +190,14 @@ impl CmaEsSearch {
 }
 
 /// Candidates and the mean moved into the box, and their costs there.
-fn evaluated(
-    bounds: &Bounds,
+fn evaluate_candidates(
+    bounds: &BoundPenalty,
     candidates: &DMatrix<f64>,
     mean: &DVector<f64>,
     cost: &(dyn Fn(&[f64]) -> f64 + Sync),
 ) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let inside = candidates.column_iter().map(|x| bounds.inside(x.as_slice()));
-    let points: Vec<Vec<f64>> = inside.chain([bounds.inside(mean.as_slice())]).collect();
+    let inside = candidates.column_iter().map(|x| bounds.nearest_inside(x.as_slice()));
+    let points: Vec<Vec<f64>> = inside.chain([bounds.nearest_inside(mean.as_slice())]).collect();
     let costs = points
         .par_iter()
         .map(|point| cost(point))
@@ -203,7 +209,7 @@ fn evaluated(
 
 /// True if the best cost of a generation has not changed for a long time: Auger and Hansen 2005,
 /// with a tolerance relative to its own size.
-fn converged(recent: &VecDeque<f64>, patience: usize) -> bool {
+fn has_converged(recent: &VecDeque<f64>, patience: usize) -> bool {
     let (low, high) = recent
         .iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(*c), high.max(*c)));

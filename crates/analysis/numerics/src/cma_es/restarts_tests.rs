@@ -1,7 +1,7 @@
 use super::*;
 
 fn search(population: usize, largest_population: usize) -> CmaEsSearch {
-    let budget = Budget { evaluations: 100, wall_s: None, cpu_s: None };
+    let budget = SearchBudget { evaluations: 100, wall_s: None, cpu_s: None };
     CmaEsSearch {
         widths: vec![0.5, 20.0],
         sigma: 0.5,
@@ -14,8 +14,8 @@ fn search(population: usize, largest_population: usize) -> CmaEsSearch {
 
 #[test]
 fn a_restart_is_anywhere_in_the_box_with_twice_the_population() {
-    let starts: Vec<Strategy> =
-        (1..40).map(|restart| search(8, 64).restarted(restart, 8)).collect();
+    let starts: Vec<EvolutionStrategy> =
+        (1..40).map(|restart| search(8, 64).restart_strategy(restart, 8)).collect();
     let reach = |axis: usize, sign: f64| {
         starts.iter().map(|start| sign * start.mean()[axis]).fold(f64::MIN, f64::max)
     };
@@ -24,15 +24,15 @@ fn a_restart_is_anywhere_in_the_box_with_twice_the_population() {
             assert!((0.8 * width..=width).contains(&reach(axis, sign)), "{}", reach(axis, sign));
         }
     }
-    assert!(starts.iter().all(|start| start.population() == 16 && start.sigma() == 0.5));
-    assert_eq!(search(8, 64).restarted(1, 40).population(), 64);
-    assert_eq!(search(8, 4).restarted(1, 8).population(), 8);
+    assert!(starts.iter().all(|start| start.population_size() == 16 && start.sigma() == 0.5));
+    assert_eq!(search(8, 64).restart_strategy(1, 40).population_size(), 64);
+    assert_eq!(search(8, 4).restart_strategy(1, 8).population_size(), 8);
 }
 
 /// It has converged where the best costs of enough generations are alike, by their size.
 #[test]
 fn a_run_has_converged_when_its_best_stays() {
-    let of = |costs: &[f64]| converged(&costs.iter().copied().collect(), 3);
+    let of = |costs: &[f64]| has_converged(&costs.iter().copied().collect(), 3);
     assert!(of(&[5.0, 5.0, 5.0]) && !of(&[5.0, 5.0]));
     assert!(of(&[5.0, 5.0 + 4e-9, 5.0]) && !of(&[5.0, 5.0 + 6e-9, 5.0]));
     assert!(of(&[-5.0, -5.0 + 4e-9, -5.0]) && !of(&[-5.0, -5.0 + 6e-9, -5.0]));
@@ -44,7 +44,8 @@ fn candidates_are_evaluated_inside_with_the_mean_behind_them() {
     let candidates = DMatrix::from_column_slice(2, 2, &[0.2, 30.0, -2.0, -1.0]);
     let cost = |x: &[f64]| if x[0] < 0.0 { f64::NAN } else { x[0] + x[1] };
     let mean = DVector::from_vec(vec![0.1, -25.0]);
-    let (points, costs) = evaluated(&Bounds::new(&[0.5, 20.0]), &candidates, &mean, &cost);
+    let (points, costs) =
+        evaluate_candidates(&BoundPenalty::new(&[0.5, 20.0]), &candidates, &mean, &cost);
     assert_eq!(points, [vec![0.2, 20.0], vec![-0.5, -1.0], vec![0.1, -20.0]]);
     assert_eq!(costs, [20.2, f64::INFINITY, -19.9]);
 }
@@ -52,10 +53,10 @@ fn candidates_are_evaluated_inside_with_the_mean_behind_them() {
 /// A search that begins outside the box begins at its edge, and tells what it spends.
 #[test]
 fn a_search_tells_how_it_stands() {
-    let first = Strategy::new(&[3.0, 0.0], 0.5, 8, 7);
+    let first = EvolutionStrategy::new(&[3.0, 0.0], 0.5, 8, 7);
     let cost = |x: &[f64]| (x[0] - 0.2).powi(2) + (x[1] - 3.0).powi(2);
     let mut told = Vec::new();
-    let outcome = search(8, 64).from(first, &cost, &mut |state| {
+    let outcome = search(8, 64).search_from(first, &cost, &mut |state| {
         assert!(state.mean.iter().zip([0.5, 20.0]).all(|(x, width)| x.abs() <= width));
         assert_eq!(state.best.1, cost(state.best.0));
         told.push((state.spent.evaluations, state.best.1, state.population, state.restarts));
@@ -74,9 +75,9 @@ fn a_search_tells_how_it_stands() {
 /// The distribution that is told is of the run that found the best point.
 #[test]
 fn the_distribution_is_of_the_run_that_found_the_best() {
-    let budget = Budget { evaluations: 3_000, wall_s: None, cpu_s: None };
+    let budget = SearchBudget { evaluations: 3_000, wall_s: None, cpu_s: None };
     let sphere = |x: &[f64]| (x[0] - 0.2).powi(2) + (x[1] - 3.0).powi(2);
-    let outcome = CmaEsSearch { budget, ..search(8, 64) }.least(&sphere, &mut |_| true);
+    let outcome = CmaEsSearch { budget, ..search(8, 64) }.find_minimum(&sphere, &mut |_| true);
     let outcome = outcome.unwrap_or_else(|_| panic!("nobody asked to stop"));
     assert!(outcome.populations.len() > 1);
     let mean = outcome.strategy.mean();

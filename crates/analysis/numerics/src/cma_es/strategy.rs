@@ -6,12 +6,12 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
 
-use super::weights::Weights;
+use super::weights::RecombinationWeights;
 
 /// Distribution of candidates, with the evolution paths by which it adapts.
 #[derive(Debug, Clone)]
-pub struct Strategy {
-    weights: Weights,
+pub struct EvolutionStrategy {
+    weights: RecombinationWeights,
     mean: DVector<f64>,
     sigma: f64,
     covariance: DMatrix<f64>,
@@ -29,14 +29,14 @@ pub struct Strategy {
     rng: ChaCha12Rng,
 }
 
-impl Strategy {
+impl EvolutionStrategy {
     /// Creates a distribution about a point, with the same standard deviation for every coordinate.
     /// A population below 4 is raised to 4.
     pub fn new(start: &[f64], sigma: f64, population: usize, seed: u64) -> Self {
         let (n, population) = (start.len(), population.max(4));
         let identity = || DMatrix::identity(n, n);
         Self {
-            weights: Weights::new(n, population),
+            weights: RecombinationWeights::new(n, population),
             mean: DVector::from_column_slice(start),
             sigma,
             covariance: identity(),
@@ -57,7 +57,7 @@ impl Strategy {
     /// without its paths. The mean standard deviation over the coordinates is at least `deviation`,
     /// so that a converged distribution moves again.
     #[must_use]
-    pub fn renewed(&self, mean: &[f64], deviation: f64, seed: u64) -> Self {
+    pub fn restart_at(&self, mean: &[f64], deviation: f64, seed: u64) -> Self {
         let mut renewed = self.clone();
         let variance = self.covariance.diagonal().mean().max(f64::MIN_POSITIVE);
         let sigma = self.sigma.max(deviation / variance.sqrt());
@@ -72,7 +72,7 @@ impl Strategy {
     }
 
     /// Draws candidates, one per column.
-    pub fn ask(&mut self) -> DMatrix<f64> {
+    pub fn draw_candidates(&mut self) -> DMatrix<f64> {
         let rng = &mut self.rng;
         self.normal.iter_mut().for_each(|value| *value = rng.sample(StandardNormal));
         self.shaped = &self.axes * &self.normal;
@@ -82,7 +82,7 @@ impl Strategy {
     }
 
     /// Updates the distribution by the costs of the last candidates; only their order counts.
-    pub fn tell(&mut self, costs: &[f64]) {
+    pub fn update_from_costs(&mut self, costs: &[f64]) {
         let mut order: Vec<usize> = (0..costs.len()).collect();
         order.sort_by(|a, b| costs[*a].total_cmp(&costs[*b]));
         self.generation += 1;
@@ -95,23 +95,24 @@ impl Strategy {
         // Steps of the mean by weighted recombination of the best candidates.
         let (moved, normal) = (weighted(&self.shaped), weighted(&self.normal));
         self.mean += &moved * self.sigma;
-        let steady = self.follow(&moved, &normal);
-        self.adapt(&order, steady);
-        let Weights { step_rate, step_damping, expected_length, .. } = self.weights;
+        let steady = self.extend_paths(&moved, &normal);
+        self.adapt_covariance(&order, steady);
+        let RecombinationWeights { step_rate, step_damping, expected_length, .. } = self.weights;
         // Cumulative step-size adaptation: sigma grows if the path is longer than that of random
         // steps.
         self.sigma *= (step_rate / step_damping * (self.step_path.norm() / expected_length - 1.0))
             .min(1.0)
             .exp();
-        if self.generation - self.decomposed >= self.weights.patience(self.mean.len()) {
-            self.decompose();
+        if self.generation - self.decomposed >= self.weights.decomposition_interval(self.mean.len())
+        {
+            self.decompose_covariance();
         }
     }
 
     /// Extends both evolution paths by a step. Returns true unless the covariance path is stalled
     /// because the step-size path is too long.
-    fn follow(&mut self, moved: &DVector<f64>, normal: &DVector<f64>) -> bool {
-        let Weights { step_rate, path_rate, mass, expected_length, .. } = self.weights;
+    fn extend_paths(&mut self, moved: &DVector<f64>, normal: &DVector<f64>) -> bool {
+        let RecombinationWeights { step_rate, path_rate, mass, expected_length, .. } = self.weights;
         self.step_path *= 1.0 - step_rate;
         // The standard normal step rotated by the eigenvectors equals C^(-1/2) times the step.
         self.step_path += (&self.vectors * normal) * (step_rate * (2.0 - step_rate) * mass).sqrt();
@@ -128,8 +129,8 @@ impl Strategy {
     }
 
     /// Updates the covariance towards good candidates and away from bad ones.
-    fn adapt(&mut self, order: &[usize], steady: bool) {
-        let Weights { rank_one_rate, rank_mu_rate, path_rate, .. } = self.weights;
+    fn adapt_covariance(&mut self, order: &[usize], steady: bool) {
+        let RecombinationWeights { rank_one_rate, rank_mu_rate, path_rate, .. } = self.weights;
         let n = self.mean.len() as f64;
         // Compensates the variance that a stalled path does not contribute.
         let missed = if steady { 0.0 } else { path_rate * (2.0 - path_rate) };
@@ -152,7 +153,7 @@ impl Strategy {
     }
 
     /// Recomputes axes and eigenvectors of the covariance.
-    fn decompose(&mut self) {
+    fn decompose_covariance(&mut self) {
         self.decomposed = self.generation;
         self.covariance = (&self.covariance + self.covariance.transpose()) * 0.5;
         let SymmetricEigen { eigenvectors, eigenvalues } =
@@ -165,7 +166,7 @@ impl Strategy {
     }
 
     /// Number of candidates per generation.
-    pub fn population(&self) -> usize {
+    pub fn population_size(&self) -> usize {
         self.normal.ncols()
     }
 
@@ -180,21 +181,24 @@ impl Strategy {
     }
 
     /// Variances of the coordinates.
-    pub fn variances(&self) -> DVector<f64> {
+    pub fn coordinate_variances(&self) -> DVector<f64> {
         self.covariance.diagonal() * self.sigma.powi(2)
     }
 
     /// Variance effective selection mass.
-    pub(super) fn mass(&self) -> f64 {
+    pub(super) fn selection_mass(&self) -> f64 {
         self.weights.mass
     }
 
     /// True if no axis changes the mean any more, or the covariance is nearly singular (Auger and
     /// Hansen 2005).
-    pub(super) fn exhausted(&self) -> bool {
+    pub(super) fn is_exhausted(&self) -> bool {
         let (low, high) = (self.roots.min(), self.roots.max());
-        let still =
-            self.mean.iter().zip(self.variances().iter()).all(|(m, v)| m + 0.2 * v.sqrt() == *m);
+        let still = self
+            .mean
+            .iter()
+            .zip(self.coordinate_variances().iter())
+            .all(|(m, v)| m + 0.2 * v.sqrt() == *m);
         still || !self.sigma.is_finite() || high >= 1e7 * low
     }
 }

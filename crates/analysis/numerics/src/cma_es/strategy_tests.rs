@@ -99,7 +99,7 @@ fn cost(x: &[f64]) -> f64 {
 #[test]
 fn generations_are_those_of_the_tutorial() {
     let start = [1.0, -2.0, 0.5];
-    let mut strategy = Strategy::new(&start, 0.5, POPULATION, 3);
+    let mut strategy = EvolutionStrategy::new(&start, 0.5, POPULATION, 3);
     let mut reference = Reference {
         mean: DVector::from_column_slice(&start),
         sigma: 0.5,
@@ -108,14 +108,17 @@ fn generations_are_those_of_the_tutorial() {
         path: DVector::zeros(N),
         generation: 0,
     };
-    assert_eq!((strategy.weights.patience(N), strategy.population()), (1, POPULATION));
-    assert_eq!(strategy.mass(), constants(3.0, POPULATION).mass);
+    assert_eq!(
+        (strategy.weights.decomposition_interval(N), strategy.population_size()),
+        (1, POPULATION)
+    );
+    assert_eq!(strategy.selection_mass(), constants(3.0, POPULATION).mass);
     let (mut stopped, mut steady) = (0, 0);
     for _ in 0..30 {
-        let candidates = strategy.ask();
+        let candidates = strategy.draw_candidates();
         let costs: Vec<f64> = candidates.column_iter().map(|x| cost(x.as_slice())).collect();
         let before = strategy.path.clone();
-        strategy.tell(&costs);
+        strategy.update_from_costs(&costs);
         reference.tell(&candidates, &costs);
         let shrunk = &before * (1.0 - strategy.weights.path_rate);
         if (&strategy.path - shrunk).norm() < 1e-12 {
@@ -128,7 +131,7 @@ fn generations_are_those_of_the_tutorial() {
         for i in 0..N {
             assert!(near(strategy.mean()[i], reference.mean[i]));
             let variance = reference.covariance[(i, i)] * reference.sigma.powi(2);
-            assert!(near(strategy.variances()[i], variance));
+            assert!(near(strategy.coordinate_variances()[i], variance));
             for j in 0..N {
                 assert!(near(strategy.covariance[(i, j)], reference.covariance[(i, j)]));
             }
@@ -140,82 +143,85 @@ fn generations_are_those_of_the_tutorial() {
 /// In one generation sigma grows by a factor of e at most.
 #[test]
 fn a_step_size_grows_by_no_more_than_e() {
-    let mut strategy = Strategy::new(&[0.0; N], 1.0, POPULATION, 3);
+    let mut strategy = EvolutionStrategy::new(&[0.0; N], 1.0, POPULATION, 3);
     strategy.step_path = DVector::repeat(N, 1e6);
-    strategy.ask();
-    strategy.tell(&[1.0; POPULATION]);
+    strategy.draw_candidates();
+    strategy.update_from_costs(&[1.0; POPULATION]);
     assert!((strategy.sigma() - std::f64::consts::E).abs() < 1e-12);
 }
 
 #[test]
 fn a_decomposition_gives_the_covariance_back() {
-    let mut strategy = Strategy::new(&[0.0; 2], 1.0, POPULATION, 3);
+    let mut strategy = EvolutionStrategy::new(&[0.0; 2], 1.0, POPULATION, 3);
     strategy.covariance = DMatrix::from_row_slice(2, 2, &[4.0, 1.5, 0.5, 2.0]);
     strategy.generation = 7;
-    strategy.decompose();
+    strategy.decompose_covariance();
     let symmetric = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 2.0]);
     assert!((&strategy.axes * strategy.axes.transpose() - &symmetric).amax() < 1e-12);
     assert_eq!((strategy.covariance.clone(), strategy.decomposed), (symmetric, 7));
     let root = &strategy.vectors * DMatrix::from_diagonal(&strategy.roots);
     assert!((root - &strategy.axes).amax() < 1e-12);
     strategy.covariance = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, -1.0]));
-    strategy.decompose();
+    strategy.decompose_covariance();
     assert!((strategy.roots.min() - 1e-7).abs() < 1e-12, "{}", strategy.roots);
 }
 
 #[test]
 fn what_cannot_move_any_more_is_exhausted() {
-    let strategy = Strategy::new(&[1.0, 2.0], 0.5, POPULATION, 3);
-    assert!(!strategy.exhausted());
+    let strategy = EvolutionStrategy::new(&[1.0, 2.0], 0.5, POPULATION, 3);
+    assert!(!strategy.is_exhausted());
     let mut small = strategy.clone();
     small.sigma = 1e-17;
-    assert!(small.exhausted());
+    assert!(small.is_exhausted());
     // One coordinate that moves is enough.
     small.mean[0] = 0.0;
-    assert!(!small.exhausted());
+    assert!(!small.is_exhausted());
     let mut grown = strategy.clone();
     grown.sigma = f64::INFINITY;
-    assert!(grown.exhausted());
+    assert!(grown.is_exhausted());
     for (least, is_exhausted) in [(1.1e-7, false), (1e-7, true)] {
         let mut narrow = strategy.clone();
         narrow.roots = DVector::from_vec(vec![1.0, least]);
-        assert_eq!(narrow.exhausted(), is_exhausted, "{least}");
+        assert_eq!(narrow.is_exhausted(), is_exhausted, "{least}");
     }
 }
 
 #[test]
 fn what_is_renewed_keeps_its_shape_and_moves_again() {
-    let mut strategy = Strategy::new(&[1.0, 2.0], 0.5, POPULATION, 3);
+    let mut strategy = EvolutionStrategy::new(&[1.0, 2.0], 0.5, POPULATION, 3);
     strategy.covariance = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, 7.0]));
     for _ in 0..3 {
-        let candidates = strategy.ask();
+        let candidates = strategy.draw_candidates();
         let costs: Vec<f64> = candidates.column_iter().map(|x| cost(x.as_slice())).collect();
-        strategy.tell(&costs);
+        strategy.update_from_costs(&costs);
     }
     strategy.sigma = 1e-3;
     let variance = strategy.covariance.diagonal().mean();
-    let mut renewed = strategy.renewed(&[5.0, 6.0], 0.4, 9);
+    let mut renewed = strategy.restart_at(&[5.0, 6.0], 0.4, 9);
     assert_eq!(renewed.mean(), &DVector::from_vec(vec![5.0, 6.0]));
     assert!((renewed.sigma() - 0.4 / variance.sqrt()).abs() < 1e-12);
     assert_eq!(renewed.covariance, strategy.covariance);
     assert_eq!((renewed.path.norm(), renewed.step_path.norm()), (0.0, 0.0));
     assert_eq!((renewed.generation, renewed.decomposed), (0, 0));
-    assert_ne!(renewed.ask(), strategy.renewed(&[5.0, 6.0], 0.4, 10).ask());
-    assert_eq!(strategy.renewed(&[5.0, 6.0], 1e-9, 9).sigma(), 1e-3);
+    assert_ne!(
+        renewed.draw_candidates(),
+        strategy.restart_at(&[5.0, 6.0], 0.4, 10).draw_candidates()
+    );
+    assert_eq!(strategy.restart_at(&[5.0, 6.0], 1e-9, 9).sigma(), 1e-3);
 }
 
 /// A population of four is the least.
 #[test]
 fn a_population_is_four_at_least() {
-    assert_eq!(Strategy::new(&[0.0; 2], 1.0, 1, 3).population(), 4);
-    assert_eq!(Strategy::new(&[0.0; 2], 1.0, 9, 3).population(), 9);
+    assert_eq!(EvolutionStrategy::new(&[0.0; 2], 1.0, 1, 3).population_size(), 4);
+    assert_eq!(EvolutionStrategy::new(&[0.0; 2], 1.0, 9, 3).population_size(), 9);
 }
 
 /// Table 1 over dimensions and populations, also where the learning rates are bounded.
 #[test]
 fn weights_and_rates_are_those_of_the_table() {
     for (n, population) in [(3, 8), (40, 14), (2, 300), (100, 7)] {
-        let own = Weights::new(n, population);
+        let own = RecombinationWeights::new(n, population);
         let table = constants(n as f64, population);
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{n}, {population}: {a} {b}");
         own.all.iter().zip(&table.weights).for_each(|(a, b)| near(*a, *b));
@@ -226,8 +232,8 @@ fn weights_and_rates_are_those_of_the_table() {
         near(own.rank_one_rate, table.c_1);
         near(own.rank_mu_rate, table.c_mu);
         let lag = (0.5 / (n as f64 * (table.c_1 + table.c_mu))).floor().max(1.0);
-        assert_eq!(own.patience(n), lag as usize);
+        assert_eq!(own.decomposition_interval(n), lag as usize);
         assert_eq!(own.parents, population / 2);
     }
-    assert!(Weights::new(100, 7).patience(100) > 1);
+    assert!(RecombinationWeights::new(100, 7).decomposition_interval(100) > 1);
 }

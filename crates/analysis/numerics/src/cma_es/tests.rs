@@ -1,7 +1,7 @@
 use super::*;
 
 fn search(dimension: usize, width: f64, evaluations: usize) -> CmaEsSearch {
-    let budget = Budget { evaluations, wall_s: None, cpu_s: None };
+    let budget = SearchBudget { evaluations, wall_s: None, cpu_s: None };
     CmaEsSearch {
         widths: vec![width; dimension],
         sigma: 0.5,
@@ -13,7 +13,7 @@ fn search(dimension: usize, width: f64, evaluations: usize) -> CmaEsSearch {
 }
 
 fn least(search: &CmaEsSearch, cost: &(dyn Fn(&[f64]) -> f64 + Sync)) -> SearchOutcome {
-    search.least(cost, &mut |_| true).unwrap_or_else(|_| panic!("nobody asked to stop"))
+    search.find_minimum(cost, &mut |_| true).unwrap_or_else(|_| panic!("nobody asked to stop"))
 }
 
 fn sphere(x: &[f64]) -> f64 {
@@ -72,7 +72,7 @@ fn populations_grow_to_the_largest_and_all_candidates_are_inside() {
         assert!(x.iter().all(|x| x.abs() <= 2.0));
         1.0
     };
-    let outcome = search(4, 2.0, 12_000).least(&cost, &mut |standing| {
+    let outcome = search(4, 2.0, 12_000).find_minimum(&cost, &mut |standing| {
         told += 1;
         standing.population <= 64
     });
@@ -107,7 +107,7 @@ fn a_seed_and_a_budget_give_the_same_point_to_the_last_bit() {
 #[test]
 fn a_search_that_is_told_to_stop_stops() {
     let mut generations = 0;
-    let outcome = search(3, 1.0, 100_000).least(&sphere, &mut |_| {
+    let outcome = search(3, 1.0, 100_000).find_minimum(&sphere, &mut |_| {
         generations += 1;
         generations < 5
     });
@@ -116,9 +116,9 @@ fn a_search_that_is_told_to_stop_stops() {
 
 #[test]
 fn time_ends_a_search_too() {
-    let budget = Budget { evaluations: usize::MAX, wall_s: Some(0.05), cpu_s: None };
+    let budget = SearchBudget { evaluations: usize::MAX, wall_s: Some(0.05), cpu_s: None };
     let by_wall = least(&CmaEsSearch { budget, ..search(5, 5.0, 0) }, &rosenbrock);
-    let budget = Budget { evaluations: usize::MAX, wall_s: Some(30.0), cpu_s: Some(0.05) };
+    let budget = SearchBudget { evaluations: usize::MAX, wall_s: Some(30.0), cpu_s: Some(0.05) };
     let by_cpu = least(&CmaEsSearch { budget, ..search(5, 5.0, 0) }, &rosenbrock);
     assert!(by_wall.spent.wall_s() < 10.0 && by_cpu.spent.wall_s() < 10.0);
 }
@@ -126,18 +126,18 @@ fn time_ends_a_search_too() {
 /// The share of a budget that is gone is the largest of its parts.
 #[test]
 fn a_budget_is_gone_by_what_is_scarcest() {
-    let mut spent = Spent::nothing();
+    let mut spent = SearchUsage::start_now();
     spent.evaluations = 30;
-    let budget = |evaluations, wall_s, cpu_s| Budget { evaluations, wall_s, cpu_s };
-    assert_eq!(spent.share(&budget(120, None, None)), 0.25);
-    assert_eq!(spent.share(&budget(120, Some(1e9), Some(1e9))), 0.25);
+    let budget = |evaluations, wall_s, cpu_s| SearchBudget { evaluations, wall_s, cpu_s };
+    assert_eq!(spent.used_share(&budget(120, None, None)), 0.25);
+    assert_eq!(spent.used_share(&budget(120, Some(1e9), Some(1e9))), 0.25);
     std::thread::sleep(std::time::Duration::from_millis(5));
     assert!(spent.wall_s() >= 0.005 && spent.wall_s() < 5.0);
-    assert!(spent.share(&budget(120, Some(0.002), None)) > 2.0);
+    assert!(spent.used_share(&budget(120, Some(0.002), None)) > 2.0);
     let begun = spent.cpu_s();
     while begun.zip(spent.cpu_s()).is_some_and(|(from, now)| now - from < 0.01) {}
     if let Some(cpu_s) = spent.cpu_s() {
         assert!((0.01..5.0).contains(&cpu_s), "{cpu_s}");
-        assert!(spent.share(&budget(120, None, Some(0.005))) >= 2.0);
+        assert!(spent.used_share(&budget(120, None, Some(0.005))) >= 2.0);
     }
 }

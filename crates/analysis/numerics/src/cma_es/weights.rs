@@ -2,7 +2,7 @@
 
 /// Constants that depend on dimension and population.
 #[derive(Debug, Clone)]
-pub(super) struct Weights {
+pub(super) struct RecombinationWeights {
     /// Weights by rank, best first; those of the worse half are negative.
     pub all: Vec<f64>,
     /// Number of positive weights.
@@ -18,7 +18,7 @@ pub(super) struct Weights {
     pub expected_length: f64,
 }
 
-impl Weights {
+impl RecombinationWeights {
     /// Computes the constants for a dimension and a population.
     pub fn new(dimension: usize, population: usize) -> Self {
         let n = dimension as f64;
@@ -28,14 +28,14 @@ impl Weights {
             .collect();
         let parents = raw.iter().filter(|w| **w > 0.0).count();
         let (better, worse) = raw.split_at(parents);
-        let mass = effective(better);
+        let mass = effective_mass(better);
         let rank_one_rate = 2.0 / ((n + 1.3).powi(2) + mass);
         let rank_mu_rate = (2.0 * (0.25 + mass + 1.0 / mass - 2.0) / ((n + 2.0).powi(2) + mass))
             .min(1.0 - rank_one_rate);
         // Limits of the sum of the negative weights; the smallest of them applies.
         let against = [
             1.0 + rank_one_rate / rank_mu_rate,
-            1.0 + 2.0 * effective(worse) / (mass + 2.0),
+            1.0 + 2.0 * effective_mass(worse) / (mass + 2.0),
             (1.0 - rank_one_rate - rank_mu_rate) / (n * rank_mu_rate),
         ];
         let against = against.into_iter().fold(f64::INFINITY, f64::min);
@@ -61,14 +61,14 @@ impl Weights {
     }
 
     /// Number of generations over which the covariance changes too little for a new decomposition.
-    pub fn patience(&self, dimension: usize) -> usize {
+    pub fn decomposition_interval(&self, dimension: usize) -> usize {
         (0.5 / (dimension as f64 * (self.rank_one_rate + self.rank_mu_rate))).floor().max(1.0)
             as usize
     }
 }
 
 /// Effective number of weights, (sum w)^2 / sum w^2.
-fn effective(weights: &[f64]) -> f64 {
+fn effective_mass(weights: &[f64]) -> f64 {
     let (sum, squares) =
         weights.iter().fold((0.0, 0.0), |(sum, squares), w| (sum + w, squares + w * w));
     if squares > 0.0 { sum * sum / squares } else { 0.0 }

@@ -1,10 +1,10 @@
 //! Revolutions at which thrust and resistance are in equilibrium.
 
-use crate::estimates::propeller::Thrust;
+use crate::estimates::propeller::ThrustParabola;
 
 /// A ship on a straight course.
 #[derive(Debug, Clone, Copy)]
-pub struct Straight {
+pub struct StraightCourse {
     /// Length, m.
     pub lpp_m: f64,
     /// Draught, m.
@@ -20,10 +20,10 @@ pub struct Straight {
     /// Propeller diameter, m.
     pub diameter_m: f64,
     /// Its thrust.
-    pub thrust: Thrust,
+    pub thrust: ThrustParabola,
 }
 
-impl Straight {
+impl StraightCourse {
     /// Returns the revolutions, 1/s; none where the propeller cannot give the thrust.
     ///
     /// `(1 - t) rho n^2 D^4 K_T(J) = R` with `n = u_P/(J D)` is `K_T(J) = c J^2`.
@@ -32,7 +32,7 @@ impl Straight {
         let resistance = -0.5 * self.x_0 * self.lpp_m * self.draught_m * self.speed_m_s.powi(2);
         let inflow = (1.0 - self.w_p0) * self.speed_m_s;
         let c = resistance / ((1.0 - self.t_p) * (inflow * self.diameter_m).powi(2));
-        let Thrust { k_0, k_1, k_2 } = self.thrust;
+        let ThrustParabola { k_0, k_1, k_2 } = self.thrust;
         let advance = positive_root(k_2 - c, k_1, k_0)?;
         Some(inflow / (advance * self.diameter_m))
     }
@@ -52,7 +52,7 @@ mod tests {
 
     #[test]
     fn kvlcc2_runs_at_its_own_revolutions() {
-        let kvlcc2 = Straight {
+        let kvlcc2 = StraightCourse {
             lpp_m: 320.0,
             draught_m: 20.8,
             speed_m_s: 7.974,
@@ -60,12 +60,12 @@ mod tests {
             t_p: 0.22,
             w_p0: 0.4,
             diameter_m: 9.86,
-            thrust: Thrust { k_0: 0.2931, k_1: -0.2753, k_2: -0.1385 },
+            thrust: ThrustParabola { k_0: 0.2931, k_1: -0.2753, k_2: -0.1385 },
         };
         assert!((kvlcc2.revolutions_rps().unwrap() - 1.547).abs() < 0.005);
-        let weak = Straight {
+        let weak = StraightCourse {
             diameter_m: 9.86,
-            thrust: Thrust { k_0: -0.1, k_1: -0.3, k_2: 0.0 },
+            thrust: ThrustParabola { k_0: -0.1, k_1: -0.3, k_2: 0.0 },
             ..kvlcc2
         };
         assert_eq!(weak.revolutions_rps(), None);

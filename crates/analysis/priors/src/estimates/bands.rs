@@ -2,17 +2,18 @@
 
 use rayon::prelude::*;
 use serde::Serialize;
-use sistership_assessment::uncertainty::{Band, bands_over};
+use sistership_assessment::uncertainty::{UncertaintyBand, bands_over};
 use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_simulation::manoeuvre::{
-    Manoeuvre, ManoeuvreSettings, Sailed, StandardManoeuvres, Turn, Zigzag, sail_together,
+    Manoeuvre, ManoeuvreSettings, SimulatedManoeuvre, StandardManoeuvres, TurningCircle,
+    ZigzagTest, simulate_manoeuvre_batch,
 };
-use sistership_simulation::metrics::{criteria, initial_turning_distance};
-use sistership_simulation::{Ship, Stopped};
+use sistership_simulation::metrics::{imo_criteria, initial_turning_distance};
+use sistership_simulation::{Ship, SimulationStop};
 
-use crate::estimates::draws::Draws;
-use crate::estimates::estimate::Estimate;
+use crate::estimates::draws::DeviationDraws;
+use crate::estimates::estimate::ShipEstimate;
 use crate::estimates::limits;
 
 /// Number of sets of parameters and particulars that are drawn; each is a ship of its own.
@@ -40,15 +41,15 @@ pub struct EstimateBands {
     /// Number of models that left the physical range in some manoeuvre.
     pub failed: usize,
     /// Band of each figure: 95 % of the draws that reached it are inside.
-    pub figures: Vec<Band>,
+    pub figures: Vec<UncertaintyBand>,
 }
 
 /// Simulates the standard manoeuvres by the estimate and by draws around it; the same seed gives
 /// the same bands. Returns none where the law does not fit.
-pub fn estimate_bands(estimate: &Estimate, law: &Law, seed: u64) -> Option<EstimateBands> {
-    let lots = lots(estimate, seed);
+pub fn estimate_bands(estimate: &ShipEstimate, law: &Law, seed: u64) -> Option<EstimateBands> {
+    let lots = draw_models(estimate, seed);
     let sailed: Vec<Vec<StandardManoeuvres>> =
-        lots.par_iter().map(|lot| sailed(lot, law)).collect::<Option<_>>()?;
+        lots.par_iter().map(|lot| simulate_standard(lot, law)).collect::<Option<_>>()?;
     let mut sailed = sailed.into_iter();
     // The first group is the estimate itself, the others are draws.
     let own = sailed.next()?.into_iter().next()?;
@@ -62,30 +63,31 @@ pub fn estimate_bands(estimate: &Estimate, law: &Law, seed: u64) -> Option<Estim
 }
 
 /// Groups of models that differ in their coefficients alone; the first group is the estimate.
-fn lots(estimate: &Estimate, seed: u64) -> Vec<Vec<Model>> {
-    let mut around = Draws::new(&estimate.around_covariance, seed);
+fn draw_models(estimate: &ShipEstimate, seed: u64) -> Vec<Vec<Model>> {
+    let mut around = DeviationDraws::new(&estimate.around_covariance, seed);
     // Two independent streams from one seed.
-    let mut coefficients = Draws::new(&estimate.coefficients_covariance, seed ^ 0x9e37_79b9);
+    let mut coefficients =
+        DeviationDraws::new(&estimate.coefficients_covariance, seed ^ 0x9e37_79b9);
     let mut lots = vec![vec![estimate.model.clone()]];
     for _ in 0..SHIPS {
         let moved: Vec<f64> = estimate
             .around
             .iter()
-            .zip(around.next())
-            .map(|(one, by)| limits::parameter(&one.name, one.mean + by))
+            .zip(around.next_deviations())
+            .map(|(one, by)| limits::clamp_parameter(&one.name, one.mean + by))
             .collect();
-        let ship = estimate.moved(&within_particulars(estimate, &moved));
+        let ship = estimate.with_values(&within_particulars(estimate, &moved));
         // A drawn ship whose propeller cannot balance the resistance is omitted.
-        let Ok(ship) = estimate.balanced(ship) else { continue };
-        let sister = |_| drawn(estimate, &ship, &coefficients.next());
+        let Ok(ship) = estimate.balance_thrust(ship) else { continue };
+        let sister = |_| draw_coefficients(estimate, &ship, &coefficients.next_deviations());
         lots.push((0..SISTERS).map(sister).collect());
     }
     lots
 }
 
 /// Limits drawn particulars: no change of sign, and no more than twice the mean.
-fn within_particulars(estimate: &Estimate, moved: &[f64]) -> Vec<f64> {
-    let one = |(one, value): (&crate::estimates::combined::Combined, &f64)| {
+fn within_particulars(estimate: &ShipEstimate, moved: &[f64]) -> Vec<f64> {
+    let one = |(one, value): (&crate::estimates::combined::CombinedEstimate, &f64)| {
         if one.name.ends_with("_m") && one.name != "x_g_m"
             || one.name.ends_with("_m2")
             || one.name.ends_with("_ratio")
@@ -99,34 +101,36 @@ fn within_particulars(estimate: &Estimate, moved: &[f64]) -> Vec<f64> {
     estimate.around.iter().zip(moved).map(one).collect()
 }
 
-fn drawn(estimate: &Estimate, ship: &Model, moved: &[f64]) -> Model {
+fn draw_coefficients(estimate: &ShipEstimate, ship: &Model, moved: &[f64]) -> Model {
     let mut model = Model { posterior: None, ..ship.clone() };
     for (one, by) in estimate.coefficients.iter().zip(moved) {
         if let Some(quantity) = model.coefficients.get_mut(&one.name) {
-            quantity.value = limits::coefficient(&one.name, one.mean + by, one.mean);
+            quantity.value = limits::limit_coefficient(&one.name, one.mean + by, one.mean);
         }
     }
     model
 }
 
-fn sailed(lot: &[Model], law: &Law) -> Option<Vec<StandardManoeuvres>> {
-    let ship = Ship::sisters(lot.first()?, law).ok()?;
+fn simulate_standard(lot: &[Model], law: &Law) -> Option<Vec<StandardManoeuvres>> {
+    let ship = Ship::with_open_coefficients(lot.first()?, law).ok()?;
     let sisters: Vec<Vec<f64>> =
-        lot.iter().map(|model| ship.sister(model)).collect::<Option<_>>()?;
+        lot.iter().map(|model| ship.open_coefficient_values(model)).collect::<Option<_>>()?;
     let mut all = vec![StandardManoeuvres::default(); lot.len()];
     let turn = Manoeuvre::Turn { rudder: HARD_DEG };
     for (one, sailed) in all.iter_mut().zip(run(&ship, &sisters, &[turn], Some(TURN_LENGTHS))) {
-        let turn = sailed.and_then(|sailed| Turn::of(sailed, HARD_DEG));
-        note(one, turn.map(|turn| turn.metrics), turn_name, |all, turn| all.turns.push(turn));
+        let turn = sailed.and_then(|sailed| TurningCircle::from_manoeuvre(sailed, HARD_DEG));
+        record_outcome(one, turn.map(|turn| turn.metrics), turn_name, |all, turn| {
+            all.turns.push(turn)
+        });
     }
     // Both angles at once: simulations that end early give their lanes to others.
     let zigzag = |angle: f64| Manoeuvre::Zigzag { rudder: angle, switch: angle };
     let mut zigzags = run(&ship, &sisters, &ZIGZAGS_DEG.map(zigzag), None).into_iter();
     for angle in ZIGZAGS_DEG {
         for (one, sailed) in all.iter_mut().zip(zigzags.by_ref()) {
-            let zigzag = sailed.and_then(|sailed| Zigzag::of(sailed, angle, angle));
+            let zigzag = sailed.and_then(|sailed| ZigzagTest::from_manoeuvre(sailed, angle, angle));
             let name = || zigzag_name(angle);
-            note(one, zigzag.map(|zigzag| zigzag.metrics), name, |all, zigzag| {
+            record_outcome(one, zigzag.map(|zigzag| zigzag.metrics), name, |all, zigzag| {
                 all.zigzags.push(zigzag);
             });
         }
@@ -142,7 +146,8 @@ fn sailed(lot: &[Model], law: &Law) -> Option<Vec<StandardManoeuvres>> {
     // The criteria combine figures of several manoeuvres.
     for one in &mut all {
         let speed = ship.approach_speed_m_s();
-        one.imo = criteria(ship.lpp_m(), speed, &one.turns, &one.zigzags, one.initial_turning_m);
+        one.imo =
+            imo_criteria(ship.lpp_m(), speed, &one.turns, &one.zigzags, one.initial_turning_m);
     }
     Some(all)
 }
@@ -162,7 +167,7 @@ fn run(
     sisters: &[Vec<f64>],
     manoeuvres: &[Manoeuvre],
     lengths: Option<f64>,
-) -> Vec<Result<Sailed, Stopped>> {
+) -> Vec<Result<SimulatedManoeuvre, SimulationStop>> {
     let length_s = ship.lpp_m() / ship.approach_speed_m_s();
     let settings = ManoeuvreSettings {
         step_s: Some(STEP_LENGTHS * length_s),
@@ -175,12 +180,12 @@ fn run(
         sisters.iter().map(move |sister| (manoeuvre, sister.as_slice()))
     };
     let all: Vec<(Manoeuvre, &[f64])> = manoeuvres.iter().flat_map(by_all).collect();
-    sail_together(ship, &all, &settings)
+    simulate_manoeuvre_batch(ship, &all, &settings)
 }
 
-fn note<T>(
+fn record_outcome<T>(
     all: &mut StandardManoeuvres,
-    sailed: Result<T, Stopped>,
+    sailed: Result<T, SimulationStop>,
     name: impl Fn() -> String,
     keep: impl Fn(&mut StandardManoeuvres, T),
 ) {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
-use crate::estimates::regression::Given;
+use crate::estimates::regression::RegressionValue;
 
 /// Share of the mixture's variance that is used. The scatter of each regression against four hulls
 /// includes its bias, which the variance between regressions counts again, and values of one ship
@@ -19,21 +19,21 @@ pub const SPREAD: f64 = 0.35;
 
 /// One value of the mixture.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Combined {
+pub struct CombinedEstimate {
     /// Name of the estimated value.
     pub name: String,
     /// Value of each regression.
-    pub given: Vec<Given>,
+    pub given: Vec<RegressionValue>,
     /// Mean.
     pub mean: f64,
     /// Variance within the regressions.
     pub within: f64,
 }
 
-impl Combined {
+impl CombinedEstimate {
     /// Combines the values of regressions; none where there is no value.
-    pub fn of(name: &str, given: Vec<Given>) -> Option<Self> {
-        let weights = weights(&given);
+    pub fn from_regressions(name: &str, given: Vec<RegressionValue>) -> Option<Self> {
+        let weights = inverse_variances(&given);
         let total: f64 = weights.iter().sum();
         if given.is_empty() || total <= 0.0 || total.is_nan() {
             return None;
@@ -46,13 +46,13 @@ impl Combined {
     }
 
     /// Regression with the largest weight.
-    pub fn leading(&self) -> Option<&Given> {
+    pub fn leading_regression(&self) -> Option<&RegressionValue> {
         self.given.iter().min_by(|a, b| a.scatter.total_cmp(&b.scatter))
     }
 
     /// Deviation of each regression from the mean, times the root of its weight.
-    fn deviations(&self) -> BTreeMap<&str, f64> {
-        let weights = weights(&self.given);
+    fn weighted_deviations(&self) -> BTreeMap<&str, f64> {
+        let weights = inverse_variances(&self.given);
         let total: f64 = weights.iter().sum();
         let mut deviations = BTreeMap::new();
         for (given, weight) in self.given.iter().zip(&weights) {
@@ -63,14 +63,15 @@ impl Combined {
     }
 }
 
-fn weights(given: &[Given]) -> Vec<f64> {
+fn inverse_variances(given: &[RegressionValue]) -> Vec<f64> {
     // A floor of the scatter, so that a regression without any has a finite weight.
     given.iter().map(|one| one.scatter.max(1e-12).powi(-2)).collect()
 }
 
 /// Covariance of values, in their order.
-pub fn covariance(values: &[Combined]) -> DMatrix<f64> {
-    let deviations: Vec<BTreeMap<&str, f64>> = values.iter().map(Combined::deviations).collect();
+pub fn mixture_covariance(values: &[CombinedEstimate]) -> DMatrix<f64> {
+    let deviations: Vec<BTreeMap<&str, f64>> =
+        values.iter().map(CombinedEstimate::weighted_deviations).collect();
     DMatrix::from_fn(values.len(), values.len(), |i, j| {
         // Only regressions that give both values contribute to the covariance between them.
         let between: f64 = deviations[i]
@@ -86,27 +87,39 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    fn given(regression: &str, value: f64, scatter: f64) -> Given {
-        Given { regression: regression.into(), value, scatter }
+    fn given(regression: &str, value: f64, scatter: f64) -> RegressionValue {
+        RegressionValue { regression: regression.into(), value, scatter }
     }
 
     #[test]
     fn mean_and_variance_are_those_of_the_mixture() {
-        let two = Combined::of("Y_v", vec![given("a", -0.3, 0.1), given("b", -0.2, 0.1)]).unwrap();
+        let two = CombinedEstimate::from_regressions(
+            "Y_v",
+            vec![given("a", -0.3, 0.1), given("b", -0.2, 0.1)],
+        )
+        .unwrap();
         assert!((two.mean + 0.25).abs() < 1e-12);
-        assert!((covariance(&[two])[(0, 0)] - SPREAD * (0.01 + 0.0025)).abs() < 1e-12);
-        let sure =
-            Combined::of("Y_v", vec![given("a", -0.3, 0.1), given("b", -0.2, 0.01)]).unwrap();
-        assert!((sure.mean + 0.201).abs() < 1e-3 && sure.leading().unwrap().regression == "b");
-        assert_eq!(Combined::of("Y_v", Vec::new()), None);
+        assert!((mixture_covariance(&[two])[(0, 0)] - SPREAD * (0.01 + 0.0025)).abs() < 1e-12);
+        let sure = CombinedEstimate::from_regressions(
+            "Y_v",
+            vec![given("a", -0.3, 0.1), given("b", -0.2, 0.01)],
+        )
+        .unwrap();
+        assert!(
+            (sure.mean + 0.201).abs() < 1e-3
+                && sure.leading_regression().unwrap().regression == "b"
+        );
+        assert_eq!(CombinedEstimate::from_regressions("Y_v", Vec::new()), None);
     }
 
     #[test]
     fn values_of_the_same_regressions_go_together() {
-        let of =
-            |name, a, b| Combined::of(name, vec![given("a", a, 0.1), given("b", b, 0.1)]).unwrap();
+        let of = |name, a, b| {
+            CombinedEstimate::from_regressions(name, vec![given("a", a, 0.1), given("b", b, 0.1)])
+                .unwrap()
+        };
         let pair = [of("Y_v", -0.3, -0.2), of("N_v", -0.12, -0.10)];
-        let together = covariance(&pair);
+        let together = mixture_covariance(&pair);
         assert!((together[(0, 1)] - SPREAD * 0.05 * 0.01).abs() < 1e-12, "{together}");
         assert!(together.cholesky().is_some());
     }

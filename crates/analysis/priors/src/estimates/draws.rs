@@ -6,13 +6,13 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
 
 /// Generator of deviations from the mean, in antithetic pairs.
-pub struct Draws {
+pub struct DeviationDraws {
     root: DMatrix<f64>,
     rng: ChaCha12Rng,
     mirrored: Option<Vec<f64>>,
 }
 
-impl Draws {
+impl DeviationDraws {
     /// Creates a generator from a covariance; a billionth is added to the diagonal against
     /// rounding.
     pub fn new(covariance: &DMatrix<f64>, seed: u64) -> Self {
@@ -27,7 +27,7 @@ impl Draws {
     }
 
     /// Next deviations.
-    pub fn next(&mut self) -> Vec<f64> {
+    pub fn next_deviations(&mut self) -> Vec<f64> {
         if let Some(mirrored) = self.mirrored.take() {
             return mirrored;
         }

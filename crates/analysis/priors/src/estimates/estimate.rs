@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 use sistership_model::estimated_particulars::ESTIMATED;
 use sistership_model::law::Law;
-use sistership_model::model::{DERIVED, ModelKind};
+use sistership_model::model::{DERIVED_SOURCE, ModelKind};
 use sistership_model::particulars::Particulars;
 use sistership_model::posterior::Posterior;
 use sistership_model::quantity::Quantity;
@@ -14,14 +14,14 @@ use sistership_model::vessel::{Status, Steering};
 use sistership_model::{Model, Vessel};
 
 use crate::estimates::LAW;
-use crate::estimates::balance::Straight;
-use crate::estimates::combined::{Combined, covariance};
+use crate::estimates::balance::StraightCourse;
+use crate::estimates::combined::{CombinedEstimate, mixture_covariance};
 use crate::estimates::error::EstimateError;
-use crate::estimates::inputs::Inputs;
-use crate::estimates::library::Library;
+use crate::estimates::inputs::FormulaInputs;
+use crate::estimates::library::RegressionLibrary;
 use crate::estimates::limits;
 use crate::estimates::particulars::complete_particulars;
-use crate::estimates::propeller::Thrust;
+use crate::estimates::propeller::ThrustParabola;
 
 /// Particulars that regressions give where the ship does not state them.
 const REPLACED: [&str; 6] = [
@@ -49,7 +49,7 @@ const BALANCE: &str = "thrust-balance";
 
 /// Uncertainty of one value, with its regressions.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Spread {
+pub struct EstimateSpread {
     /// Name of the coefficient, parameter or particular.
     pub name: String,
     /// Estimate.
@@ -62,13 +62,13 @@ pub struct Spread {
 
 /// Estimate of a ship.
 #[derive(Debug, Clone)]
-pub struct Estimate {
+pub struct ShipEstimate {
     /// Model with the status estimated; its posterior is that of the coefficients.
     pub model: Model,
     /// Particulars that the ship does not state, then parameters.
-    pub(crate) around: Vec<Combined>,
+    pub(crate) around: Vec<CombinedEstimate>,
     pub(crate) around_covariance: DMatrix<f64>,
-    pub(crate) coefficients: Vec<Combined>,
+    pub(crate) coefficients: Vec<CombinedEstimate>,
     pub(crate) coefficients_covariance: DMatrix<f64>,
     pub(crate) thrust: ThrustCurve,
 }
@@ -81,8 +81,8 @@ pub(crate) struct ThrustCurve {
 }
 
 impl ThrustCurve {
-    pub(crate) fn at(&self, pitch_ratio: f64) -> Thrust {
-        self.series.thrust(pitch_ratio.clamp(0.4, 1.4), self.blades)
+    pub(crate) fn thrust_at(&self, pitch_ratio: f64) -> ThrustParabola {
+        self.series.fit_thrust(pitch_ratio.clamp(0.4, 1.4), self.blades)
     }
 }
 
@@ -90,76 +90,76 @@ impl ThrustCurve {
 ///
 /// # Errors
 /// Returns an error that names the particulars that are missing.
-pub fn estimate(
-    library: &Library,
+pub fn estimate_ship(
+    library: &RegressionLibrary,
     vessel: &Vessel,
     law: &Law,
     speed_m_s: f64,
-) -> Result<Estimate, EstimateError> {
+) -> Result<ShipEstimate, EstimateError> {
     let ship = vessel.name();
     let mut particulars = vessel.particulars.clone();
     complete_particulars(&mut particulars, [FULLNESS]);
-    let at = |particulars: &Particulars| regress(library, ship, particulars, speed_m_s);
-    let Regressed { around, coefficients, blades } = at(&particulars)?;
+    let at = |particulars: &Particulars| apply_regressions(library, ship, particulars, speed_m_s);
+    let RegressionResults { around, coefficients, blades } = at(&particulars)?;
     let [by_around, by_coefficients] = fullness_effect(&particulars, &at)?;
     // The error of an estimated block coefficient moves all values together: a rank-one term.
-    let spread = |values: &[Combined], effect: &DVector<f64>| {
-        covariance(values) + effect * effect.transpose()
+    let spread = |values: &[CombinedEstimate], effect: &DVector<f64>| {
+        mixture_covariance(values) + effect * effect.transpose()
     };
-    let mut estimate = Estimate {
-        model: empty(library, vessel, speed_m_s),
+    let mut estimate = ShipEstimate {
+        model: empty_model(library, vessel, speed_m_s),
         around_covariance: spread(&around, &by_around),
         coefficients_covariance: spread(&coefficients, &by_coefficients),
         around,
         coefficients,
         thrust: ThrustCurve { series: library.series.clone(), blades },
     };
-    estimate.fill(&particulars)?;
+    estimate.fill_model(&particulars)?;
     estimate
         .model
-        .check(law)
+        .check_against(law)
         .map_err(|(field, message)| EstimateError::Law(format!("{ship}: {field}: {message}")))?;
     Ok(estimate)
 }
 
 /// Values of all regressions for a ship.
-struct Regressed {
-    around: Vec<Combined>,
-    coefficients: Vec<Combined>,
+struct RegressionResults {
+    around: Vec<CombinedEstimate>,
+    coefficients: Vec<CombinedEstimate>,
     blades: Option<f64>,
 }
 
-fn regress(
-    library: &Library,
+fn apply_regressions(
+    library: &RegressionLibrary,
     ship: &str,
     particulars: &Particulars,
     speed_m_s: f64,
-) -> Result<Regressed, EstimateError> {
-    let mut inputs = Inputs::new(ship, particulars, speed_m_s)?;
+) -> Result<RegressionResults, EstimateError> {
+    let mut inputs = FormulaInputs::new(ship, particulars, speed_m_s)?;
     let (mut around, mut coefficients) = (Vec::new(), Vec::new());
     // Particulars first: the formulas of parameters use them.
     for name in REPLACED {
         if inputs.get(name).is_none() {
-            take(library, ship, &mut inputs, &mut around, name)?;
+            push_estimate(library, ship, &mut inputs, &mut around, name)?;
         }
     }
     // Between the steps: the next formulas use values that follow from the particulars.
     set_derived(&mut inputs);
     // In this order: later formulas use earlier values.
     for name in FIRST.into_iter().chain(PARAMETERS) {
-        take(library, ship, &mut inputs, &mut around, name)?;
+        push_estimate(library, ship, &mut inputs, &mut around, name)?;
     }
     for name in COEFFICIENTS {
-        take(library, ship, &mut inputs, &mut coefficients, name)?;
+        push_estimate(library, ship, &mut inputs, &mut coefficients, name)?;
     }
-    Ok(Regressed { around, coefficients, blades: inputs.get("propeller_blades") })
+    Ok(RegressionResults { around, coefficients, blades: inputs.get("propeller_blades") })
 }
 
 /// Changes of parameters and of coefficients by one standard error of an estimated block
 /// coefficient; zero where it is stated.
 fn fullness_effect(
     particulars: &Particulars,
-    at: &dyn Fn(&Particulars) -> Result<Regressed, EstimateError>,
+    at: &dyn Fn(&Particulars) -> Result<RegressionResults, EstimateError>,
 ) -> Result<[DVector<f64>; 2], EstimateError> {
     let estimated = particulars.get(FULLNESS).filter(|one| one.source.starts_with(ESTIMATED));
     let error = estimated.and_then(|one| one.standard_error).unwrap_or(0.0);
@@ -170,32 +170,32 @@ fn fullness_effect(
     };
     // Central difference over one standard error to either side.
     let (fuller, finer) = (moved(error)?, moved(-error)?);
-    let half = |more: &[Combined], less: &[Combined]| {
+    let half = |more: &[CombinedEstimate], less: &[CombinedEstimate]| {
         let pairs = more.iter().zip(less).map(|(a, b)| 0.5 * (a.mean - b.mean));
         DVector::from_iterator(more.len(), pairs)
     };
     Ok([half(&fuller.around, &finer.around), half(&fuller.coefficients, &finer.coefficients)])
 }
 
-fn take(
-    library: &Library,
+fn push_estimate(
+    library: &RegressionLibrary,
     ship: &str,
-    inputs: &mut Inputs,
-    into: &mut Vec<Combined>,
+    inputs: &mut FormulaInputs,
+    into: &mut Vec<CombinedEstimate>,
     name: &str,
 ) -> Result<(), EstimateError> {
-    let given = library.given(name, &|name| inputs.get(name));
+    let given = library.regression_values(name, &|name| inputs.get(name));
     let missing = || EstimateError::NotGiven { ship: ship.to_owned(), name: name.to_owned() };
-    let mut combined = Combined::of(name, given).ok_or_else(missing)?;
+    let mut combined = CombinedEstimate::from_regressions(name, given).ok_or_else(missing)?;
     // Limited before it becomes an input of other formulas.
-    combined.mean = limits::parameter(name, combined.mean);
+    combined.mean = limits::clamp_parameter(name, combined.mean);
     inputs.set(name, combined.mean);
     into.push(combined);
     Ok(())
 }
 
 /// Sets values that follow from the estimated particulars.
-fn set_derived(inputs: &mut Inputs) {
+fn set_derived(inputs: &mut FormulaInputs) {
     let of = |name: &str| inputs.get(name).unwrap_or(0.0);
     let (area, height, x_g, length) =
         (of("rudder_area_m2"), of("rudder_height_m"), of("x_g_m"), of("L"));
@@ -203,7 +203,7 @@ fn set_derived(inputs: &mut Inputs) {
     inputs.set("rudder_aspect_ratio", height * height / area);
 }
 
-fn empty(library: &Library, vessel: &Vessel, speed_m_s: f64) -> Model {
+fn empty_model(library: &RegressionLibrary, vessel: &Vessel, speed_m_s: f64) -> Model {
     let mut sources: BTreeMap<String, Source> = vessel.file.sources.clone();
     for one in &library.regressions {
         sources.insert(one.name.clone(), one.source.clone());
@@ -219,7 +219,7 @@ fn empty(library: &Library, vessel: &Vessel, speed_m_s: f64) -> Model {
         sources,
         speed_m_s: Some(speed_m_s),
         revolutions_rps: None,
-        steering: steering(vessel),
+        steering: estimated_steering(vessel),
         particulars: Particulars::new(),
         parameters: BTreeMap::new(),
         coefficients: BTreeMap::new(),
@@ -234,7 +234,7 @@ fn empty(library: &Library, vessel: &Vessel, speed_m_s: f64) -> Model {
 
 /// Steering gear of the ship where one of its models states it; otherwise that of SOLAS, scaled to
 /// the ship's size.
-fn steering(vessel: &Vessel) -> Steering {
+fn estimated_steering(vessel: &Vessel) -> Steering {
     let stated = vessel.file.models.first().map(|model| model.steering.clone());
     // By Froude's law, a model of scale s turns the rudder sqrt(s) times as fast as its full-scale
     // ship.
@@ -246,11 +246,11 @@ fn steering(vessel: &Vessel) -> Steering {
     stated.unwrap_or_else(scaled)
 }
 
-impl Estimate {
+impl ShipEstimate {
     /// Uncertainty of each value.
-    pub fn spreads(&self) -> Vec<Spread> {
-        let of = |values: &[Combined], covariance: &DMatrix<f64>| -> Vec<Spread> {
-            let spread = |(k, one): (usize, &Combined)| Spread {
+    pub fn value_spreads(&self) -> Vec<EstimateSpread> {
+        let of = |values: &[CombinedEstimate], covariance: &DMatrix<f64>| -> Vec<EstimateSpread> {
+            let spread = |(k, one): (usize, &CombinedEstimate)| EstimateSpread {
                 name: one.name.clone(),
                 mean: one.mean,
                 deviation: covariance[(k, k)].sqrt(),
@@ -268,14 +268,16 @@ impl Estimate {
     }
 
     /// Sets particulars, parameters and coefficients of the model to the means.
-    fn fill(&mut self, stated: &Particulars) -> Result<(), EstimateError> {
+    fn fill_model(&mut self, stated: &Particulars) -> Result<(), EstimateError> {
         self.model.particulars = stated.clone();
         let around: Vec<f64> = self.around.iter().map(|one| one.mean).collect();
         let deviations: Vec<f64> =
             self.around_covariance.diagonal().iter().map(|variance| variance.sqrt()).collect();
-        let quantity = |one: &Combined, deviation: f64| {
-            let mut quantity =
-                Quantity::new(one.mean, one.leading().map_or("", |given| &given.regression));
+        let quantity = |one: &CombinedEstimate, deviation: f64| {
+            let mut quantity = Quantity::new(
+                one.mean,
+                one.leading_regression().map_or("", |given| &given.regression),
+            );
             quantity.standard_error = Some(deviation);
             let names: Vec<&str> =
                 one.given.iter().map(|given| given.regression.as_str()).collect();
@@ -291,25 +293,26 @@ impl Estimate {
             self.model.coefficients.insert(one.name.clone(), quantity(one, deviation));
         }
         // After all parameters are set: the revolutions depend on them.
-        self.model = self.balanced(self.model.clone())?;
-        self.model.posterior = Some(posterior(&self.coefficients, &self.coefficients_covariance));
+        self.model = self.balance_thrust(self.model.clone())?;
+        self.model.posterior =
+            Some(coefficient_posterior(&self.coefficients, &self.coefficients_covariance));
         Ok(())
     }
 
     /// Model with other particulars and parameters, in the order of `around`.
-    pub(crate) fn moved(&self, around: &[f64]) -> Model {
+    pub(crate) fn with_values(&self, around: &[f64]) -> Model {
         with_around(&self.model, &self.around, around, &|k| Quantity::new(around[k], "draw"))
     }
 
     /// Model with the propeller's thrust and the revolutions that balance its resistance.
-    pub(crate) fn balanced(&self, mut model: Model) -> Result<Model, EstimateError> {
+    pub(crate) fn balance_thrust(&self, mut model: Model) -> Result<Model, EstimateError> {
         let particular = |name: &str| {
-            sistership_model::particulars::value(&model.particulars, name).unwrap_or(0.0)
+            sistership_model::particulars::particular_value(&model.particulars, name).unwrap_or(0.0)
         };
         let parameter = |name: &str| model.parameters.get(name).map_or(0.0, |one| one.value);
         let speed_m_s = model.speed_m_s.unwrap_or(0.0);
-        let thrust = self.thrust.at(particular("propeller_pitch_ratio"));
-        let straight = Straight {
+        let thrust = self.thrust.thrust_at(particular("propeller_pitch_ratio"));
+        let straight = StraightCourse {
             lpp_m: particular("lpp_m"),
             draught_m: particular("draught_m"),
             speed_m_s,
@@ -341,7 +344,7 @@ impl Estimate {
 /// Assigns values of `around` to particulars or to parameters of the law.
 fn with_around(
     base: &Model,
-    around: &[Combined],
+    around: &[CombinedEstimate],
     values: &[f64],
     quantity: &dyn Fn(usize) -> Quantity,
 ) -> Model {
@@ -350,8 +353,8 @@ fn with_around(
         let of = || Quantity { value: values[k], ..quantity(k) };
         match one.name.as_str() {
             // The estimate is the same to both sides.
-            "C_2" => both(&mut model, ["C_2_plus", "C_2_minus"], &of),
-            "gamma_R" => both(&mut model, ["gamma_R_plus", "gamma_R_minus"], &of),
+            "C_2" => insert_both(&mut model, ["C_2_plus", "C_2_minus"], &of),
+            "gamma_R" => insert_both(&mut model, ["gamma_R_plus", "gamma_R_minus"], &of),
             name if REPLACED.contains(&name) => {
                 let mut quantity = of();
                 quantity.source = format!("{ESTIMATED}{}", quantity.source);
@@ -362,20 +365,21 @@ fn with_around(
             }
         }
     }
-    derive(&mut model);
+    derive_parameters(&mut model);
     model
 }
 
-fn both(model: &mut Model, names: [&str; 2], of: &dyn Fn() -> Quantity) {
+fn insert_both(model: &mut Model, names: [&str; 2], of: &dyn Fn() -> Quantity) {
     for name in names {
         model.parameters.insert(name.to_owned(), of());
     }
 }
 
 /// Sets parameters of the law that follow from particulars.
-fn derive(model: &mut Model) {
-    let of =
-        |name: &str| sistership_model::particulars::value(&model.particulars, name).unwrap_or(0.0);
+fn derive_parameters(model: &mut Model) {
+    let of = |name: &str| {
+        sistership_model::particulars::particular_value(&model.particulars, name).unwrap_or(0.0)
+    };
     // A rudder lower than the propeller is entirely in the slipstream.
     let eta = (of("propeller_diameter_m") / of("rudder_height_m")).min(1.0);
     let derived = [
@@ -385,12 +389,12 @@ fn derive(model: &mut Model) {
         ("eta", eta),
     ];
     for (name, value) in derived {
-        model.parameters.insert(name.to_owned(), Quantity::new(value, DERIVED));
+        model.parameters.insert(name.to_owned(), Quantity::new(value, DERIVED_SOURCE));
     }
 }
 
 /// Covariance of the coefficients in the form of a model's posterior.
-fn posterior(values: &[Combined], covariance: &DMatrix<f64>) -> Posterior {
+fn coefficient_posterior(values: &[CombinedEstimate], covariance: &DMatrix<f64>) -> Posterior {
     let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.sqrt()).collect();
     let correlation = DMatrix::from_fn(values.len(), values.len(), |i, j| {
         covariance[(i, j)] / (deviations[i] * deviations[j])
@@ -402,6 +406,6 @@ fn posterior(values: &[Combined], covariance: &DMatrix<f64>) -> Posterior {
         names: values.iter().map(|one| one.name.clone()).collect(),
         values: values.iter().map(|one| one.mean).collect(),
         deviations,
-        root_correlation: Posterior::rows(values.len(), &|i, j| root[(i, j)]),
+        root_correlation: Posterior::format_rows(values.len(), &|i, j| root[(i, j)]),
     }
 }

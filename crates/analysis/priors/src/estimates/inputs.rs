@@ -11,11 +11,11 @@ const NEEDED: [&str; 4] = ["lpp_m", "beam_m", "draught_m", "block_coefficient"];
 
 /// Values by the names that formulas use.
 #[derive(Debug, Clone)]
-pub struct Inputs {
+pub struct FormulaInputs {
     known: BTreeMap<String, f64>,
 }
 
-impl Inputs {
+impl FormulaInputs {
     /// Creates the inputs for a ship at a speed.
     ///
     /// # Errors
@@ -25,7 +25,7 @@ impl Inputs {
         particulars: &Particulars,
         speed_m_s: f64,
     ) -> Result<Self, EstimateError> {
-        let of = |name: &str| particulars::value(particulars, name);
+        let of = |name: &str| particulars::particular_value(particulars, name);
         let missing: Vec<String> = NEEDED
             .iter()
             .filter(|name| of(name).is_none())
@@ -34,7 +34,8 @@ impl Inputs {
         if !missing.is_empty() {
             return Err(EstimateError::Missing { ship: ship.to_owned(), names: missing });
         }
-        let known = particulars::names().filter_map(|name| Some((name.to_owned(), of(name)?)));
+        let known =
+            particulars::particular_names().filter_map(|name| Some((name.to_owned(), of(name)?)));
         let mut inputs = Self { known: known.collect() };
         let get = |name: &str| of(name).unwrap_or(0.0);
         let (l, b, t) = (get("lpp_m"), get("beam_m"), get("draught_m"));

@@ -3,10 +3,10 @@
 use include_dir::{Dir, include_dir};
 use rayon::prelude::*;
 use sistership_model::FileError;
-use sistership_model::version::sha256;
+use sistership_model::version::sha256_hex;
 
 use crate::estimates::propeller::PropellerSeries;
-use crate::estimates::regression::{Given, Regression};
+use crate::estimates::regression::{Regression, RegressionValue};
 
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../../models/regressions");
 
@@ -15,7 +15,7 @@ const SERIES: &str = "wageningen-b.yaml";
 
 /// Regressions by name, and the propeller series.
 #[derive(Debug, Clone)]
-pub struct Library {
+pub struct RegressionLibrary {
     /// SHA-256 of all files, in the order of their names.
     pub sha256: String,
     /// Regressions in the order of their names.
@@ -23,12 +23,12 @@ pub struct Library {
     pub(crate) series: PropellerSeries,
 }
 
-impl Library {
+impl RegressionLibrary {
     /// Parses the embedded regressions.
     ///
     /// # Errors
     /// Returns the error of the first file that cannot be read; a test prevents this in a release.
-    pub fn embedded() -> Result<Self, FileError> {
+    pub fn parse_embedded() -> Result<Self, FileError> {
         let files = FILES.files().filter_map(|file| {
             let name = file.path().to_str().filter(|name| name.ends_with(".yaml"))?;
             Some((name, file.contents_utf8()?))
@@ -51,11 +51,15 @@ impl Library {
             message: "is missing".to_owned(),
             further: Vec::new(),
         };
-        Ok(Self { sha256: sha256(&texts), regressions, series: series.ok_or_else(missing)?? })
+        Ok(Self { sha256: sha256_hex(&texts), regressions, series: series.ok_or_else(missing)?? })
     }
 
     /// Values of all regressions for a name.
-    pub fn given(&self, name: &str, known: &dyn Fn(&str) -> Option<f64>) -> Vec<Given> {
-        self.regressions.iter().filter_map(|one| one.given(name, known)).collect()
+    pub fn regression_values(
+        &self,
+        name: &str,
+        known: &dyn Fn(&str) -> Option<f64>,
+    ) -> Vec<RegressionValue> {
+        self.regressions.iter().filter_map(|one| one.value_for(name, known)).collect()
     }
 }

@@ -24,7 +24,7 @@ const DAMPING_SHARE: f64 = 0.3;
 const DAMPING: [&str; 5] = ["X_0", "Y_v", "N_r", "Y_vvv", "N_rrr"];
 
 /// Limits a parameter to its range.
-pub fn parameter(name: &str, value: f64) -> f64 {
+pub fn clamp_parameter(name: &str, value: f64) -> f64 {
     match RANGES.iter().find(|(known, ..)| *known == name) {
         Some(&(_, low, high)) => value.clamp(low, high),
         None => value,
@@ -32,7 +32,7 @@ pub fn parameter(name: &str, value: f64) -> f64 {
 }
 
 /// Limits a drawn coefficient, given its estimate.
-pub fn coefficient(name: &str, drawn: f64, estimate: f64) -> f64 {
+pub fn limit_coefficient(name: &str, drawn: f64, estimate: f64) -> f64 {
     if DAMPING.contains(&name) && estimate < 0.0 {
         return drawn.min(DAMPING_SHARE * estimate);
     }

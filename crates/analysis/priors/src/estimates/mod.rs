@@ -20,9 +20,9 @@ mod regression;
 
 pub use bands::{EstimateBands, estimate_bands};
 pub use error::EstimateError;
-pub use estimate::{Estimate, Spread, estimate};
-pub use library::Library;
-pub use regression::{Given, Regression};
+pub use estimate::{EstimateSpread, ShipEstimate, estimate_ship};
+pub use library::RegressionLibrary;
+pub use regression::{Regression, RegressionValue};
 
 /// Name of the law of estimates.
 pub const LAW: &str = "mmg";

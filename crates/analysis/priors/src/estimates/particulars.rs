@@ -7,8 +7,8 @@ use sistership_model::estimated_particulars::ESTIMATED;
 use sistership_model::particulars::{self, Particulars};
 use sistership_model::quantity::Quantity;
 
-use crate::estimates::library::Library;
-use crate::estimates::regression::Given;
+use crate::estimates::library::RegressionLibrary;
+use crate::estimates::regression::RegressionValue;
 
 /// Acceleration of gravity, m/s2.
 const GRAVITY: f64 = 9.81;
@@ -40,7 +40,7 @@ pub fn complete_particulars<'a>(
         let parts = PARTS.iter().find(|(whole, _)| *whole == name).map(|(_, parts)| *parts);
         // A value that follows from others is not estimated itself; they are.
         for part in parts.unwrap_or(&[name]) {
-            let is_known = particulars::given(particulars, part).is_some();
+            let is_known = particulars::stated_value(particulars, part).is_some();
             let estimate = (!is_known).then(|| estimate_particular(particulars, part)).flatten();
             if let Some(estimate) = estimate {
                 particulars.insert((*part).to_owned(), estimate);
@@ -52,38 +52,48 @@ pub fn complete_particulars<'a>(
 /// Estimates a particular by the regression with the least scatter among those whose inputs are
 /// known; none where there is no such regression.
 pub fn estimate_particular(particulars: &Particulars, name: &str) -> Option<Quantity> {
-    let given = estimate(library()?, particulars, name, 0)?;
+    let given = estimate_value(embedded_library()?, particulars, name, 0)?;
     let mut quantity = Quantity::new(given.value, format!("{ESTIMATED}{}", given.regression));
     quantity.standard_error = Some(given.scatter);
     Some(quantity)
 }
 
 /// Embedded regressions, parsed once.
-fn library() -> Option<&'static Library> {
-    static LIBRARY: OnceLock<Option<Library>> = OnceLock::new();
-    LIBRARY.get_or_init(|| Library::embedded().ok()).as_ref()
+fn embedded_library() -> Option<&'static RegressionLibrary> {
+    static LIBRARY: OnceLock<Option<RegressionLibrary>> = OnceLock::new();
+    LIBRARY.get_or_init(|| RegressionLibrary::parse_embedded().ok()).as_ref()
 }
 
-fn estimate(library: &Library, ship: &Particulars, name: &str, depth: usize) -> Option<Given> {
-    let known = |name: &str| input(library, ship, name, depth);
-    let all = library.given(name, &known).into_iter();
+fn estimate_value(
+    library: &RegressionLibrary,
+    ship: &Particulars,
+    name: &str,
+    depth: usize,
+) -> Option<RegressionValue> {
+    let known = |name: &str| formula_input(library, ship, name, depth);
+    let all = library.regression_values(name, &known).into_iter();
     all.min_by(|a, b| a.scatter.total_cmp(&b.scatter))
 }
 
 /// Input of a formula: stated, or estimated itself.
-fn input(library: &Library, ship: &Particulars, name: &str, depth: usize) -> Option<f64> {
+fn formula_input(
+    library: &RegressionLibrary,
+    ship: &Particulars,
+    name: &str,
+    depth: usize,
+) -> Option<f64> {
     let name = LETTERS.iter().find(|(letter, _)| *letter == name).map_or(name, |(_, name)| name);
     if name == "Fn" {
         // Froude number at the service speed.
-        let speed = particulars::value(ship, "service_speed_m_s")?;
-        return Some(speed / (GRAVITY * particulars::value(ship, "lpp_m")?).sqrt());
+        let speed = particulars::particular_value(ship, "service_speed_m_s")?;
+        return Some(speed / (GRAVITY * particulars::particular_value(ship, "lpp_m")?).sqrt());
     }
     let estimated = || {
         // Estimates at the largest depth are discarded.
-        let given = estimate(library, ship, name, depth + 1).filter(|_| depth < DEEPEST);
+        let given = estimate_value(library, ship, name, depth + 1).filter(|_| depth < DEEPEST);
         given.map(|given| given.value)
     };
-    particulars::value(ship, name).or_else(estimated)
+    particulars::particular_value(ship, name).or_else(estimated)
 }
 
 #[cfg(test)]
@@ -106,7 +116,7 @@ mod tests {
         // Watson's line at Fn 0.278.
         assert!((c_b.value - 0.59).abs() < 0.01 && c_b.source == "estimated: watson-1998");
         assert_eq!(c_b.standard_error, Some(0.079));
-        let mass = particulars::value(&fast, "mass_kg").unwrap();
+        let mass = particulars::particular_value(&fast, "mass_kg").unwrap();
         assert!((mass / (1025.0 * 140.0 * 22.0 * 6.0 * c_b.value) - 1.0).abs() < 1e-12);
         assert!((fast["x_g_m"].value + 2.3).abs() < 0.3, "{:?}", fast["x_g_m"]);
     }

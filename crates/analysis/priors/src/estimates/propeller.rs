@@ -33,7 +33,7 @@ enum SeriesKind {
 
 /// Parabola of thrust: `K_T = k_0 + k_1 J + k_2 J^2`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Thrust {
+pub struct ThrustParabola {
     /// Thrust coefficient at `J = 0`.
     pub k_0: f64,
     /// Slope.
@@ -51,7 +51,7 @@ impl PropellerSeries {
     /// # Errors
     /// Returns an error that describes what is wrong in the file.
     pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
-        sistership_model::yaml::read(text).map_err(|error| FileError {
+        sistership_model::yaml::read_document(text).map_err(|error| FileError {
             file: file.to_owned(),
             line: None,
             field: String::new(),
@@ -69,7 +69,7 @@ impl PropellerSeries {
     }
 
     /// Fits a parabola to the curve from `J = 0` to the advance ratio at which the thrust ends.
-    pub fn thrust(&self, pitch_ratio: f64, blades: Option<f64>) -> Thrust {
+    pub fn fit_thrust(&self, pitch_ratio: f64, blades: Option<f64>) -> ThrustParabola {
         let blades = blades.unwrap_or(self.blades);
         // Advance ratio at which the thrust ends, in steps of 0.02.
         let mut advance = 0.0;
@@ -80,12 +80,12 @@ impl PropellerSeries {
             .map(|k| advance * k as f64 / POINTS as f64)
             .map(|j| (j, self.k_t(j, pitch_ratio, blades)))
             .collect();
-        parabola(&points)
+        fit_parabola(&points)
     }
 }
 
 /// Least-squares fit of a parabola, by the normal equations.
-fn parabola(points: &[(f64, f64)]) -> Thrust {
+fn fit_parabola(points: &[(f64, f64)]) -> ThrustParabola {
     let mut normal = nalgebra::Matrix3::<f64>::zeros();
     let mut right = nalgebra::Vector3::<f64>::zeros();
     for &(x, y) in points {
@@ -94,19 +94,20 @@ fn parabola(points: &[(f64, f64)]) -> Thrust {
         right += row * y;
     }
     let solved = normal.lu().solve(&right).unwrap_or_default();
-    Thrust { k_0: solved[0], k_1: solved[1], k_2: solved[2] }
+    ThrustParabola { k_0: solved[0], k_1: solved[1], k_2: solved[2] }
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use crate::estimates::library::Library;
+    use crate::estimates::library::RegressionLibrary;
 
     /// The propeller of KVLCC2 (pitch ratio 0.721, four blades, area ratio 0.431) has
     /// 0.293 - 0.275 J - 0.139 J^2 in Yasukawa and Yoshimura 2015, of another series.
     #[test]
     fn the_series_gives_the_thrust_of_a_like_propeller() {
-        let thrust = Library::embedded().unwrap().series.thrust(0.721, Some(4.0));
+        let thrust =
+            RegressionLibrary::parse_embedded().unwrap().series.fit_thrust(0.721, Some(4.0));
         let at = |j: f64| thrust.k_0 + thrust.k_1 * j + thrust.k_2 * j * j;
         let kvlcc2 = |j: f64| 0.2931 - 0.2753 * j - 0.1385 * j * j;
         for j in [0.0, 0.2, 0.4, 0.6] {

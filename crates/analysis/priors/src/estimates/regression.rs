@@ -18,7 +18,7 @@ struct RegressionFile {
     note: String,
     #[serde(default)]
     values: BTreeMap<String, NumberOrFormula>,
-    gives: BTreeMap<String, GivenFile>,
+    gives: BTreeMap<String, RegressionValueFile>,
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -36,7 +36,7 @@ enum NumberOrFormula {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct GivenFile {
+struct RegressionValueFile {
     formula: NumberOrFormula,
     scatter: NumberOrFormula,
 }
@@ -68,7 +68,7 @@ pub struct Regression {
 
 /// One value of a regression for a ship.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Given {
+pub struct RegressionValue {
     /// Name of the regression.
     pub regression: String,
     /// Value, in the unit of the coefficient, parameter or particular.
@@ -90,7 +90,7 @@ impl Regression {
             message,
             further: Vec::new(),
         };
-        let raw: RegressionFile = sistership_model::yaml::read(text)
+        let raw: RegressionFile = sistership_model::yaml::read_document(text)
             .map_err(|error| wrong(String::new(), error.to_string()))?;
         // The only kind: the parser has rejected all others.
         let RegressionKind::Regression = raw.kind;
@@ -115,30 +115,39 @@ impl Regression {
     }
 
     /// Names of its values.
-    pub fn names(&self) -> impl Iterator<Item = &str> {
+    pub fn value_names(&self) -> impl Iterator<Item = &str> {
         self.gives.keys().map(String::as_str)
     }
 
     /// Value for a ship; none where the regression does not give it, or an input is unknown.
-    pub fn given(&self, name: &str, known: &dyn Fn(&str) -> Option<f64>) -> Option<Given> {
+    pub fn value_for(
+        &self,
+        name: &str,
+        known: &dyn Fn(&str) -> Option<f64>,
+    ) -> Option<RegressionValue> {
         let (value, scatter) = self.gives.get(name)?;
-        let lookup = |name: &str| self.lookup(name, known, 0);
+        let lookup = |name: &str| self.lookup_name(name, known, 0);
         // A formula outside its range may have no finite value.
         let finite = |expr: &Expr| expr.value(&lookup).filter(|value| value.is_finite());
-        Some(Given {
+        Some(RegressionValue {
             regression: self.name.clone(),
             value: finite(value)?,
             scatter: finite(scatter)?,
         })
     }
 
-    fn lookup(&self, name: &str, known: &dyn Fn(&str) -> Option<f64>, depth: usize) -> Option<f64> {
+    fn lookup_name(
+        &self,
+        name: &str,
+        known: &dyn Fn(&str) -> Option<f64>,
+        depth: usize,
+    ) -> Option<f64> {
         // A value that refers to itself would recurse without end.
         if depth > self.values.len() {
             return None;
         }
         match self.values.get(name) {
-            Some(expr) => expr.value(&|inner| self.lookup(inner, known, depth + 1)),
+            Some(expr) => expr.value(&|inner| self.lookup_name(inner, known, depth + 1)),
             None => known(name),
         }
     }

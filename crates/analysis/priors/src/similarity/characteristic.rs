@@ -8,7 +8,7 @@ use sistership_model::Vessel;
 /// A published definition of the characteristic vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Definition {
+pub enum VectorDefinition {
     /// `C_b, L/B, B/T, L/V0 (s), Ar/(LT)`: Mei et al. 2019, section III.B and Eqs. 4-5.
     #[serde(rename = "mei-2019")]
     Mei2019,
@@ -18,11 +18,11 @@ pub enum Definition {
 }
 
 /// A component: its name, and the norm by which it is divided before ships are correlated.
-type Component = (&'static str, f64);
+type VectorComponent = (&'static str, f64);
 
 /// Norms of the rows of Mei's Table 4 (Eq. 4). They are those of its five ships: with norms over
 /// the ships compared, adding a ship to the zoo would change the correlation of two others.
-const MEI_2019: [Component; 5] = [
+const MEI_2019: [VectorComponent; 5] = [
     ("C_b", 1.567_947),
     ("L/B", 14.082_16),
     ("B/T", 6.957_127),
@@ -32,7 +32,7 @@ const MEI_2019: [Component; 5] = [
 
 /// Norms over the five full-scale ships of the zoo that have every component, fixed for the same
 /// reason.
-const KANAZAWA_2023: [Component; 6] = [
+const KANAZAWA_2023: [VectorComponent; 6] = [
     ("C_b", 1.56),
     ("L/B", 14.79),
     ("B/T", 6.33),
@@ -44,7 +44,7 @@ const KANAZAWA_2023: [Component; 6] = [
 /// Largest number of components of a definition.
 const MOST_COMPONENTS: usize = 6;
 
-impl Definition {
+impl VectorDefinition {
     /// All definitions.
     pub const ALL: [Self; 2] = [Self::Mei2019, Self::Kanazawa2023];
 
@@ -61,7 +61,7 @@ impl Definition {
         Self::ALL.into_iter().find(|definition| definition.name() == name)
     }
 
-    fn components(self) -> &'static [Component] {
+    fn component_norms(self) -> &'static [VectorComponent] {
         match self {
             Self::Mei2019 => &MEI_2019,
             Self::Kanazawa2023 => &KANAZAWA_2023,
@@ -73,7 +73,7 @@ impl Definition {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CharacteristicVector {
     /// Definition of the vector.
-    pub definition: Definition,
+    pub definition: VectorDefinition,
     /// Components by name.
     pub values: BTreeMap<String, f64>,
 }
@@ -81,29 +81,30 @@ pub struct CharacteristicVector {
 impl CharacteristicVector {
     /// Creates a vessel's vector: published values where its file quotes them, otherwise from its
     /// particulars.
-    pub fn of(vessel: &Vessel, definition: Definition) -> Self {
+    pub fn from_vessel(vessel: &Vessel, definition: VectorDefinition) -> Self {
         // Quoted values take precedence over computed ones.
         let quoted = vessel.quoted_vectors.get(definition.name());
-        let computed = |name: &str| component(vessel, name);
+        let computed = |name: &str| vector_component(vessel, name);
         let value = |name: &str| {
             quoted.and_then(|values| values.get(name).copied()).or_else(|| computed(name))
         };
         let values = definition
-            .components()
+            .component_norms()
             .iter()
             .filter_map(|(name, _)| Some(((*name).to_owned(), value(name)?)));
         Self { definition, values: values.collect() }
     }
 
     /// Components that the ship lacks.
-    pub fn missing(&self) -> Vec<&'static str> {
-        let components = self.definition.components().iter();
+    pub fn missing_components(&self) -> Vec<&'static str> {
+        let components = self.definition.component_norms().iter();
         components.map(|(name, _)| *name).filter(|name| !self.values.contains_key(*name)).collect()
     }
 
     /// Components divided by their norms (Mei 2019, Eq. 4).
-    pub fn normalised(&self) -> BTreeMap<String, f64> {
-        let norms: BTreeMap<&str, f64> = self.definition.components().iter().copied().collect();
+    pub fn normalised_values(&self) -> BTreeMap<String, f64> {
+        let norms: BTreeMap<&str, f64> =
+            self.definition.component_norms().iter().copied().collect();
         self.values
             .iter()
             .map(|(name, value)| (name.clone(), value / norms[name.as_str()]))
@@ -113,13 +114,13 @@ impl CharacteristicVector {
     /// Pearson's correlation of the normalised components that both have (Mei 2019, Eq. 5); `None`
     /// for fewer than four.
     pub fn correlation(&self, other: &Self) -> Option<f64> {
-        self.components().correlation(&other.components())
+        self.normalised_components().correlation(&other.normalised_components())
     }
 
     /// Normalised components for a correlation.
-    pub fn components(&self) -> NormalisedComponents {
+    pub fn normalised_components(&self) -> NormalisedComponents {
         // By name: the order of the sums decides their last bits, which versions keep.
-        let mut known = self.definition.components().to_vec();
+        let mut known = self.definition.component_norms().to_vec();
         known.sort_unstable_by_key(|(name, _)| *name);
         let mut all = [None; MOST_COMPONENTS];
         for (place, (name, norm)) in all.iter_mut().zip(known) {
@@ -160,7 +161,7 @@ impl NormalisedComponents {
     }
 }
 
-fn component(vessel: &Vessel, name: &str) -> Option<f64> {
+fn vector_component(vessel: &Vessel, name: &str) -> Option<f64> {
     let of = |name: &str| vessel.particular(name);
     let (l, b, t) = (of("lpp_m"), of("beam_m"), of("draught_m"));
     match name {
@@ -185,12 +186,12 @@ mod tests {
 
     #[test]
     fn norms_are_those_of_table_4() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let ships = ["kvlcc2", "mariner", "esso-tanker", "sr108", "pcc"]
             .map(|name| zoo.vessel(name).unwrap().clone());
         for (name, norm) in MEI_2019 {
             let square = |v: &std::sync::Arc<Vessel>| {
-                CharacteristicVector::of(v, Definition::Mei2019).values[name].powi(2)
+                CharacteristicVector::from_vessel(v, VectorDefinition::Mei2019).values[name].powi(2)
             };
             let sum = ships.iter().map(square).sum::<f64>().sqrt();
             assert!((sum / norm - 1.0).abs() < 1e-5, "{name}: {sum}");
@@ -199,12 +200,12 @@ mod tests {
 
     #[test]
     fn norms_of_the_zoo() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let ships = ["kvlcc2", "mariner", "esso-tanker", "sr108", "kcs"]
             .map(|name| zoo.vessel(name).unwrap().clone());
         for (name, norm) in KANAZAWA_2023 {
             let square = |v: &std::sync::Arc<Vessel>| {
-                CharacteristicVector::of(v, Definition::Kanazawa2023)
+                CharacteristicVector::from_vessel(v, VectorDefinition::Kanazawa2023)
                     .values
                     .get(name)
                     .map(|x| x * x)

@@ -4,9 +4,9 @@
 use rayon::prelude::*;
 use serde::Serialize;
 use sistership_model::Vessel;
-use sistership_model::categories::group_of;
+use sistership_model::categories::category_group;
 
-use super::{CharacteristicVector, Definition};
+use super::{CharacteristicVector, VectorDefinition};
 use crate::trend::TrendError;
 
 /// A ship of the zoo with its model as a source.
@@ -73,26 +73,27 @@ pub struct RankedSource {
 
 /// Measure of the trend of the target's trials by a ship's model (a correlation): none where there
 /// are no trials, or an error where it cannot be determined.
-pub type Trend<'a> = &'a (dyn Fn(&Vessel) -> Result<Option<f64>, TrendError> + Sync);
+pub type TrendMeasure<'a> = &'a (dyn Fn(&Vessel) -> Result<Option<f64>, TrendError> + Sync);
 
 /// Ranks the candidates by correlation with the target. `trend` measures the trend of the target's
 /// trials by a source's model; without trials the third step is not checked, and reported so.
-pub fn rank(
+pub fn rank_candidates(
     target: &Vessel,
     candidates: &[SourceCandidate<'_>],
-    definition: Definition,
+    definition: VectorDefinition,
     limits: &EligibilityLimits,
-    trend: Trend<'_>,
+    trend: TrendMeasure<'_>,
 ) -> Vec<RankedSource> {
-    let here = CharacteristicVector::of(target, definition);
+    let here = CharacteristicVector::from_vessel(target, definition);
     let others = |candidate: &&SourceCandidate<'_>| candidate.vessel.name() != target.name();
     let mut ranking: Vec<RankedSource> = candidates
         .par_iter()
         .filter(others)
         .map(|candidate| {
             let correlation =
-                here.correlation(&CharacteristicVector::of(candidate.vessel, definition));
-            let Eligibility { eligible, reasons } = judge(target, candidate, limits, trend);
+                here.correlation(&CharacteristicVector::from_vessel(candidate.vessel, definition));
+            let Eligibility { eligible, reasons } =
+                judge_eligibility(target, candidate, limits, trend);
             RankedSource {
                 ship: candidate.vessel.name().to_owned(),
                 model: candidate.model.as_ref().map(|model| model.name.clone()),
@@ -111,18 +112,18 @@ pub fn rank(
     ranking
 }
 
-fn judge(
+fn judge_eligibility(
     target: &Vessel,
     candidate: &SourceCandidate<'_>,
     limits: &EligibilityLimits,
-    trend: Trend<'_>,
+    trend: TrendMeasure<'_>,
 ) -> Eligibility {
     let mut steps = vec![
         same_category(target, candidate.vessel),
         similar_vector(target, candidate.vessel, limits),
     ];
     match &candidate.model {
-        None => steps.push(StepOutcome::failed("no model: known by particulars only".into())),
+        None => steps.push(StepOutcome::with_failure("no model: known by particulars only".into())),
         // A simulation costs more than a comparison of numbers: it is run only if the other steps
         // are passed.
         Some(_) if steps.iter().all(|step| step.passed) => {
@@ -141,11 +142,11 @@ struct StepOutcome {
 }
 
 impl StepOutcome {
-    fn passed(reason: String) -> Self {
+    fn with_pass(reason: String) -> Self {
         Self { passed: true, reason }
     }
 
-    fn failed(reason: String) -> Self {
+    fn with_failure(reason: String) -> Self {
         Self { passed: false, reason }
     }
 }
@@ -153,30 +154,35 @@ impl StepOutcome {
 fn same_category(target: &Vessel, source: &Vessel) -> StepOutcome {
     let (here, there) = (&target.file.category, &source.file.category);
     if here == there {
-        return StepOutcome::passed(format!("same category: {here}"));
+        return StepOutcome::with_pass(format!("same category: {here}"));
     }
-    if let Some(group) = group_of(here).filter(|group| group.categories.contains(there)) {
-        return StepOutcome::passed(format!("comparable category: {there}, also {}", group.name));
+    if let Some(group) = category_group(here).filter(|group| group.categories.contains(there)) {
+        return StepOutcome::with_pass(format!(
+            "comparable category: {there}, also {}",
+            group.name
+        ));
     }
-    StepOutcome::failed(format!("another category: {there}, not {here}"))
+    StepOutcome::with_failure(format!("another category: {there}, not {here}"))
 }
 
 fn similar_vector(target: &Vessel, source: &Vessel, limits: &EligibilityLimits) -> StepOutcome {
-    let definition = Definition::Kanazawa2023;
-    let here = CharacteristicVector::of(target, definition);
-    let there = CharacteristicVector::of(source, definition);
+    let definition = VectorDefinition::Kanazawa2023;
+    let here = CharacteristicVector::from_vessel(target, definition);
+    let there = CharacteristicVector::from_vessel(source, definition);
     let shared = here.values.keys().filter(|name| there.values.contains_key(*name)).count();
     // With fewer than four common components the ships cannot be compared.
     let Some((name, difference)) = here.largest_difference(&there).filter(|_| shared >= 4) else {
-        return StepOutcome::failed(format!(
+        return StepOutcome::with_failure(format!(
             "characteristic vector unknown: only {shared} components in common"
         ));
     };
     let (percent, limit) = (100.0 * difference, 100.0 * limits.vector_difference);
     if difference <= limits.vector_difference {
-        StepOutcome::passed(format!("similar vector: largest difference {percent:.0} % in {name}"))
+        StepOutcome::with_pass(format!(
+            "similar vector: largest difference {percent:.0} % in {name}"
+        ))
     } else {
-        StepOutcome::failed(format!(
+        StepOutcome::with_failure(format!(
             "vector too different: {percent:.0} % in {name}, at most {limit:.0} %"
         ))
     }
@@ -187,12 +193,14 @@ fn captures_trend(
     limits: &EligibilityLimits,
 ) -> StepOutcome {
     match measured {
-        Ok(None) => StepOutcome::passed("trend of the trials: not checked, no trials given".into()),
-        Err(reason) => StepOutcome::failed(format!("does not capture the trials: {reason}")),
-        Ok(Some(r)) if r >= limits.trend => StepOutcome::passed(format!(
+        Ok(None) => {
+            StepOutcome::with_pass("trend of the trials: not checked, no trials given".into())
+        }
+        Err(reason) => StepOutcome::with_failure(format!("does not capture the trials: {reason}")),
+        Ok(Some(r)) if r >= limits.trend => StepOutcome::with_pass(format!(
             "captures the trend of the trials: yaw rate correlates at {r:.2}"
         )),
-        Ok(Some(r)) => StepOutcome::failed(format!(
+        Ok(Some(r)) => StepOutcome::with_failure(format!(
             "misses the trend of the trials: yaw rate correlates at {r:.2}, at least {:.2}",
             limits.trend
         )),

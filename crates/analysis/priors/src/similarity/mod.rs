@@ -3,7 +3,8 @@
 mod characteristic;
 mod eligibility;
 
-pub use characteristic::{CharacteristicVector, Definition, NormalisedComponents};
+pub use characteristic::{CharacteristicVector, NormalisedComponents, VectorDefinition};
 pub use eligibility::{
-    Eligibility, EligibilityLimits, ModelHead, RankedSource, SourceCandidate, Trend, rank,
+    Eligibility, EligibilityLimits, ModelHead, RankedSource, SourceCandidate, TrendMeasure,
+    rank_candidates,
 };

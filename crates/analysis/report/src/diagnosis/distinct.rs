@@ -2,16 +2,16 @@
 
 use std::collections::BTreeSet;
 
-use sistership_diagnosis::Hypothesis;
+use sistership_diagnosis::HypothesisReport;
 
 /// Returns each set of effects once, in the given order. A set that was evaluated several times is
 /// kept where it was selected, or else at its first place, the most probable.
-pub fn distinct(all: &[Hypothesis]) -> Vec<&Hypothesis> {
+pub fn distinct_hypotheses(all: &[HypothesisReport]) -> Vec<&HypothesisReport> {
     let taken: Vec<Vec<&str>> =
-        all.iter().filter(|hypothesis| hypothesis.taken).map(effects).collect();
+        all.iter().filter(|hypothesis| hypothesis.taken).map(sorted_effects).collect();
     let mut seen = BTreeSet::new();
     let kept = all.iter().filter(|hypothesis| {
-        let effects = effects(hypothesis);
+        let effects = sorted_effects(hypothesis);
         // A set that was selected is shown only as the selected hypothesis.
         (hypothesis.taken || !taken.contains(&effects)) && seen.insert(effects)
     });
@@ -19,7 +19,7 @@ pub fn distinct(all: &[Hypothesis]) -> Vec<&Hypothesis> {
 }
 
 /// Names of the effects in alphabetical order, so that sets compare equal.
-fn effects(hypothesis: &Hypothesis) -> Vec<&str> {
+fn sorted_effects(hypothesis: &HypothesisReport) -> Vec<&str> {
     let mut effects: Vec<&str> = hypothesis.effects.iter().map(String::as_str).collect();
     effects.sort_unstable();
     effects
@@ -31,7 +31,7 @@ mod tests {
 
     #[test]
     fn what_was_taken_stands_for_its_repetitions() {
-        let hypothesis = |effects: &[&str], evidence: f64, taken: bool| Hypothesis {
+        let hypothesis = |effects: &[&str], evidence: f64, taken: bool| HypothesisReport {
             effects: effects.iter().map(|&effect| effect.to_owned()).collect(),
             evidence,
             held_out: None,
@@ -45,7 +45,7 @@ mod tests {
             hypothesis(&["c"], 6.0, false),
         ];
         let kept: Vec<f64> =
-            distinct(&all).into_iter().map(|hypothesis| hypothesis.evidence).collect();
+            distinct_hypotheses(&all).into_iter().map(|hypothesis| hypothesis.evidence).collect();
         assert_eq!(kept, [8.0, 7.0]);
     }
 }

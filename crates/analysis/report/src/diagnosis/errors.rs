@@ -2,70 +2,72 @@
 
 use std::collections::BTreeMap;
 
-use sistership_diagnosis::{Diagnosis, SailedManoeuvre, TrialErrors};
+use sistership_diagnosis::{Diagnosis, ManoeuvreOutcome, TrialErrors};
 use sistership_simulation::metrics::ManoeuvreMetrics;
 
 use crate::error_row::ErrorRow;
-use crate::metrics::{MetricValue, read};
-use crate::numbers::{fixed, known, signed, significant};
-use crate::tables::{Cell, Column, Row, Table};
-use crate::words::{CHANNELS, ShownChannel};
+use crate::metrics::{MetricValue, manoeuvre_figures};
+use crate::numbers::{format_fixed, format_known, format_signed, format_significant};
+use crate::tables::{ReportTable, TableCell, TableColumn, TableRow};
+use crate::words::{CHANNELS, DisplayChannel};
 
 /// Root mean squared errors by channel, SI units.
 type ChannelErrors = BTreeMap<String, f64>;
 
 /// Returns the errors of every channel that has one.
-pub(crate) fn rows(diagnosis: &Diagnosis) -> Vec<ErrorRow> {
+pub(crate) fn error_rows(diagnosis: &Diagnosis) -> Vec<ErrorRow> {
     let rows = CHANNELS
         .into_iter()
-        .map(|quantity| ErrorRow::of(quantity, &diagnosis.before, &diagnosis.after));
+        .map(|quantity| ErrorRow::from_errors(quantity, &diagnosis.before, &diagnosis.after));
     rows.filter(|row| row.source.is_some() || row.refined.is_some()).collect()
 }
 
 /// Table of errors by channel, as they are and divided by the noise.
-pub(crate) fn by_channel(diagnosis: &Diagnosis) -> Table {
+pub(crate) fn channel_table(diagnosis: &Diagnosis) -> ReportTable {
     let columns = vec![
-        Column::text("channel", ""),
-        Column::text("unit", ""),
-        Column::number("before", "RMS error"),
-        Column::number("after", "RMS error"),
-        Column::number("noise", "std. deviation"),
-        Column::number("before", "÷ noise"),
-        Column::number("after", "÷ noise"),
-        Column::text("change", ""),
+        TableColumn::text_column("channel", ""),
+        TableColumn::text_column("unit", ""),
+        TableColumn::number_column("before", "RMS error"),
+        TableColumn::number_column("after", "RMS error"),
+        TableColumn::number_column("noise", "std. deviation"),
+        TableColumn::number_column("before", "÷ noise"),
+        TableColumn::number_column("after", "÷ noise"),
+        TableColumn::text_column("change", ""),
     ];
-    Table {
+    ReportTable {
         columns,
-        rows: rows(diagnosis).iter().map(|row| channel(row, &diagnosis.noise)).collect(),
+        rows: error_rows(diagnosis).iter().map(|row| channel_row(row, &diagnosis.noise)).collect(),
     }
 }
 
-fn channel(row: &ErrorRow, noise: &ChannelErrors) -> Row {
-    let noise = noise_of(noise, &row.quantity);
+fn channel_row(row: &ErrorRow, noise: &ChannelErrors) -> TableRow {
+    let noise = display_noise(noise, &row.quantity);
     // Errors relative to the noise are the measure of what remains to explain.
     let over = |value: Option<f64>| {
-        known(value.zip(noise).map(|(value, noise)| value / noise), |ratio| fixed(ratio, 1))
+        format_known(value.zip(noise).map(|(value, noise)| value / noise), |ratio| {
+            format_fixed(ratio, 1)
+        })
     };
-    let plain = |value: Option<f64>| known(value, |value| significant(value, 3));
-    let kind = match row.change().0 {
+    let plain = |value: Option<f64>| format_known(value, |value| format_significant(value, 3));
+    let kind = match row.error_change().0 {
         "fell" => "good",
         "rose" => "bad",
         _ => "open",
     };
-    Row::of(vec![
-        Cell::new(row.quantity.name),
-        Cell::new(row.quantity.unit),
-        Cell::new(plain(row.source)),
-        Cell::new(plain(row.refined)),
-        Cell::new(plain(noise)),
-        Cell::new(over(row.source)),
-        Cell::new(over(row.refined)),
-        Cell::new("").mark(row.change_text(), kind),
+    TableRow::from_cells(vec![
+        TableCell::new(row.quantity.name),
+        TableCell::new(row.quantity.unit),
+        TableCell::new(plain(row.source)),
+        TableCell::new(plain(row.refined)),
+        TableCell::new(plain(noise)),
+        TableCell::new(over(row.source)),
+        TableCell::new(over(row.refined)),
+        TableCell::new("").with_mark(row.change_text(), kind),
     ])
 }
 
 /// Noise in the displayed unit; that of the position is combined from north and east.
-fn noise_of(noise: &ChannelErrors, quantity: &ShownChannel) -> Option<f64> {
+fn display_noise(noise: &ChannelErrors, quantity: &DisplayChannel) -> Option<f64> {
     let of = |channel: &str| noise.get(channel).copied().filter(|noise| *noise > 0.0);
     let si = if quantity.channel == "position" {
         Some(of("x")?.hypot(of("y")?))
@@ -76,25 +78,29 @@ fn noise_of(noise: &ChannelErrors, quantity: &ShownChannel) -> Option<f64> {
 }
 
 /// Table of errors by trial.
-pub(crate) fn by_trial(trials: &[TrialErrors]) -> Table {
-    let has = |quantity: &ShownChannel| {
+pub(crate) fn trial_table(trials: &[TrialErrors]) -> ReportTable {
+    let has = |quantity: &DisplayChannel| {
         trials.iter().any(|trial| trial.before.contains_key(quantity.channel))
     };
-    let channels: Vec<ShownChannel> = CHANNELS.into_iter().filter(has).collect();
-    let mut columns = vec![Column::text("trial", ""), Column::text("", "")];
-    columns.extend(channels.iter().map(|quantity| Column::number(quantity.symbol, quantity.unit)));
+    let channels: Vec<DisplayChannel> = CHANNELS.into_iter().filter(has).collect();
+    let mut columns = vec![TableColumn::text_column("trial", ""), TableColumn::text_column("", "")];
+    columns.extend(
+        channels.iter().map(|quantity| TableColumn::number_column(quantity.symbol, quantity.unit)),
+    );
     let side = |name: &str, side: &str, errors: &ChannelErrors| {
-        let value = |quantity: &ShownChannel| {
+        let value = |quantity: &DisplayChannel| {
             errors
                 .get(quantity.channel)
                 .copied()
                 .filter(|value| value.is_finite() && *value < 1e300)
         };
-        let cell = |quantity: &ShownChannel| {
-            Cell::new(known(value(quantity), |value| significant(value * quantity.factor, 3)))
+        let cell = |quantity: &DisplayChannel| {
+            TableCell::new(format_known(value(quantity), |value| {
+                format_significant(value * quantity.factor, 3)
+            }))
         };
-        Row::of(
-            [Cell::new(name), Cell::new(side)]
+        TableRow::from_cells(
+            [TableCell::new(name), TableCell::new(side)]
                 .into_iter()
                 .chain(channels.iter().map(cell))
                 .collect(),
@@ -104,27 +110,29 @@ pub(crate) fn by_trial(trials: &[TrialErrors]) -> Table {
     let both = |trial: &TrialErrors| {
         [side(&trial.trial, "before", &trial.before), side("", "after", &trial.after)]
     };
-    Table { columns, rows: trials.iter().flat_map(both).collect() }
+    ReportTable { columns, rows: trials.iter().flat_map(both).collect() }
 }
 
 /// Table of the figures of measured manoeuvres, under a heading for each trial.
-pub(crate) fn manoeuvres(manoeuvres: &[SailedManoeuvre]) -> Table {
+pub(crate) fn manoeuvre_table(manoeuvres: &[ManoeuvreOutcome]) -> ReportTable {
     let columns = vec![
-        Column::text("figure", ""),
-        Column::text("unit", ""),
-        Column::number("measured", ""),
-        Column::number("before", ""),
-        Column::number("after", ""),
-        Column::number("before off by", "%"),
-        Column::number("after off by", "%"),
+        TableColumn::text_column("figure", ""),
+        TableColumn::text_column("unit", ""),
+        TableColumn::number_column("measured", ""),
+        TableColumn::number_column("before", ""),
+        TableColumn::number_column("after", ""),
+        TableColumn::number_column("before off by", "%"),
+        TableColumn::number_column("after off by", "%"),
     ];
-    Table { columns, rows: manoeuvres.iter().flat_map(manoeuvre).collect() }
+    ReportTable { columns, rows: manoeuvres.iter().flat_map(manoeuvre_rows).collect() }
 }
 
-fn manoeuvre(manoeuvre: &SailedManoeuvre) -> Vec<Row> {
-    let of = |metrics: &Option<ManoeuvreMetrics>| metrics.as_ref().map(read).unwrap_or_default();
+fn manoeuvre_rows(manoeuvre: &ManoeuvreOutcome) -> Vec<TableRow> {
+    let of = |metrics: &Option<ManoeuvreMetrics>| {
+        metrics.as_ref().map(manoeuvre_figures).unwrap_or_default()
+    };
     let (measured, before, after) =
-        (read(&manoeuvre.measured), of(&manoeuvre.before), of(&manoeuvre.after));
+        (manoeuvre_figures(&manoeuvre.measured), of(&manoeuvre.before), of(&manoeuvre.after));
     // With the recorded rudder both models have the period of the record.
     let known = |(_, figure): &(usize, &MetricValue)| figure.2.is_some() && figure.0 != "period";
     let row = |(index, figure): (usize, &MetricValue)| {
@@ -132,25 +140,27 @@ fn manoeuvre(manoeuvre: &SailedManoeuvre) -> Vec<Row> {
         figure_row(figure, value(&before), value(&after))
     };
     let rows = measured.iter().enumerate().filter(known).map(row);
-    std::iter::once(Row::heading(&manoeuvre.trial)).chain(rows).collect()
+    std::iter::once(TableRow::heading_row(&manoeuvre.trial)).chain(rows).collect()
 }
 
 fn figure_row(
     &(name, unit, measured): &MetricValue,
     before: Option<f64>,
     after: Option<f64>,
-) -> Row {
-    let value = |value: Option<f64>| Cell::new(known(value, |value| significant(value, 4)));
+) -> TableRow {
+    let value = |value: Option<f64>| {
+        TableCell::new(format_known(value, |value| format_significant(value, 4)))
+    };
     let off = |simulated: Option<f64>| {
         let both = simulated.zip(measured).filter(|(_, measured)| *measured != 0.0);
-        Cell::new(known(
+        TableCell::new(format_known(
             both.map(|(simulated, measured)| 100.0 * (simulated / measured - 1.0)),
-            |value| signed(value, 1),
+            |value| format_signed(value, 1),
         ))
     };
-    Row::of(vec![
-        Cell::new(name),
-        Cell::new(unit),
+    TableRow::from_cells(vec![
+        TableCell::new(name),
+        TableCell::new(unit),
         value(measured),
         value(before),
         value(after),

@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 
 use askama::Template;
-use sistership_diagnosis::{Found, ResidualSeries, Unexplained};
+use sistership_diagnosis::{MissingEffect, ResidualSeries, UnexplainedSegment};
 
 use super::input::DiagnosisInput;
 use super::{changes, errors, evidence, limits, provenance, remaining, sentence, summary};
-use crate::numbers::{fixed, list, significant, stated};
-use crate::plots::{self, Plot};
+use crate::numbers::{format_fixed, format_significant, format_stated, join_words};
+use crate::plots::{self, SvgPlot};
 use crate::rendered::ReportError;
 use crate::replayed::ReplayedTrial;
-use crate::tables::Table;
-use crate::tile::Tile;
+use crate::tables::ReportTable;
+use crate::tile::ErrorTile;
 use crate::words;
 use sistership_model::version::code_revision;
 
@@ -24,99 +24,102 @@ struct DiagnosisPage<'a> {
     sentence: String,
     /// Recommended action, and effects that could not be detected.
     advice: [String; 2],
-    tiles: Vec<Tile>,
-    hypotheses: Table,
-    limits: Table,
-    odds: Table,
-    further: Table,
-    effects: Vec<ShownEffect<'a>>,
+    tiles: Vec<ErrorTile>,
+    hypotheses: ReportTable,
+    limits: ReportTable,
+    odds: ReportTable,
+    further: ReportTable,
+    effects: Vec<EffectSection<'a>>,
     next_trial: Option<String>,
-    errors: Table,
-    by_trial: Table,
-    manoeuvres: Table,
+    errors: ReportTable,
+    by_trial: ReportTable,
+    manoeuvres: ReportTable,
     trials: Vec<DiagnosisTrialPlots<'a>>,
-    scatters: Vec<Plot>,
-    unexplained: Table,
+    scatters: Vec<SvgPlot>,
+    unexplained: ReportTable,
     changes: Vec<String>,
     origin: Option<String>,
     dependences: Vec<String>,
-    curves: Vec<Plot>,
-    discrepancies: Table,
-    coefficients: Option<Table>,
+    curves: Vec<SvgPlot>,
+    discrepancies: ReportTable,
+    coefficients: Option<ReportTable>,
     provenance: Vec<(&'static str, String)>,
-    given: Table,
-    settings: Table,
+    given: ReportTable,
+    settings: ReportTable,
 }
 
 /// Effect that was found.
-struct ShownEffect<'a> {
-    found: &'a Found,
+struct EffectSection<'a> {
+    found: &'a MissingEffect,
     sentence: String,
     acts_on: &'static str,
     evidence: String,
-    parameters: Table,
-    confounded: Table,
+    parameters: ReportTable,
+    confounded: ReportTable,
 }
 
 /// Plots of one trial.
 struct DiagnosisTrialPlots<'a> {
     replayed: &'a ReplayedTrial<'a>,
     caption: String,
-    trajectory: Plot,
-    series: Plot,
-    residual: Option<Plot>,
+    trajectory: SvgPlot,
+    series: SvgPlot,
+    residual: Option<SvgPlot>,
 }
 
 /// Renders the page.
-pub(crate) fn page(
+pub(crate) fn render_page(
     input: &DiagnosisInput<'_>,
     replayed: &[ReplayedTrial<'_>],
 ) -> Result<String, ReportError> {
     let diagnosis = input.diagnosis;
-    let (hypotheses, further) = evidence::hypotheses(diagnosis);
-    let [sentence, advice, open] = summary::summary(diagnosis);
+    let (hypotheses, further) = evidence::hypothesis_tables(diagnosis);
+    let [sentence, advice, open] = summary::summary_sentences(diagnosis);
     let page = DiagnosisPage {
         input,
         sentence,
         advice: [advice, open],
-        limits: limits::limits(diagnosis),
-        odds: limits::odds(diagnosis),
-        tiles: tiles(input),
+        limits: limits::limit_table(diagnosis),
+        odds: limits::odds_table(diagnosis),
+        tiles: headline_tiles(input),
         hypotheses,
         further,
-        effects: diagnosis.effects.iter().map(ShownEffect::of).collect(),
-        next_trial: diagnosis.next_trial.as_ref().map(evidence::next_trial),
-        errors: errors::by_channel(diagnosis),
-        by_trial: errors::by_trial(&diagnosis.trials),
-        manoeuvres: errors::manoeuvres(&diagnosis.manoeuvres),
-        trials: replayed.iter().map(|replayed| DiagnosisTrialPlots::of(input, replayed)).collect(),
-        scatters: plots::scatters(&diagnosis.residuals),
-        unexplained: remaining::unexplained(&diagnosis.unexplained),
-        changes: changes::changes(&diagnosis.changes),
-        origin: remaining::origin(&diagnosis.origins),
-        dependences: remaining::dependences(&diagnosis.depends_on),
-        curves: plots::dependences(&diagnosis.depends_on),
-        discrepancies: remaining::discrepancies(&diagnosis.discrepancies),
+        effects: diagnosis.effects.iter().map(EffectSection::from_found).collect(),
+        next_trial: diagnosis.next_trial.as_ref().map(evidence::next_trial_instruction),
+        errors: errors::channel_table(diagnosis),
+        by_trial: errors::trial_table(&diagnosis.trials),
+        manoeuvres: errors::manoeuvre_table(&diagnosis.manoeuvres),
+        trials: replayed
+            .iter()
+            .map(|replayed| DiagnosisTrialPlots::from_replay(input, replayed))
+            .collect(),
+        scatters: plots::scatter_plots(&diagnosis.residuals),
+        unexplained: remaining::unexplained_table(&diagnosis.unexplained),
+        changes: changes::change_sentences(&diagnosis.changes),
+        origin: remaining::origin_sentence(&diagnosis.origins),
+        dependences: remaining::dependence_sentences(&diagnosis.depends_on),
+        curves: plots::dependence_plots(&diagnosis.depends_on),
+        discrepancies: remaining::discrepancy_table(&diagnosis.discrepancies),
         coefficients: diagnosis
             .model
             .as_ref()
-            .and_then(|after| remaining::coefficients(input.model, after)),
-        provenance: provenance::model(input.model),
-        given: provenance::trials(input.trials),
-        settings: remaining::settings(&diagnosis.settings),
+            .and_then(|after| remaining::coefficient_table(input.model, after)),
+        provenance: provenance::model_facts(input.model),
+        given: provenance::trial_table(input.trials),
+        settings: remaining::settings_table(&diagnosis.settings),
     };
     Ok(page.render()?)
 }
 
 /// Headline figures; none if no effect was found.
-fn tiles(input: &DiagnosisInput<'_>) -> Vec<Tile> {
+fn headline_tiles(input: &DiagnosisInput<'_>) -> Vec<ErrorTile> {
     if input.diagnosis.effects.is_empty() {
         return Vec::new();
     }
-    let rows = errors::rows(input.diagnosis);
+    let rows = errors::error_rows(input.diagnosis);
     rows.iter()
         .filter(|row| ["u", "v", "r", "psi", "position"].contains(&row.quantity.channel))
-        .map(Tile::of)
+        .map(ErrorTile::from_row)
         .collect()
 }
 
@@ -139,47 +142,47 @@ impl DiagnosisPage<'_> {
     }
 
     fn number(&self, value: &f64) -> String {
-        stated(*value, 3)
+        format_stated(*value, 3)
     }
 }
 
-impl<'a> ShownEffect<'a> {
-    fn of(found: &'a Found) -> Self {
+impl<'a> EffectSection<'a> {
+    fn from_found(found: &'a MissingEffect) -> Self {
         Self {
-            sentence: sentence::effect(found),
-            acts_on: evidence::acts_on(found.acts_on),
-            evidence: fixed(found.evidence, 1),
-            parameters: evidence::parameters(found),
-            confounded: evidence::confounded(found),
+            sentence: sentence::effect_text(found),
+            acts_on: evidence::point_of_action(found.acts_on),
+            evidence: format_fixed(found.evidence, 1),
+            parameters: evidence::parameter_table(found),
+            confounded: evidence::confounded_table(found),
             found,
         }
     }
 }
 
 impl<'a> DiagnosisTrialPlots<'a> {
-    fn of(input: &DiagnosisInput<'_>, replayed: &'a ReplayedTrial<'a>) -> Self {
+    fn from_replay(input: &DiagnosisInput<'_>, replayed: &'a ReplayedTrial<'a>) -> Self {
         let name = &replayed.trial.name;
         // Only the residuals and segments of this trial.
         let own: Vec<&ResidualSeries> =
             input.diagnosis.residuals.iter().filter(|series| series.trial == *name).collect();
-        let stretches: Vec<&Unexplained> =
+        let stretches: Vec<&UnexplainedSegment> =
             input.diagnosis.unexplained.iter().filter(|stretch| stretch.trial == *name).collect();
         Self {
-            caption: caption(replayed),
-            trajectory: plots::trajectory(replayed),
-            series: plots::series(replayed),
-            residual: (!own.is_empty()).then(|| plots::residual(name, &own, &stretches)),
+            caption: plot_caption(replayed),
+            trajectory: plots::trajectory_plot(replayed),
+            series: plots::series_plot(replayed),
+            residual: (!own.is_empty()).then(|| plots::residual_plot(name, &own, &stretches)),
             replayed,
         }
     }
 }
 
 /// Caption of the plots of a trial, with the errors of both models.
-fn caption(replayed: &ReplayedTrial<'_>) -> String {
+fn plot_caption(replayed: &ReplayedTrial<'_>) -> String {
     let shown = &replayed.shown;
-    let error = |quantity: &words::ShownChannel| {
+    let error = |quantity: &words::DisplayChannel| {
         let of = |errors: &BTreeMap<String, f64>| {
-            Some(significant(errors.get(quantity.channel)? * quantity.factor, 3))
+            Some(format_significant(errors.get(quantity.channel)? * quantity.factor, 3))
         };
         Some(format!(
             "{} {} → {} {}",
@@ -189,14 +192,14 @@ fn caption(replayed: &ReplayedTrial<'_>) -> String {
             quantity.unit
         ))
     };
-    let wanted = |quantity: &&words::ShownChannel| {
+    let wanted = |quantity: &&words::DisplayChannel| {
         ["u", "v", "r", "psi", "x", "y"].contains(&quantity.channel)
     };
     let errors: Vec<String> = words::CHANNELS.iter().filter(wanted).filter_map(error).collect();
-    let dots = stated(plots::mark_interval_s(shown.duration_s), 3);
+    let dots = format_stated(plots::mark_interval_s(shown.duration_s), 3);
     format!(
         "Outlines of the ship (dots where they would be too small to see) every {dots} s. RMS \
          error over the whole run, before → after: {}.",
-        list(&errors)
+        join_words(&errors)
     )
 }

@@ -1,43 +1,45 @@
 //! Detection limits and prior odds of effects.
 
-use sistership_diagnosis::{DetectionLimit, Diagnosis, LimitedBy, Value};
+use sistership_diagnosis::{DetectionLimit, Diagnosis, LimitedBy, ValueWithError};
 
-use super::parameter::ShownParameter;
-use crate::numbers::{known, significant};
-use crate::tables::{Cell, Column, Row, Table};
+use super::parameter::DisplayParameter;
+use crate::numbers::{format_known, format_significant};
+use crate::tables::{ReportTable, TableCell, TableColumn, TableRow};
 
 /// Table of detection limits by effect, form and parameter.
-pub(crate) fn limits(diagnosis: &Diagnosis) -> Table {
+pub(crate) fn limit_table(diagnosis: &Diagnosis) -> ReportTable {
     let columns = vec![
-        Column::text("effect", ""),
-        Column::text("form", ""),
-        Column::text("parameter", ""),
-        Column::number("shown from", ""),
-        Column::number("usual", ""),
-        Column::text("unit", ""),
-        Column::prose("told"),
+        TableColumn::text_column("effect", ""),
+        TableColumn::text_column("form", ""),
+        TableColumn::text_column("parameter", ""),
+        TableColumn::number_column("shown from", ""),
+        TableColumn::number_column("usual", ""),
+        TableColumn::text_column("unit", ""),
+        TableColumn::prose_column("told"),
     ];
-    Table { columns, rows: diagnosis.limits.iter().map(row).collect() }
+    ReportTable { columns, rows: diagnosis.limits.iter().map(limit_row).collect() }
 }
 
-fn row(limit: &DetectionLimit) -> Row {
+fn limit_row(limit: &DetectionLimit) -> TableRow {
     // Converted to the displayed unit, which follows from the parameter's name.
-    let shown = |value: f64| ShownParameter::of(&limit.parameter, &Value { value, se: 0.0 });
+    let shown = |value: f64| {
+        DisplayParameter::from_value(&limit.parameter, &ValueWithError { value, se: 0.0 })
+    };
     let usual = shown(limit.usual);
-    let size = known(limit.size, |size| significant(shown(size).value, 2));
-    Row::of(vec![
-        Cell::new(limit.effect.replace('-', " ")),
-        Cell::code(&limit.form),
-        Cell::new(&usual.words),
-        Cell::new(size),
-        Cell::new(significant(usual.value, 2)),
-        Cell::new(usual.unit),
-        Cell::new(limit.limited_by.map_or("yes", told)),
+    let size = format_known(limit.size, |size| format_significant(shown(size).value, 2));
+    TableRow::from_cells(vec![
+        TableCell::new(limit.effect.replace('-', " ")),
+        TableCell::code_cell(&limit.form),
+        TableCell::new(&usual.words),
+        TableCell::new(size),
+        TableCell::new(format_significant(usual.value, 2)),
+        TableCell::new(usual.unit),
+        TableCell::new(limit.limited_by.map_or("yes", limit_reason)),
     ])
 }
 
 /// Reason why an effect cannot be detected.
-fn told(limited_by: LimitedBy) -> &'static str {
+fn limit_reason(limited_by: LimitedBy) -> &'static str {
     match limited_by {
         LimitedBy::Model => {
             "cannot tell: the model resembles it by its own errors; refine it first"
@@ -48,10 +50,16 @@ fn told(limited_by: LimitedBy) -> &'static str {
 }
 
 /// Table of the prior odds of each effect.
-pub(crate) fn odds(diagnosis: &Diagnosis) -> Table {
-    let columns = vec![Column::text("effect", ""), Column::number("odds beforehand", "")];
+pub(crate) fn odds_table(diagnosis: &Diagnosis) -> ReportTable {
+    let columns = vec![
+        TableColumn::text_column("effect", ""),
+        TableColumn::number_column("odds beforehand", ""),
+    ];
     let row = |(name, odds): (&String, &f64)| {
-        Row::of(vec![Cell::new(name.replace('-', " ")), Cell::new(significant(*odds, 2))])
+        TableRow::from_cells(vec![
+            TableCell::new(name.replace('-', " ")),
+            TableCell::new(format_significant(*odds, 2)),
+        ])
     };
-    Table { columns, rows: diagnosis.prior_odds.iter().map(row).collect() }
+    ReportTable { columns, rows: diagnosis.prior_odds.iter().map(row).collect() }
 }

@@ -23,30 +23,30 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
-pub use changes::change;
-pub use distinct::distinct;
+pub use changes::change_words;
+pub use distinct::distinct_hypotheses;
 pub use input::DiagnosisInput;
-pub use remaining::{dependence, origin};
+pub use remaining::{dependence_sentence, origin_sentence};
 
 use serde_json::{Value, json};
 
-use crate::rendered::{Rendered, ReportError};
+use crate::rendered::{RenderedReport, ReportError};
 
 /// Renders the report of a diagnosis; the same input gives the same bytes.
 ///
 /// # Errors
 /// Returns an error if a model cannot be simulated under the law, or if the page cannot be written.
-pub fn render_diagnosis(input: &DiagnosisInput<'_>) -> Result<Rendered, ReportError> {
+pub fn render_diagnosis(input: &DiagnosisInput<'_>) -> Result<RenderedReport, ReportError> {
     let replayed = replays::replay_chosen(input)?;
-    Ok(Rendered { json: document(input)?, html: html::page(input, &replayed)? })
+    Ok(RenderedReport { json: json_document(input)?, html: html::render_page(input, &replayed)? })
 }
 
 /// Diagnosis as JSON, with its sentences and versions.
-fn document(input: &DiagnosisInput<'_>) -> Result<Value, ReportError> {
+fn json_document(input: &DiagnosisInput<'_>) -> Result<Value, ReportError> {
     let mut document = serde_json::to_value(input.diagnosis)?;
     document["format"] = json!("sistership-diagnosis/1");
-    document["sentence"] = json!(sentence::sentence(input.diagnosis));
-    document["summary"] = json!(summary::summary(input.diagnosis));
+    document["sentence"] = json!(sentence::result_sentence(input.diagnosis));
+    document["summary"] = json!(summary::summary_sentences(input.diagnosis));
     document["version"] = json!({ "diagnosed": input.of, "made": input.made });
     Ok(document)
 }

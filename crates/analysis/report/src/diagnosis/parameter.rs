@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use sistership_diagnosis::Value;
+use sistership_diagnosis::ValueWithError;
 
-use crate::numbers::{fixed, significant};
+use crate::numbers::{format_fixed, format_significant};
 
 /// Endings of names, displayed units, and factors of the value.
 const UNITS: [(&str, &str, f64); 10] = [
@@ -22,7 +22,7 @@ const UNITS: [(&str, &str, f64); 10] = [
 
 /// Parameter as it is displayed.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ShownParameter {
+pub(crate) struct DisplayParameter {
     /// Name without the unit, in words.
     pub words: String,
     /// Unit; empty if it has none.
@@ -31,9 +31,9 @@ pub(crate) struct ShownParameter {
     pub se: f64,
 }
 
-impl ShownParameter {
+impl DisplayParameter {
     /// Creates a parameter from its name, which carries its unit.
-    pub fn of(name: &str, value: &Value) -> Self {
+    pub fn from_value(name: &str, value: &ValueWithError) -> Self {
         let known = UNITS
             .into_iter()
             .find_map(|(ending, unit, factor)| Some((name.strip_suffix(ending)?, unit, factor)));
@@ -46,28 +46,28 @@ impl ShownParameter {
 
     /// Returns all parameters of an effect with their names, except angles in radians that are also
     /// given in degrees.
-    pub fn all(values: &BTreeMap<String, Value>) -> Vec<(&str, Self)> {
+    pub fn from_values(values: &BTreeMap<String, ValueWithError>) -> Vec<(&str, Self)> {
         let in_degrees = |name: &str| values.contains_key(&name.replace("_rad", "_deg"));
         let shown = values.iter().filter(|(name, _)| !name.contains("_rad") || !in_degrees(name));
-        shown.map(|(name, value)| (name.as_str(), Self::of(name, value))).collect()
+        shown.map(|(name, value)| (name.as_str(), Self::from_value(name, value))).collect()
     }
 
     /// Value with the digits that its standard error allows.
     pub fn value_text(&self) -> String {
-        match self.decimals() {
-            Some(decimals) => fixed(self.value, decimals),
-            None => significant(self.value, 3),
+        match self.significant_decimals() {
+            Some(decimals) => format_fixed(self.value, decimals),
+            None => format_significant(self.value, 3),
         }
     }
 
     /// Standard error with two digits.
     pub fn se_text(&self) -> String {
-        if self.se > 0.0 { significant(self.se, 2) } else { "–".into() }
+        if self.se > 0.0 { format_significant(self.se, 2) } else { "–".into() }
     }
 
     /// Decimals up to the second digit of the standard error; `None` for very small or large
     /// numbers.
-    fn decimals(&self) -> Option<usize> {
+    fn significant_decimals(&self) -> Option<usize> {
         let everyday = self.se > 1e-4 && self.se < 1e4 && self.value.abs() < 1e5;
         // The second digit of the standard error is at the decimal 1 - floor(log10 se).
         everyday.then(|| (1.0 - self.se.log10().floor()).clamp(0.0, 5.0) as usize)
@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn names_give_words_units_and_digits() {
         let shown = |name: &str, value: f64, se: f64| {
-            let parameter = ShownParameter::of(name, &Value { value, se });
+            let parameter = DisplayParameter::from_value(name, &ValueWithError { value, se });
             (parameter.words.clone(), format!("{} {}", parameter.value_text(), parameter.unit))
         };
         assert_eq!(shown("speed_m_s", 0.6012, 0.021), ("speed".into(), "0.601 m/s".into()));
@@ -90,8 +90,8 @@ mod tests {
         assert_eq!(shown("N_phi", 1.2e-4, 2e-5), ("N_phi".into(), "0.000120 ".into()));
         assert_eq!(shown("yaw_lever", 0.5, 0.0).0, "yaw lever");
         let twice = ["offset_deg", "offset_rad", "rate_rad_s"]
-            .map(|name| (name.to_owned(), Value { value: 1.0, se: 0.1 }));
-        let names: Vec<String> = ShownParameter::all(&twice.into())
+            .map(|name| (name.to_owned(), ValueWithError { value: 1.0, se: 0.1 }));
+        let names: Vec<String> = DisplayParameter::from_values(&twice.into())
             .into_iter()
             .map(|(name, _)| name.to_owned())
             .collect();

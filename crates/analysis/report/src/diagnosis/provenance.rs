@@ -4,20 +4,20 @@ use sistership_model::Model;
 use sistership_model::effect::AppliedEffect;
 use sistership_model::trial::{Channel, Trial};
 
-use crate::numbers::{known, significant, stated};
-use crate::tables::{Cell, Column, Row, Table};
+use crate::numbers::{format_known, format_significant, format_stated};
+use crate::tables::{ReportTable, TableCell, TableColumn, TableRow};
 use crate::words;
 
 /// Facts about the model: a heading and a text for each.
-pub(crate) fn model(model: &Model) -> Vec<(&'static str, String)> {
+pub(crate) fn model_facts(model: &Model) -> Vec<(&'static str, String)> {
     let mut lines = vec![(
         "Status",
-        format!("{}: {}", words::status(model.status), words::status_meaning(model.status)),
+        format!("{}: {}", words::status_word(model.status), words::status_meaning(model.status)),
     )];
     lines.extend(
-        model.speed_m_s.map(|speed| ("Approach speed", format!("{} m/s", stated(speed, 3)))),
+        model.speed_m_s.map(|speed| ("Approach speed", format!("{} m/s", format_stated(speed, 3)))),
     );
-    let carried: Vec<String> = model.effects.iter().map(carried).collect();
+    let carried: Vec<String> = model.effects.iter().map(effect_text).collect();
     lines.push((
         "Effects it carries already",
         if carried.is_empty() { "none".into() } else { carried.join("; ") },
@@ -31,37 +31,37 @@ pub(crate) fn model(model: &Model) -> Vec<(&'static str, String)> {
     lines
 }
 
-fn carried(effect: &AppliedEffect) -> String {
+fn effect_text(effect: &AppliedEffect) -> String {
     let values = effect
         .parameters
         .iter()
-        .map(|(name, quantity)| format!("{name} {}", significant(quantity.value, 3)));
+        .map(|(name, quantity)| format!("{name} {}", format_significant(quantity.value, 3)));
     format!("{} ({})", effect.name, values.collect::<Vec<_>>().join(", "))
 }
 
 /// Table of the trials.
-pub(crate) fn trials(trials: &[&Trial]) -> Table {
+pub(crate) fn trial_table(trials: &[&Trial]) -> ReportTable {
     let columns = vec![
-        Column::text("trial", ""),
-        Column::text("manoeuvre", ""),
-        Column::number("samples", ""),
-        Column::number("duration", "s"),
-        Column::number("approach speed", "m/s"),
-        Column::number("water depth", "m"),
-        Column::prose("channels"),
+        TableColumn::text_column("trial", ""),
+        TableColumn::text_column("manoeuvre", ""),
+        TableColumn::number_column("samples", ""),
+        TableColumn::number_column("duration", "s"),
+        TableColumn::number_column("approach speed", "m/s"),
+        TableColumn::number_column("water depth", "m"),
+        TableColumn::prose_column("channels"),
     ];
     let row = |trial: &&Trial| {
         let speed = trial.channel(Channel::U).and_then(|speeds| speeds.first().copied());
         let channels: Vec<&str> = trial.channels.keys().map(|channel| channel.name()).collect();
-        Row::of(vec![
-            Cell::new(&trial.name),
-            Cell::new(trial.manoeuvre.as_deref().unwrap_or("–")),
-            Cell::new(trial.len().to_string()),
-            Cell::new(stated(trial.duration_s(), 4)),
-            Cell::new(known(speed, |speed| significant(speed, 3))),
-            Cell::new(known(trial.depth_m, |depth| stated(depth, 3))),
-            Cell::new(channels.join(", ")),
+        TableRow::from_cells(vec![
+            TableCell::new(&trial.name),
+            TableCell::new(trial.manoeuvre.as_deref().unwrap_or("–")),
+            TableCell::new(trial.len().to_string()),
+            TableCell::new(format_stated(trial.duration_s(), 4)),
+            TableCell::new(format_known(speed, |speed| format_significant(speed, 3))),
+            TableCell::new(format_known(trial.depth_m, |depth| format_stated(depth, 3))),
+            TableCell::new(channels.join(", ")),
         ])
     };
-    Table { columns, rows: trials.iter().map(row).collect() }
+    ReportTable { columns, rows: trials.iter().map(row).collect() }
 }

@@ -2,47 +2,50 @@
 //! changes of the coefficients.
 
 use sistership_diagnosis::{
-    DiscrepancyLevel, OriginKind, RemainderDependence, RemainderOrigin, Settings, Unexplained,
-    VariableDependence,
+    DiscrepancyLevel, OriginKind, RemainderDependence, RemainderOrigin, Settings,
+    UnexplainedSegment, VariableDependence,
 };
 use sistership_model::Model;
 
-use super::sentence::{motion, of_origin};
-use crate::numbers::{fixed, known, list, signed, significant};
-use crate::tables::{Cell, Column, Row, Table, setting};
-use crate::words::{acceleration, recorded};
+use super::sentence::{motion_word, origin_words};
+use crate::numbers::{format_fixed, format_known, format_signed, format_significant, join_words};
+use crate::tables::{ReportTable, TableCell, TableColumn, TableRow, format_setting};
+use crate::words::{acceleration_unit, variable_words};
 
 /// Table of the segments that no effect explains.
-pub(crate) fn unexplained(stretches: &[Unexplained]) -> Table {
+pub(crate) fn unexplained_table(stretches: &[UnexplainedSegment]) -> ReportTable {
     let columns = vec![
-        Column::text("trial", ""),
-        Column::text("readings", ""),
-        Column::number("from", "s"),
-        Column::number("to", "s"),
-        Column::number("remainder", "÷ noise"),
+        TableColumn::text_column("trial", ""),
+        TableColumn::text_column("readings", ""),
+        TableColumn::number_column("from", "s"),
+        TableColumn::number_column("to", "s"),
+        TableColumn::number_column("remainder", "÷ noise"),
     ];
-    let row = |stretch: &Unexplained| {
-        let times = [stretch.from_s, stretch.to_s].map(|time| Cell::new(fixed(time, 0)));
-        let names = [Cell::new(&stretch.trial), Cell::new(motion(&stretch.channel))];
-        let remainder = Cell::new(fixed(stretch.rms_over_noise, 1));
-        Row::of(names.into_iter().chain(times).chain([remainder]).collect())
+    let row = |stretch: &UnexplainedSegment| {
+        let times =
+            [stretch.from_s, stretch.to_s].map(|time| TableCell::new(format_fixed(time, 0)));
+        let names = [TableCell::new(&stretch.trial), TableCell::new(motion_word(&stretch.channel))];
+        let remainder = TableCell::new(format_fixed(stretch.rms_over_noise, 1));
+        TableRow::from_cells(names.into_iter().chain(times).chain([remainder]).collect())
     };
-    Table { columns, rows: stretches.iter().map(row).collect() }
+    ReportTable { columns, rows: stretches.iter().map(row).collect() }
 }
 
 /// Origin of the remainder, as a sentence; `None` if nothing indicates it.
-pub fn origin(all: &[RemainderOrigin]) -> Option<String> {
+pub fn origin_sentence(all: &[RemainderOrigin]) -> Option<String> {
     let (first, others) = all.split_first()?;
-    let evidence = |origin: &RemainderOrigin| fixed(origin.evidence, 0);
-    let other = |origin: &RemainderOrigin| format!("{} ({})", of_origin(origin), evidence(origin));
+    let evidence = |origin: &RemainderOrigin| format_fixed(origin.evidence, 0);
+    let other =
+        |origin: &RemainderOrigin| format!("{} ({})", origin_words(origin), evidence(origin));
     // Other possible origins follow in brackets with their evidence.
     let beside: Vec<String> = others.iter().map(other).collect();
-    let beside = if beside.is_empty() { String::new() } else { format!("; {}", list(&beside)) };
+    let beside =
+        if beside.is_empty() { String::new() } else { format!("; {}", join_words(&beside)) };
     let kind = match first.of {
         OriginKind::Acceleration => "a force or moment that the model lacks",
         OriginKind::Readings => "an instrument",
     };
-    let (most, trials) = (of_origin(first), first.trials);
+    let (most, trials) = (origin_words(first), first.trials);
     Some(format!(
         "It comes most likely from {most}, {kind} (evidence {}, foremost in {} of {trials} \
          trials){beside}.",
@@ -52,19 +55,19 @@ pub fn origin(all: &[RemainderOrigin]) -> Option<String> {
 }
 
 /// Dependence of the remainders on recorded variables, one sentence each.
-pub(crate) fn dependences(all: &[RemainderDependence]) -> Vec<String> {
-    all.iter().map(dependence).collect()
+pub(crate) fn dependence_sentences(all: &[RemainderDependence]) -> Vec<String> {
+    all.iter().map(dependence_sentence).collect()
 }
 
 /// Dependence of the remainder of an acceleration on recorded variables, as a sentence.
-pub fn dependence(of: &RemainderDependence) -> String {
-    let percent = |share: f64| fixed(100.0 * share.min(1.0), 0);
+pub fn dependence_sentence(of: &RemainderDependence) -> String {
+    let percent = |share: f64| format_fixed(100.0 * share.min(1.0), 0);
     let one = |variable: &VariableDependence| {
-        let (name, ..) = recorded(&variable.variable);
+        let (name, ..) = variable_words(&variable.variable);
         format!("{name} ({} %)", percent(variable.share))
     };
     let names: Vec<String> = of.variables.iter().map(one).collect();
-    let equation = motion(&of.channel);
+    let equation = motion_word(&of.channel);
     let explained = percent(of.explained);
     match (names.is_empty(), explained == "0") {
         (true, true) => format!("What is left in {equation} follows nothing that was recorded."),
@@ -75,60 +78,66 @@ pub fn dependence(of: &RemainderDependence) -> String {
         (false, _) => format!(
             "{explained} % of what is left in {equation} follows what was recorded, most of all \
              {}.",
-            list(&names)
+            join_words(&names)
         ),
     }
 }
 
 /// Table of the level of the unexplained accelerations.
-pub(crate) fn discrepancies(levels: &[DiscrepancyLevel]) -> Table {
+pub(crate) fn discrepancy_table(levels: &[DiscrepancyLevel]) -> ReportTable {
     let columns = vec![
-        Column::text("equation", ""),
-        Column::number("expected", "std. deviation"),
-        Column::number("before", "std. deviation"),
-        Column::number("after", "std. deviation"),
-        Column::text("unit", ""),
+        TableColumn::text_column("equation", ""),
+        TableColumn::number_column("expected", "std. deviation"),
+        TableColumn::number_column("before", "std. deviation"),
+        TableColumn::number_column("after", "std. deviation"),
+        TableColumn::text_column("unit", ""),
     ];
     let row = |level: &DiscrepancyLevel| {
-        let (unit, factor) = acceleration(&level.channel);
-        let cell = |value: f64| Cell::new(significant(value * factor, 2));
-        let expected = Cell::new(known(level.expected, |value| significant(value * factor, 2)));
-        Row::of(vec![
-            Cell::new(motion(&level.channel)),
+        let (unit, factor) = acceleration_unit(&level.channel);
+        let cell = |value: f64| TableCell::new(format_significant(value * factor, 2));
+        let expected = TableCell::new(format_known(level.expected, |value| {
+            format_significant(value * factor, 2)
+        }));
+        TableRow::from_cells(vec![
+            TableCell::new(motion_word(&level.channel)),
             expected,
             cell(level.before),
             cell(level.after),
-            Cell::new(unit),
+            TableCell::new(unit),
         ])
     };
-    Table { columns, rows: levels.iter().map(row).collect() }
+    ReportTable { columns, rows: levels.iter().map(row).collect() }
 }
 
 /// Table of the coefficients that changed with the effects; `None` if none did.
-pub(crate) fn coefficients(before: &Model, after: &Model) -> Option<Table> {
+pub(crate) fn coefficient_table(before: &Model, after: &Model) -> Option<ReportTable> {
     let columns = vec![
-        Column::text("coefficient", ""),
-        Column::number("before", ""),
-        Column::number("after", ""),
-        Column::number("change", "%"),
+        TableColumn::text_column("coefficient", ""),
+        TableColumn::number_column("before", ""),
+        TableColumn::number_column("after", ""),
+        TableColumn::number_column("change", "%"),
     ];
     let row = |name: &String| {
         let (before, after) = (before.coefficient(name), after.coefficient(name));
         // A relative change needs a value before.
         let change = (before != 0.0).then(|| 100.0 * (after - before) / before.abs());
         let cells = [
-            significant(before, 4),
-            significant(after, 4),
-            known(change, |change| signed(change, 1)),
+            format_significant(before, 4),
+            format_significant(after, 4),
+            format_known(change, |change| format_signed(change, 1)),
         ];
-        Row::of(std::iter::once(Cell::code(name)).chain(cells.into_iter().map(Cell::new)).collect())
+        TableRow::from_cells(
+            std::iter::once(TableCell::code_cell(name))
+                .chain(cells.into_iter().map(TableCell::new))
+                .collect(),
+        )
     };
     let changed = after
         .coefficients
         .keys()
         .filter(|name| before.coefficient(name) != after.coefficient(name));
-    let rows: Vec<Row> = changed.map(row).collect();
-    (!rows.is_empty()).then_some(Table { columns, rows })
+    let rows: Vec<TableRow> = changed.map(row).collect();
+    (!rows.is_empty()).then_some(ReportTable { columns, rows })
 }
 
 /// Meanings of the settings.
@@ -153,16 +162,23 @@ const MEANINGS: [(&str, &str); 6] = [
 ];
 
 /// Table of all settings with their meaning.
-pub(crate) fn settings(settings: &Settings) -> Table {
-    let columns =
-        vec![Column::text("setting", ""), Column::prose("value"), Column::prose("meaning")];
+pub(crate) fn settings_table(settings: &Settings) -> ReportTable {
+    let columns = vec![
+        TableColumn::text_column("setting", ""),
+        TableColumn::prose_column("value"),
+        TableColumn::prose_column("meaning"),
+    ];
     let written = serde_json::to_value(settings).unwrap_or_default();
     let meaning = |name: &str| {
         MEANINGS.iter().find(|(known, _)| *known == name).map_or("", |(_, meaning)| meaning)
     };
     let fields = written.as_object().into_iter().flatten();
     let rows = fields.map(|(name, value)| {
-        Row::of(vec![Cell::code(name), Cell::new(setting(value)), Cell::new(meaning(name))])
+        TableRow::from_cells(vec![
+            TableCell::code_cell(name),
+            TableCell::new(format_setting(value)),
+            TableCell::new(meaning(name)),
+        ])
     });
-    Table { columns, rows: rows.collect() }
+    ReportTable { columns, rows: rows.collect() }
 }

@@ -4,11 +4,11 @@ use sistership_diagnosis::ResidualSeries;
 use sistership_model::Model;
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::error::SquaredError;
-use sistership_simulation::recorded::{Replay, ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, TrialReplay, replay_trial};
 use sistership_simulation::{PlantError, Ship};
 
 use super::input::DiagnosisInput;
-use crate::plots::Hull;
+use crate::plots::HullOutline;
 use crate::replayed::{ReplaySummary, ReplayedTrial};
 
 /// Largest number of plotted trials.
@@ -21,35 +21,35 @@ pub(crate) fn replay_chosen<'a>(
 ) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {
     // Without a new model both simulations are equal.
     let after = input.diagnosis.model.as_ref().unwrap_or(input.model);
-    let (before, after) = (ready(input.model, input)?, ready(after, input)?);
+    let (before, after) = (prepare_ship(input.model, input)?, prepare_ship(after, input)?);
     let settings = ReplaySettings::default();
     let one = |trial: &'a Trial| {
         let (before, after) =
             // A failed simulation only removes the plot, not the report.
-            (replay(&before, trial, &settings).ok()?, replay(&after, trial, &settings).ok()?);
-        Some(replayed(input, trial, before, after))
+            (replay_trial(&before, trial, &settings).ok()?, replay_trial(&after, trial, &settings).ok()?);
+        Some(replayed_trial(input, trial, before, after))
     };
-    Ok(ranked(input).into_iter().filter_map(one).take(MOST).collect())
+    Ok(ranked_trials(input).into_iter().filter_map(one).take(MOST).collect())
 }
 
-fn replayed<'a>(
+fn replayed_trial<'a>(
     input: &DiagnosisInput<'a>,
     trial: &'a Trial,
-    before: Replay,
-    after: Replay,
+    before: TrialReplay,
+    after: TrialReplay,
 ) -> ReplayedTrial<'a> {
-    let stopped = |run: &Replay| run.stopped.as_ref().map(ToString::to_string);
+    let stopped = |run: &TrialReplay| run.stopped.as_ref().map(ToString::to_string);
     let shown = ReplaySummary {
         trial: &trial.name,
         manoeuvre: trial.manoeuvre.as_deref(),
         duration_s: trial.duration_s(),
         fitted: true,
-        source: SquaredError::of(trial, &before).rmse(),
-        refined: SquaredError::of(trial, &after).rmse(),
+        source: SquaredError::from_trial(trial, &before).rmse_by_channel(),
+        refined: SquaredError::from_trial(trial, &after).rmse_by_channel(),
         source_stopped: stopped(&before),
         refined_stopped: stopped(&after),
     };
-    let hull = Hull::of(&input.model.particulars);
+    let hull = HullOutline::from_particulars(&input.model.particulars);
     ReplayedTrial {
         trial,
         source: before,
@@ -61,7 +61,7 @@ fn replayed<'a>(
 }
 
 /// Ship whose envelope covers the speeds of the trials.
-fn ready(model: &Model, input: &DiagnosisInput<'_>) -> Result<Ship, PlantError> {
+fn prepare_ship(model: &Model, input: &DiagnosisInput<'_>) -> Result<Ship, PlantError> {
     let mut ship = Ship::new(model, input.law)?;
     let speeds =
         input.trials.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
@@ -70,7 +70,7 @@ fn ready(model: &Model, input: &DiagnosisInput<'_>) -> Result<Ship, PlantError> 
 }
 
 /// Trials in order of decreasing residual relative to the noise.
-fn ranked<'a>(input: &DiagnosisInput<'a>) -> Vec<&'a Trial> {
+fn ranked_trials<'a>(input: &DiagnosisInput<'a>) -> Vec<&'a Trial> {
     let size = |trial: &Trial| {
         let own = input.diagnosis.residuals.iter().filter(|series| series.trial == trial.name);
         own.map(over_noise).fold(0.0, f64::max)

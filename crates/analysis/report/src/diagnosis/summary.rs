@@ -3,18 +3,18 @@
 
 use sistership_diagnosis::{Diagnosis, LimitedBy, OriginKind, Verdict};
 
-use super::evidence::next_trial;
-use super::sentence::sentence;
-use crate::numbers::list;
+use super::evidence::next_trial_instruction;
+use super::sentence::result_sentence;
+use crate::numbers::join_words;
 
 /// Returns the three sentences, in this order.
-pub(crate) fn summary(diagnosis: &Diagnosis) -> [String; 3] {
-    [sentence(diagnosis), advice(diagnosis), open(diagnosis)]
+pub(crate) fn summary_sentences(diagnosis: &Diagnosis) -> [String; 3] {
+    [result_sentence(diagnosis), advice_sentence(diagnosis), limits_sentence(diagnosis)]
 }
 
-fn advice(diagnosis: &Diagnosis) -> String {
+fn advice_sentence(diagnosis: &Diagnosis) -> String {
     match (&diagnosis.next_trial, diagnosis.verdict) {
-        (Some(next), _) => next_trial(next),
+        (Some(next), _) => next_trial_instruction(next),
         // If the remainder is in the readings, the model is not to blame.
         (None, Verdict::Unexplained) if is_of_readings(diagnosis) => {
             "Look at the instrument that says so before the model is changed.".into()
@@ -39,7 +39,7 @@ fn is_of_readings(diagnosis: &Diagnosis) -> bool {
     diagnosis.origins.first().is_some_and(|origin| origin.of == OriginKind::Readings)
 }
 
-fn open(diagnosis: &Diagnosis) -> String {
+fn limits_sentence(diagnosis: &Diagnosis) -> String {
     let of = |cause: LimitedBy| {
         let names = diagnosis.cannot_tell.iter().filter(|(_, own)| **own == cause);
         names.map(|(name, _)| name.replace('-', " ")).collect::<Vec<_>>()
@@ -51,7 +51,7 @@ fn open(diagnosis: &Diagnosis) -> String {
     ];
     let part = |(cause, why): (LimitedBy, &str)| {
         let names = of(cause);
-        (!names.is_empty()).then(|| format!("{} ({why})", list(&names)))
+        (!names.is_empty()).then(|| format!("{} ({why})", join_words(&names)))
     };
     let parts: Vec<String> = parts.into_iter().filter_map(part).collect();
     match parts.is_empty() {

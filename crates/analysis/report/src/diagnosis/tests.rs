@@ -4,14 +4,14 @@
 
 mod made_up;
 
-use sistership_diagnosis::{Value, Verdict};
+use sistership_diagnosis::{ValueWithError, Verdict};
 
-use crate::Rendered;
+use crate::RenderedReport;
 use made_up::Case;
 
 #[test]
 fn a_current_is_said_in_one_sentence() {
-    let Rendered { html, json } = Case::new().render();
+    let RenderedReport { html, json } = Case::new().render();
     assert_eq!(json["sentence"], "Your model lacks: current (0.60 m/s towards 45 deg).");
     assert!(html.contains("Your model lacks: current (0.60 m/s towards 45 deg)."));
     assert!(html.contains("Sail a zigzag 10/10 at 7.00 m/s (13.6 kn) on a heading of 90 deg"));
@@ -25,7 +25,7 @@ fn a_current_is_said_in_one_sentence() {
 
 #[test]
 fn what_could_not_be_told_is_said_with_its_cause() {
-    let Rendered { html, json } = Case::new().render();
+    let RenderedReport { html, json } = Case::new().render();
     let open = "These trials cannot tell: wave drift (until the model is refined further).";
     assert_eq!(json["summary"][2], open);
     assert!(html.contains(open));
@@ -90,8 +90,8 @@ fn effects_are_named_as_people_call_them() {
     (found.name, found.form) = ("rudder-offset".into(), "constant".into());
     let values = [("offset_deg", 1.46, 0.02), ("offset_rad", 0.025_48, 0.000_35)];
     found.parameters =
-        values.map(|(name, value, se)| (name.to_owned(), Value { value, se })).into();
-    let Rendered { html, json } = case.render();
+        values.map(|(name, value, se)| (name.to_owned(), ValueWithError { value, se })).into();
+    let RenderedReport { html, json } = case.render();
     assert_eq!(json["sentence"], "Your model lacks: rudder offset (1.5 deg).");
     let effects = &html[html.find("<section id=\"effects\"").unwrap()
         ..html.find("<section id=\"evidence\"").unwrap()];
@@ -101,7 +101,8 @@ fn effects_are_named_as_people_call_them() {
     );
     let found = &mut case.diagnosis.effects[0];
     (found.name, found.form) = ("missing-term".into(), "N_v|v|".into());
-    found.parameters = [("N_v_abs_v".to_owned(), Value { value: -0.0021, se: 0.0003 })].into();
+    found.parameters =
+        [("N_v_abs_v".to_owned(), ValueWithError { value: -0.0021, se: 0.0003 })].into();
     assert_eq!(case.render().json["sentence"], "Your model lacks: missing term N_v|v| (−0.0021).");
 }
 
@@ -110,7 +111,7 @@ fn parameters_fitted_once_more_in_the_new_version_stand_beside_those_found() {
     let mut case = Case::new();
     assert!(!case.render().html.contains("in the new version"));
     case.diagnosis.effects[0].in_model =
-        [("speed_m_s".to_owned(), Value { value: 0.587, se: 0.011 })].into();
+        [("speed_m_s".to_owned(), ValueWithError { value: 0.587, se: 0.011 })].into();
     let html = case.render().html;
     assert!(html.contains("in the new version"));
     let row = |parameter: &str| {
@@ -162,7 +163,7 @@ fn a_model_that_holds_is_said_to_hold() {
     (case.diagnosis.effects, case.diagnosis.unexplained, case.diagnosis.model) =
         (Vec::new(), Vec::new(), None);
     case.diagnosis.next_trial = None;
-    let Rendered { html, json } = case.render();
+    let RenderedReport { html, json } = case.render();
     assert!(json["sentence"].as_str().unwrap().starts_with("Your model holds"));
     assert!(
         !html.contains("<section id=\"effects\"")

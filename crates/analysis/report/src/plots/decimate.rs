@@ -4,7 +4,7 @@
 const MOST: usize = 600;
 
 /// Indices of the drawn points: at equal strides, including the first and the last.
-pub fn kept(count: usize) -> Vec<usize> {
+pub fn drawn_indices(count: usize) -> Vec<usize> {
     // One point is reserved for the last sample.
     let stride = count.div_ceil(MOST - 1).max(1);
     let mut kept: Vec<usize> = (0..count).step_by(stride).collect();
@@ -16,10 +16,10 @@ pub fn kept(count: usize) -> Vec<usize> {
 }
 
 /// SVG path data through points, broken where `jumps` returns true for a gap between two samples.
-pub fn path(points: &[(f64, f64)], jumps: impl Fn(usize, usize) -> bool) -> String {
+pub fn path_data(points: &[(f64, f64)], jumps: impl Fn(usize, usize) -> bool) -> String {
     let mut data = String::new();
     let mut last: Option<usize> = None;
-    for index in kept(points.len()) {
+    for index in drawn_indices(points.len()) {
         let (x, y) = points[index];
         let pen = if last.is_none_or(|last| jumps(last, index)) { 'M' } else { 'L' };
         data.push_str(&format!("{pen}{x:.1} {y:.1}"));
@@ -35,7 +35,7 @@ mod tests {
     #[test]
     fn no_line_has_more_than_the_most() {
         for count in [0, 1, 599, 600, 601, 1301, 100_000] {
-            let kept = kept(count);
+            let kept = drawn_indices(count);
             assert!(kept.len() <= MOST, "{count}");
             assert_eq!(kept.last().copied(), count.checked_sub(1));
         }

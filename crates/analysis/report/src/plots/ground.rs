@@ -1,7 +1,7 @@
 //! Chart of the ground: north up, east to the right, on equal scales.
 
-use super::axes::{Scale, columns, nice_step, rows};
-use super::{Hull, Shape, WIDTH};
+use super::axes::{AxisScale, grid_columns, grid_rows, nice_step};
+use super::{HullOutline, Shape, WIDTH};
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 18.0;
@@ -15,14 +15,14 @@ const LEAST_OUTLINE: f64 = 5.0;
 /// Chart with north upwards and east to the right.
 #[derive(Debug)]
 pub struct GroundChart {
-    east: Scale,
-    north: Scale,
+    east: AxisScale,
+    north: AxisScale,
 }
 
 impl GroundChart {
     /// Creates a chart of positions in these ranges, m, with a margin, and with room for a ship at
     /// each of them.
-    pub fn of(north: (f64, f64), east: (f64, f64), hull: Option<Hull>) -> Self {
+    pub fn from_ranges(north: (f64, f64), east: (f64, f64), hull: Option<HullOutline>) -> Self {
         // Half a ship length of room around every position.
         let half_m = hull.map_or(0.0, |hull| 0.5 * hull.lpp_m);
         let [north, east] = [north, east].map(|(low, high)| (low - half_m, high + half_m));
@@ -33,34 +33,34 @@ impl GroundChart {
         let height = (span(north) / metres).clamp(LEAST, MOST);
         let around = |range: (f64, f64), length: f64, reversed: bool| {
             let (middle, half) = (0.5 * (range.0 + range.1), 0.5 * length * metres);
-            Scale { low: middle - half, high: middle + half, length, reversed }
+            AxisScale { low: middle - half, high: middle + half, length, reversed }
         };
         Self { east: around(east, width, false), north: around(north, height, true) }
     }
 
     /// Height of a plot that holds only this chart.
-    pub fn height(&self) -> f64 {
+    pub fn plot_height(&self) -> f64 {
         TOP + self.north.length + BOTTOM
     }
 
     /// Position of a point `(north, east)` within the panel.
-    pub fn at(&self, (north, east): (f64, f64)) -> (f64, f64) {
-        (self.east.at(east), self.north.at(north))
+    pub fn position_of(&self, (north, east): (f64, f64)) -> (f64, f64) {
+        (self.east.position_of(east), self.north.position_of(north))
     }
 
     /// Shapes of the chart: grid with labels, content clipped at the edges, and frame.
-    pub fn drawn(&self, inside: Vec<Shape>) -> Vec<Shape> {
+    pub fn draw_chart(&self, inside: Vec<Shape>) -> Vec<Shape> {
         let (at, size) = ((LEFT, TOP), (self.east.length, self.north.length));
-        let mut shapes = self.grid();
+        let mut shapes = self.draw_grid();
         shapes.push(Shape::Panel { at, size, shapes: inside });
         shapes.push(Shape::Rect { at, size, class: "frame" });
         shapes
     }
 
     /// Outline of a ship at a position and heading; `None` if it would be too small to see.
-    pub fn outline(
+    pub fn ship_outline(
         &self,
-        hull: Hull,
+        hull: HullOutline,
         place: (f64, f64),
         psi_rad: f64,
         class: &'static str,
@@ -70,19 +70,20 @@ impl GroundChart {
             return None;
         }
         let corners: Vec<String> = hull
-            .outline(place, psi_rad)
+            .corners_at(place, psi_rad)
             .into_iter()
-            .map(|corner| self.at(corner))
+            .map(|corner| self.position_of(corner))
             .map(|(x, y)| format!("{x:.1} {y:.1}"))
             .collect();
         Some(Shape::Path { d: format!("M{}Z", corners.join("L")), class })
     }
 
-    fn grid(&self) -> Vec<Shape> {
+    fn draw_grid(&self) -> Vec<Shape> {
         let metres = (self.east.high - self.east.low) / self.east.length;
         let about = |length: f64| (length * metres / nice_step(50.0 * metres)).ceil() as usize;
-        let mut shapes = rows((LEFT, TOP), self.east.length, &self.north, about(self.north.length));
-        shapes.extend(columns(
+        let mut shapes =
+            grid_rows((LEFT, TOP), self.east.length, &self.north, about(self.north.length));
+        shapes.extend(grid_columns(
             (LEFT, TOP),
             self.north.length,
             &self.east,
@@ -101,8 +102,8 @@ impl GroundChart {
     }
 
     /// Mark and label of the start of a track.
-    pub fn start(&self, place: (f64, f64)) -> Vec<Shape> {
-        let (x, y) = self.at(place);
+    pub fn start_mark(&self, place: (f64, f64)) -> Vec<Shape> {
+        let (x, y) = self.position_of(place);
         let (x, y) = (LEFT + x, TOP + y);
         // Close to the right edge the label is placed to the left of the mark.
         let (side, class) =

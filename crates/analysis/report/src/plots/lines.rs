@@ -1,7 +1,7 @@
 //! Lines of a trial: measured, source, refined.
 
 use sistership_model::trial::{Channel, Trial};
-use sistership_simulation::recorded::Replay;
+use sistership_simulation::recorded::TrialReplay;
 use sistership_simulation::state::at;
 
 use crate::replayed::ReplayedTrial;
@@ -14,15 +14,15 @@ pub(crate) struct PlottedLine<T> {
 }
 
 /// Index of a channel in the state vector.
-fn place(channel: Channel) -> Option<usize> {
-    sistership_simulation::state::RECORDED
+fn state_index(channel: Channel) -> Option<usize> {
+    sistership_simulation::state::RECORDED_CHANNELS
         .into_iter()
         .find(|(known, _)| *known == channel)
         .map(|(_, place)| place)
 }
 
 /// Returns the lines of a channel: measured, source and refined model.
-pub(crate) fn channel(
+pub(crate) fn channel_lines(
     replayed: &ReplayedTrial<'_>,
     channel: Channel,
     factor: f64,
@@ -33,7 +33,7 @@ pub(crate) fn channel(
         lines.push(PlottedLine { class: "measured", samples: (0..values.len()).collect(), values });
     }
     // Inputs such as the rudder are not part of the state and have one line only.
-    let Some(place) = place(channel) else { return lines };
+    let Some(place) = state_index(channel) else { return lines };
     // A simulation may stop early, so it has its own list of samples.
     for (class, run) in [("source", &replayed.source), ("refined", &replayed.refined)] {
         let values = run.track.states.iter().map(|state| state[place] * factor).collect();
@@ -43,7 +43,7 @@ pub(crate) fn channel(
 }
 
 /// Returns the lines of positions `(north, east)`, in the same order.
-pub(crate) fn positions(replayed: &ReplayedTrial<'_>) -> Vec<PlottedLine<(f64, f64)>> {
+pub(crate) fn position_lines(replayed: &ReplayedTrial<'_>) -> Vec<PlottedLine<(f64, f64)>> {
     let trial = replayed.trial;
     let mut lines = Vec::new();
     if let (Some(north), Some(east)) = (trial.channel(Channel::X), trial.channel(Channel::Y)) {
@@ -52,12 +52,12 @@ pub(crate) fn positions(replayed: &ReplayedTrial<'_>) -> Vec<PlottedLine<(f64, f
     }
     lines.extend(
         [("source", &replayed.source), ("refined", &replayed.refined)]
-            .map(|(class, run)| track(class, run)),
+            .map(|(class, run)| track_line(class, run)),
     );
     lines
 }
 
-fn track(class: &'static str, run: &Replay) -> PlottedLine<(f64, f64)> {
+fn track_line(class: &'static str, run: &TrialReplay) -> PlottedLine<(f64, f64)> {
     let values = run.track.states.iter().map(|state| (state[at::X], state[at::Y])).collect();
     PlottedLine { class, samples: run.samples.clone(), values }
 }
@@ -68,6 +68,6 @@ pub(crate) fn has_gap(trial: &Trial, starts: &[usize], from: usize, to: usize) -
 }
 
 /// Returns the samples at which gap-free segments start.
-pub(crate) fn starts(trial: &Trial) -> Vec<usize> {
+pub(crate) fn segment_starts(trial: &Trial) -> Vec<usize> {
     trial.segments().into_iter().map(|segment| segment.start).collect()
 }

@@ -14,15 +14,15 @@ mod trajectory;
 
 use askama::Template;
 
-pub use decimate::{kept, path};
-pub(crate) use dependence::dependences;
+pub use decimate::{drawn_indices, path_data};
+pub(crate) use dependence::dependence_plots;
 pub use ground::GroundChart;
-pub use hull::Hull;
-pub(crate) use residual::residual;
-pub(crate) use scatter::scatters;
-pub(crate) use series::series;
+pub use hull::HullOutline;
+pub(crate) use residual::residual_plot;
+pub(crate) use scatter::scatter_plots;
+pub(crate) use series::series_plot;
 pub use trajectory::mark_interval_s;
-pub(crate) use trajectory::trajectory;
+pub(crate) use trajectory::trajectory_plot;
 
 /// Width of every plot in its own units, close to that of a phone's screen, so that text stays
 /// legible there.
@@ -31,7 +31,7 @@ pub const WIDTH: f64 = 420.0;
 /// Plot as shapes in a coordinate system.
 #[derive(Debug, Template)]
 #[template(path = "report_plot.html")]
-pub struct Plot {
+pub struct SvgPlot {
     /// Width in its own units.
     pub width: f64,
     /// Height in the same units.

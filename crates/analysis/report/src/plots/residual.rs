@@ -1,12 +1,12 @@
 //! Residual of each acceleration over time, before and after, with the band of the residual
 //! expected from noise alone.
 
-use sistership_diagnosis::{ResidualSeries, Unexplained};
+use sistership_diagnosis::{ResidualSeries, UnexplainedSegment};
 
-use super::axes::{Scale, columns, extent, padded, rows};
-use super::decimate::{kept, path};
-use super::{Plot, Shape, WIDTH};
-use crate::words::acceleration;
+use super::axes::{AxisScale, grid_columns, grid_rows, padded_range, value_range};
+use super::decimate::{drawn_indices, path_data};
+use super::{Shape, SvgPlot, WIDTH};
+use crate::words::acceleration_unit;
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 12.0;
@@ -15,21 +15,25 @@ const HEIGHT: f64 = 78.0;
 const BOTTOM: f64 = 34.0;
 
 /// Returns the panels of one trial, one for each acceleration; unexplained segments are shaded.
-pub(crate) fn residual(
+pub(crate) fn residual_plot(
     trial: &str,
     series: &[&ResidualSeries],
-    stretches: &[&Unexplained],
-) -> Plot {
-    let (low, high) =
-        extent(series.iter().flat_map(|series| series.t_s.iter().copied())).unwrap_or((0.0, 1.0));
-    let time =
-        Scale { low, high: high.max(low + 1e-9), length: WIDTH - LEFT - RIGHT, reversed: false };
+    stretches: &[&UnexplainedSegment],
+) -> SvgPlot {
+    let (low, high) = value_range(series.iter().flat_map(|series| series.t_s.iter().copied()))
+        .unwrap_or((0.0, 1.0));
+    let time = AxisScale {
+        low,
+        high: high.max(low + 1e-9),
+        length: WIDTH - LEFT - RIGHT,
+        reversed: false,
+    };
     let mut shapes = Vec::new();
     for (index, one) in series.iter().enumerate() {
         let top = TITLE + index as f64 * (TITLE + HEIGHT);
-        let own: Vec<&Unexplained> =
+        let own: Vec<&UnexplainedSegment> =
             stretches.iter().copied().filter(|stretch| stretch.channel == one.channel).collect();
-        shapes.extend(panel(one, &own, &time, top, index + 1 == series.len()));
+        shapes.extend(acceleration_panel(one, &own, &time, top, index + 1 == series.len()));
     }
     let height = series.len() as f64 * (TITLE + HEIGHT) + BOTTOM;
     shapes.push(Shape::Text {
@@ -37,7 +41,7 @@ pub(crate) fn residual(
         text: "time [s]".into(),
         class: "title mid",
     });
-    Plot {
+    SvgPlot {
         width: WIDTH,
         height,
         label: format!("Residual accelerations of trial {trial} over time"),
@@ -46,19 +50,19 @@ pub(crate) fn residual(
 }
 
 /// Panel of one acceleration.
-fn panel(
+fn acceleration_panel(
     series: &ResidualSeries,
-    stretches: &[&Unexplained],
-    time: &Scale,
+    stretches: &[&UnexplainedSegment],
+    time: &AxisScale,
     top: f64,
     last: bool,
 ) -> Vec<Shape> {
-    let (unit, factor) = acceleration(&series.channel);
+    let (unit, factor) = acceleration_unit(&series.channel);
     let all = series.before.iter().chain(&series.after).chain(&series.band);
-    let (low, high) = extent(all.map(|value| value * factor)).unwrap_or((-1.0, 1.0));
+    let (low, high) = value_range(all.map(|value| value * factor)).unwrap_or((-1.0, 1.0));
     // The band is symmetric, so its negative side must also fit.
-    let (low, high) = padded((low.min(-high_band(series, factor)), high), 0.06);
-    let scale = Scale { low, high, length: HEIGHT, reversed: true };
+    let (low, high) = padded_range((low.min(-high_band(series, factor)), high), 0.06);
+    let scale = AxisScale { low, high, length: HEIGHT, reversed: true };
     let title = format!("d{}/dt: what must be added to the model [{unit}]", series.channel);
     let mut shapes = vec![Shape::Text { at: (LEFT, top - 6.0), text: title, class: "title" }];
     let place = |values: &[f64]| -> Vec<(f64, f64)> {
@@ -66,18 +70,20 @@ fn panel(
             .t_s
             .iter()
             .zip(values)
-            .map(|(t, value)| (time.at(*t), scale.at(value * factor)))
+            .map(|(t, value)| (time.position_of(*t), scale.position_of(value * factor)))
             .collect()
     };
-    let mut areas: Vec<Shape> = stretches.iter().map(|stretch| shade(stretch, time)).collect();
-    areas.push(band(&place(&series.band), scale.at(0.0)));
-    let line = |values: &[f64], class| Shape::Path { d: path(&place(values), |_, _| false), class };
+    let mut areas: Vec<Shape> =
+        stretches.iter().map(|stretch| shade_segment(stretch, time)).collect();
+    areas.push(band_area(&place(&series.band), scale.position_of(0.0)));
+    let line =
+        |values: &[f64], class| Shape::Path { d: path_data(&place(values), |_, _| false), class };
     let lines = vec![line(&series.before, "source"), line(&series.after, "refined")];
     let size = (time.length, HEIGHT);
     // Order of drawing: shaded areas below the grid, lines above it.
     shapes.push(Shape::Panel { at: (LEFT, top), size, shapes: areas });
-    shapes.extend(rows((LEFT, top), time.length, &scale, 4));
-    shapes.extend(columns((LEFT, top), HEIGHT, time, 6, last));
+    shapes.extend(grid_rows((LEFT, top), time.length, &scale, 4));
+    shapes.extend(grid_columns((LEFT, top), HEIGHT, time, 6, last));
     shapes.push(Shape::Panel { at: (LEFT, top), size, shapes: lines });
     shapes.push(Shape::Rect { at: (LEFT, top), size, class: "frame" });
     shapes
@@ -87,15 +93,15 @@ fn high_band(series: &ResidualSeries, factor: f64) -> f64 {
     series.band.iter().fold(0.0, |most: f64, value| most.max(value * factor))
 }
 
-fn shade(stretch: &Unexplained, time: &Scale) -> Shape {
-    let (from, to) = (time.at(stretch.from_s), time.at(stretch.to_s));
+fn shade_segment(stretch: &UnexplainedSegment, time: &AxisScale) -> Shape {
+    let (from, to) = (time.position_of(stretch.from_s), time.position_of(stretch.to_s));
     // Very short segments stay visible.
     Shape::Rect { at: (from, 0.0), size: ((to - from).max(1.0), HEIGHT), class: "stretch" }
 }
 
 /// Area between the band and its mirror image about `zero`.
-fn band(edge: &[(f64, f64)], zero: f64) -> Shape {
-    let kept = kept(edge.len());
+fn band_area(edge: &[(f64, f64)], zero: f64) -> Shape {
+    let kept = drawn_indices(edge.len());
     let upper = kept.iter().map(|&index| edge[index]);
     let lower = kept.iter().rev().map(|&index| (edge[index].0, 2.0 * zero - edge[index].1));
     let points: Vec<String> = upper.chain(lower).map(|(x, y)| format!("{x:.1} {y:.1}")).collect();

@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 
 use sistership_diagnosis::ResidualSeries;
 
-use super::decimate::kept;
+use super::decimate::drawn_indices;
 use super::small::SmallPlot;
-use super::{Plot, Shape};
-use crate::words::{acceleration, recorded};
+use super::{Shape, SvgPlot};
+use crate::words::{acceleration_unit, variable_words};
 
 const HEIGHT: f64 = 190.0;
 
 /// Returns one plot for each acceleration and variable.
-pub(crate) fn scatters(residuals: &[ResidualSeries]) -> Vec<Plot> {
+pub(crate) fn scatter_plots(residuals: &[ResidualSeries]) -> Vec<SvgPlot> {
     let mut groups: BTreeMap<(usize, &str, &str), Vec<&ResidualSeries>> = BTreeMap::new();
     for series in residuals
         .iter()
@@ -27,22 +27,22 @@ pub(crate) fn scatters(residuals: &[ResidualSeries]) -> Vec<Plot> {
     }
     groups
         .into_iter()
-        .map(|((_, channel, against), group)| scatter(channel, against, &group))
+        .map(|((_, channel, against), group)| scatter_plot(channel, against, &group))
         .collect()
 }
 
-fn scatter(channel: &str, against: &str, group: &[&ResidualSeries]) -> Plot {
+fn scatter_plot(channel: &str, against: &str, group: &[&ResidualSeries]) -> SvgPlot {
     let ((name, unit, of_variable), (residual_unit, factor)) =
-        (recorded(against), acceleration(channel));
+        (variable_words(against), acceleration_unit(channel));
     let points = |of: fn(&ResidualSeries) -> &[f64]| -> Vec<(f64, f64)> {
         let pairs = group.iter().flat_map(|series| series.variable.iter().zip(of(series)));
         pairs.map(|(x, y)| (of_variable(*x), y * factor)).collect()
     };
     let (before, after) = (points(|series| &series.before), points(|series| &series.after));
-    let plot = SmallPlot::over(before.iter().chain(&after), HEIGHT);
+    let plot = SmallPlot::from_points(before.iter().chain(&after), HEIGHT);
     let clouds = [(&before, "cloud source"), (&after, "cloud refined")]
-        .map(|(points, class)| cloud(points, &plot, class));
-    plot.with(
+        .map(|(points, class)| point_cloud(points, &plot, class));
+    plot.with_content(
         clouds.into(),
         format!("residual of d{channel}/dt [{residual_unit}]"),
         format!("{name} [{unit}]"),
@@ -51,10 +51,10 @@ fn scatter(channel: &str, against: &str, group: &[&ResidualSeries]) -> Plot {
 }
 
 /// Points as strokes of zero length: much smaller in bytes than as many circles.
-fn cloud(points: &[(f64, f64)], plot: &SmallPlot, class: &'static str) -> Shape {
+fn point_cloud(points: &[(f64, f64)], plot: &SmallPlot, class: &'static str) -> Shape {
     let dot = |index: usize| {
-        let (x, y) = plot.at(&points[index]);
+        let (x, y) = plot.position_of(&points[index]);
         format!("M{x:.1} {y:.1}h0")
     };
-    Shape::Path { d: kept(points.len()).into_iter().map(dot).collect(), class }
+    Shape::Path { d: drawn_indices(points.len()).into_iter().map(dot).collect(), class }
 }

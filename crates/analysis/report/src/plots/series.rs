@@ -2,12 +2,12 @@
 
 use sistership_model::trial::Channel;
 
-use super::axes::{Scale, columns, extent, padded, rows, shown};
-use super::decimate::path;
+use super::axes::{AxisScale, display_range, grid_columns, grid_rows, padded_range, value_range};
+use super::decimate::path_data;
 use super::lines::{self, PlottedLine};
-use super::{Plot, Shape, WIDTH};
+use super::{Shape, SvgPlot, WIDTH};
 use crate::replayed::ReplayedTrial;
-use crate::words::{self, RUDDER, ShownChannel};
+use crate::words::{self, DisplayChannel, RUDDER};
 
 const LEFT: f64 = 46.0;
 const RIGHT: f64 = 18.0;
@@ -16,12 +16,19 @@ const HEIGHT: f64 = 78.0;
 const BOTTOM: f64 = 34.0;
 
 /// Returns the panels of one trial.
-pub(crate) fn series(replayed: &ReplayedTrial<'_>) -> Plot {
-    let panels = panels(replayed.rolls);
+pub(crate) fn series_plot(replayed: &ReplayedTrial<'_>) -> SvgPlot {
+    let panels = panel_channels(replayed.rolls);
     let (time, mut shapes) = (time_scale(replayed), Vec::new());
     for (index, (channel, quantity)) in panels.iter().enumerate() {
         let top = TITLE + index as f64 * (TITLE + HEIGHT);
-        shapes.extend(panel(replayed, *channel, *quantity, &time, top, index + 1 == panels.len()));
+        shapes.extend(channel_panel(
+            replayed,
+            *channel,
+            *quantity,
+            &time,
+            top,
+            index + 1 == panels.len(),
+        ));
     }
     let height = panels.len() as f64 * (TITLE + HEIGHT) + BOTTOM;
     shapes.push(Shape::Text {
@@ -29,7 +36,7 @@ pub(crate) fn series(replayed: &ReplayedTrial<'_>) -> Plot {
         text: "time [s]".into(),
         class: "title mid",
     });
-    Plot {
+    SvgPlot {
         width: WIDTH,
         height,
         label: format!("Time series of trial {}", replayed.trial.name),
@@ -38,61 +45,63 @@ pub(crate) fn series(replayed: &ReplayedTrial<'_>) -> Plot {
 }
 
 /// Displayed channels: the motions, then the rudder.
-fn panels(rolls: bool) -> Vec<(Channel, ShownChannel)> {
+fn panel_channels(rolls: bool) -> Vec<(Channel, DisplayChannel)> {
     let motions = [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::Phi];
     // Roll is only shown if it is simulated.
     let motions = motions.into_iter().filter(|channel| rolls || *channel != Channel::Phi);
-    let mut panels: Vec<_> =
-        motions.filter_map(|channel| Some((channel, words::channel(channel.name())?))).collect();
+    let mut panels: Vec<_> = motions
+        .filter_map(|channel| Some((channel, words::find_channel(channel.name())?)))
+        .collect();
     panels.push((Channel::Delta, RUDDER));
     panels
 }
 
-fn time_scale(replayed: &ReplayedTrial<'_>) -> Scale {
+fn time_scale(replayed: &ReplayedTrial<'_>) -> AxisScale {
     let times = &replayed.trial.t_s;
-    let (low, high) = extent(times.iter().copied()).unwrap_or((0.0, 1.0));
-    Scale { low, high: high.max(low + 1e-9), length: WIDTH - LEFT - RIGHT, reversed: false }
+    let (low, high) = value_range(times.iter().copied()).unwrap_or((0.0, 1.0));
+    AxisScale { low, high: high.max(low + 1e-9), length: WIDTH - LEFT - RIGHT, reversed: false }
 }
 
-fn panel(
+fn channel_panel(
     replayed: &ReplayedTrial<'_>,
     channel: Channel,
-    quantity: ShownChannel,
-    time: &Scale,
+    quantity: DisplayChannel,
+    time: &AxisScale,
     top: f64,
     last: bool,
 ) -> Vec<Shape> {
-    let lines = lines::channel(replayed, channel, quantity.factor);
+    let lines = lines::channel_lines(replayed, channel, quantity.factor);
     let range = |measured: bool| {
         // The measured line determines the range; the others extend it.
         let own = lines.iter().filter(|line| (line.class == "measured") == measured);
-        extent(own.flat_map(|line| line.values.iter().copied()))
+        value_range(own.flat_map(|line| line.values.iter().copied()))
     };
-    let (low, high) = padded(shown(range(true), range(false)), 0.06);
-    let scale = Scale { low, high, length: HEIGHT, reversed: true };
+    let (low, high) = padded_range(display_range(range(true), range(false)), 0.06);
+    let scale = AxisScale { low, high, length: HEIGHT, reversed: true };
     let given = if channel == Channel::Delta { ", given to both models" } else { "" };
     let title = format!("{} {} [{}]{given}", quantity.name, quantity.symbol, quantity.unit);
     let mut shapes = vec![Shape::Text { at: (LEFT, top - 6.0), text: title, class: "title" }];
-    shapes.extend(rows((LEFT, top), time.length, &scale, 5));
-    shapes.extend(columns((LEFT, top), HEIGHT, time, 6, last));
-    let curves = lines.iter().map(|line| curve(replayed, line, time, &scale)).collect();
+    shapes.extend(grid_rows((LEFT, top), time.length, &scale, 5));
+    shapes.extend(grid_columns((LEFT, top), HEIGHT, time, 6, last));
+    let curves = lines.iter().map(|line| channel_curve(replayed, line, time, &scale)).collect();
     shapes.push(Shape::Panel { at: (LEFT, top), size: (time.length, HEIGHT), shapes: curves });
     shapes.push(Shape::Rect { at: (LEFT, top), size: (time.length, HEIGHT), class: "frame" });
     shapes
 }
 
-fn curve(
+fn channel_curve(
     replayed: &ReplayedTrial<'_>,
     line: &PlottedLine<f64>,
-    time: &Scale,
-    scale: &Scale,
+    time: &AxisScale,
+    scale: &AxisScale,
 ) -> Shape {
-    let starts = lines::starts(replayed.trial);
-    let place =
-        |(value, sample): (&f64, &usize)| (time.at(replayed.trial.t_s[*sample]), scale.at(*value));
+    let starts = lines::segment_starts(replayed.trial);
+    let place = |(value, sample): (&f64, &usize)| {
+        (time.position_of(replayed.trial.t_s[*sample]), scale.position_of(*value))
+    };
     let points: Vec<(f64, f64)> = line.values.iter().zip(&line.samples).map(place).collect();
     let jumps = |from: usize, to: usize| {
         lines::has_gap(replayed.trial, &starts, line.samples[from], line.samples[to])
     };
-    Shape::Path { d: path(&points, jumps), class: line.class }
+    Shape::Path { d: path_data(&points, jumps), class: line.class }
 }

@@ -1,27 +1,28 @@
 //! Track over the ground, with the outline of the ship at the same instants on every track.
 
 use sistership_model::trial::Channel;
-use sistership_simulation::recorded::Replay;
+use sistership_simulation::recorded::TrialReplay;
 use sistership_simulation::state::at;
 
-use super::axes::{extent, nice_step, shown};
-use super::decimate::path;
+use super::axes::{display_range, nice_step, value_range};
+use super::decimate::path_data;
 use super::lines::{self, PlottedLine};
-use super::{GroundChart, Hull, Plot, Shape, WIDTH};
+use super::{GroundChart, HullOutline, Shape, SvgPlot, WIDTH};
 use crate::replayed::ReplayedTrial;
 
 /// Returns the trajectory of one trial.
-pub(crate) fn trajectory(replayed: &ReplayedTrial<'_>) -> Plot {
-    let lines = lines::positions(replayed);
-    let chart = chart(&lines, replayed.hull);
-    let mut inside: Vec<Shape> = lines.iter().map(|line| curve(&chart, replayed, line)).collect();
-    inside.extend(lines.iter().flat_map(|line| marks(&chart, replayed, line)));
-    let mut shapes = chart.drawn(inside);
+pub(crate) fn trajectory_plot(replayed: &ReplayedTrial<'_>) -> SvgPlot {
+    let lines = lines::position_lines(replayed);
+    let chart = ground_chart(&lines, replayed.hull);
+    let mut inside: Vec<Shape> =
+        lines.iter().map(|line| track_curve(&chart, replayed, line)).collect();
+    inside.extend(lines.iter().flat_map(|line| time_marks(&chart, replayed, line)));
+    let mut shapes = chart.draw_chart(inside);
     let first = lines.first().and_then(|line| line.values.first());
-    shapes.extend(first.into_iter().flat_map(|place| chart.start(*place)));
-    Plot {
+    shapes.extend(first.into_iter().flat_map(|place| chart.start_mark(*place)));
+    SvgPlot {
         width: WIDTH,
-        height: chart.height(),
+        height: chart.plot_height(),
         label: format!("Trajectory of trial {}", replayed.trial.name),
         shapes,
     }
@@ -32,32 +33,33 @@ pub fn mark_interval_s(duration_s: f64) -> f64 {
     nice_step((duration_s / 8.0).max(1e-3))
 }
 
-fn chart(lines: &[PlottedLine<(f64, f64)>], hull: Option<Hull>) -> GroundChart {
+fn ground_chart(lines: &[PlottedLine<(f64, f64)>], hull: Option<HullOutline>) -> GroundChart {
     let range = |of: fn(&(f64, f64)) -> f64| {
         let own = |measured: bool| {
             let lines = lines.iter().filter(move |line| (line.class == "measured") == measured);
-            extent(lines.flat_map(|line| line.values.iter().map(of)))
+            value_range(lines.flat_map(|line| line.values.iter().map(of)))
         };
-        shown(own(true), own(false))
+        display_range(own(true), own(false))
     };
-    GroundChart::of(range(|point| point.0), range(|point| point.1), hull)
+    GroundChart::from_ranges(range(|point| point.0), range(|point| point.1), hull)
 }
 
-fn curve(
+fn track_curve(
     chart: &GroundChart,
     replayed: &ReplayedTrial<'_>,
     line: &PlottedLine<(f64, f64)>,
 ) -> Shape {
-    let starts = lines::starts(replayed.trial);
-    let points: Vec<(f64, f64)> = line.values.iter().map(|point| chart.at(*point)).collect();
+    let starts = lines::segment_starts(replayed.trial);
+    let points: Vec<(f64, f64)> =
+        line.values.iter().map(|point| chart.position_of(*point)).collect();
     let jumps = |from: usize, to: usize| {
         lines::has_gap(replayed.trial, &starts, line.samples[from], line.samples[to])
     };
-    Shape::Path { d: path(&points, jumps), class: line.class }
+    Shape::Path { d: path_data(&points, jumps), class: line.class }
 }
 
 /// Marks of equal time: outlines if the heading is known, otherwise dots.
-fn marks(
+fn time_marks(
     chart: &GroundChart,
     replayed: &ReplayedTrial<'_>,
     line: &PlottedLine<(f64, f64)>,
@@ -69,22 +71,22 @@ fn marks(
     let crossed = |index: &usize| number(*index) > number(*index - 1);
     let mark = |index: usize| {
         let outline = || {
-            let heading = heading(replayed, line, index)?;
-            chart.outline(replayed.hull?, line.values[index], heading, hull_class(line.class))
+            let heading = heading_at(replayed, line, index)?;
+            chart.ship_outline(replayed.hull?, line.values[index], heading, hull_class(line.class))
         };
-        let (at, class) = (chart.at(line.values[index]), dot_class(line.class));
+        let (at, class) = (chart.position_of(line.values[index]), dot_class(line.class));
         // No heading, no hull or too small: a dot.
         outline().unwrap_or(Shape::Dot { at, radius: 2.6, class })
     };
     (1..line.values.len()).filter(crossed).map(mark).collect()
 }
 
-fn heading(
+fn heading_at(
     replayed: &ReplayedTrial<'_>,
     line: &PlottedLine<(f64, f64)>,
     index: usize,
 ) -> Option<f64> {
-    let of = |run: &Replay| run.track.states.get(index).map(|state| state[at::PSI]);
+    let of = |run: &TrialReplay| run.track.states.get(index).map(|state| state[at::PSI]);
     match line.class {
         // Simulated headings are indexed by the line's own samples, recorded ones by those of the
         // trial.

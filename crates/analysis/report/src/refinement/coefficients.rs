@@ -8,7 +8,7 @@ use super::provenance;
 
 /// All coefficients by axis, and the groups that the trials cannot distinguish.
 #[derive(Debug, Serialize)]
-pub(crate) struct Coefficients<'a> {
+pub(crate) struct CoefficientReport<'a> {
     pub axes: Vec<AxisChanges<'a>>,
     pub collinear_groups: &'a [Vec<String>],
     pub condition_number: f64,
@@ -18,12 +18,12 @@ pub(crate) struct Coefficients<'a> {
 #[derive(Debug, Serialize)]
 pub(crate) struct AxisChanges<'a> {
     pub axis: &'a str,
-    pub coefficients: Vec<ChangedCoefficient<'a>>,
+    pub coefficients: Vec<CoefficientEntry<'a>>,
 }
 
 /// One coefficient with its change.
 #[derive(Debug, Serialize)]
-pub(crate) struct ChangedCoefficient<'a> {
+pub(crate) struct CoefficientEntry<'a> {
     #[serde(flatten)]
     pub change: &'a CoefficientChange,
     /// Change relative to the size of the source's value, in per cent; `None` if that is zero.
@@ -34,15 +34,15 @@ pub(crate) struct ChangedCoefficient<'a> {
     pub source_estimated: bool,
 }
 
-impl<'a> Coefficients<'a> {
+impl<'a> CoefficientReport<'a> {
     /// Collects the coefficients of a refinement.
-    pub fn of(input: &RefinementInput<'a>) -> Self {
+    pub fn from_input(input: &RefinementInput<'a>) -> Self {
         let refinement = input.refinement;
         let mut axes: Vec<AxisChanges<'a>> = Vec::new();
         for axis in ["X", "Y", "K", "N"] {
             let own = refinement.coefficients.iter().filter(|change| axis_of(&change.name) == axis);
-            let coefficients: Vec<ChangedCoefficient<'a>> =
-                own.map(|change| ChangedCoefficient::of(input, change)).collect();
+            let coefficients: Vec<CoefficientEntry<'a>> =
+                own.map(|change| CoefficientEntry::from_change(input, change)).collect();
             if !coefficients.is_empty() {
                 axes.push(AxisChanges { axis, coefficients });
             }
@@ -55,25 +55,25 @@ impl<'a> Coefficients<'a> {
     }
 
     /// Returns all coefficients.
-    pub fn all(&self) -> impl Iterator<Item = &ChangedCoefficient<'a>> {
+    pub fn all_entries(&self) -> impl Iterator<Item = &CoefficientEntry<'a>> {
         self.axes.iter().flat_map(|axis| &axis.coefficients)
     }
 
     /// Power of ten of the displayed values: -5, that of the prime system, if all are without unit
     /// and most are small; otherwise 0.
-    pub fn exponent(&self) -> i32 {
+    pub fn display_exponent(&self) -> i32 {
         let mut sizes: Vec<f64> =
-            self.all().map(|c| c.change.source.abs()).filter(|size| *size > 0.0).collect();
+            self.all_entries().map(|c| c.change.source.abs()).filter(|size| *size > 0.0).collect();
         sizes.sort_by(f64::total_cmp);
-        let bare = self.all().all(|c| c.change.unit == "1");
+        let bare = self.all_entries().all(|c| c.change.unit == "1");
         // Judged by the median, as single coefficients may be large.
         let small = sizes.get(sizes.len() / 2).is_some_and(|median| *median < 0.02);
         if bare && small { -5 } else { 0 }
     }
 }
 
-impl<'a> ChangedCoefficient<'a> {
-    fn of(input: &RefinementInput<'_>, change: &'a CoefficientChange) -> Self {
+impl<'a> CoefficientEntry<'a> {
+    fn from_change(input: &RefinementInput<'_>, change: &'a CoefficientChange) -> Self {
         let groups = &input.refinement.collinear_groups;
         let in_group = |group: &Vec<String>| {
             // A name may stand for the same regressor of several axes, separated by a slash.

@@ -1,61 +1,61 @@
 //! Content of the report of a refinement, collected once.
 
 use serde::Serialize;
-use sistership_model_selection::Ladder;
-use sistership_priors::source::Similarity;
+use sistership_model_selection::SelectionReport;
+use sistership_priors::source::SimilarityRanking;
 use sistership_simulation::manoeuvre::FurtherManoeuvres;
 
-use super::coefficients::Coefficients;
+use super::coefficients::CoefficientReport;
 use super::input::RefinementInput;
 use super::manoeuvres::ManoeuvreComparison;
 use super::options::StepOptions;
-use super::provenance::Provenance;
-use super::sailed::{self, Sailed};
-use super::summary::{Headline, HeldOutErrors};
+use super::provenance::ModelProvenance;
+use super::sailed::{self, MeasuredFigure};
+use super::summary::{HeldOutErrors, ReportHeadline};
 use crate::replayed::{ReplaySummary, ReplayedTrial};
 
 /// Content of a report.
 #[derive(Debug, Serialize)]
 pub(crate) struct RefinementContent<'a> {
     pub format: &'static str,
-    pub headline: Headline<'a>,
+    pub headline: ReportHeadline<'a>,
     pub errors: HeldOutErrors<'a>,
     pub replays: Vec<ReplaySummary<'a>>,
-    pub coefficients: Coefficients<'a>,
+    pub coefficients: CoefficientReport<'a>,
     pub options: StepOptions<'a>,
     pub manoeuvres: ManoeuvreComparison<'a>,
     /// Stopping, pull-outs and spirals of the refined model.
     pub further: FurtherManoeuvres,
-    pub sailed: Vec<Sailed>,
-    pub similarity: Option<&'a Similarity>,
+    pub sailed: Vec<MeasuredFigure>,
+    pub similarity: Option<&'a SimilarityRanking>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub ladder: Option<&'a Ladder>,
+    pub ladder: Option<&'a SelectionReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wide: Option<String>,
-    pub provenance: Provenance<'a>,
+    pub provenance: ModelProvenance<'a>,
 }
 
 impl<'a> RefinementContent<'a> {
-    pub(crate) fn of(
+    pub(crate) fn from_input(
         input: &RefinementInput<'a>,
         replayed: &[ReplayedTrial<'a>],
         further: FurtherManoeuvres,
     ) -> Self {
-        let errors = HeldOutErrors::of(input);
+        let errors = HeldOutErrors::from_input(input);
         Self {
             format: "sistership-report/1",
-            headline: Headline::of(input, &errors),
+            headline: ReportHeadline::from_input(input, &errors),
             errors,
             replays: replayed.iter().map(|replayed| replayed.shown.clone()).collect(),
-            coefficients: Coefficients::of(input),
-            options: StepOptions::of(input),
-            manoeuvres: ManoeuvreComparison::of(input),
+            coefficients: CoefficientReport::from_input(input),
+            options: StepOptions::from_input(input),
+            manoeuvres: ManoeuvreComparison::from_input(input),
             further,
-            sailed: sailed::figures(input),
+            sailed: sailed::collect_figures(input),
             similarity: input.similarity,
             ladder: input.ladder,
             wide: input.refinement.manoeuvres.wide_band(),
-            provenance: Provenance::of(input),
+            provenance: ModelProvenance::from_input(input),
         }
     }
 }

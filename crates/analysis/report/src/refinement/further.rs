@@ -1,28 +1,36 @@
 //! Stopping and course-keeping ability of the refined model.
 
 use sistership_simulation::manoeuvre::{
-    FurtherAsked, FurtherManoeuvres, ManoeuvreSettings, further,
+    FurtherManoeuvres, FurtherSelection, ManoeuvreSettings, simulate_further_manoeuvres,
 };
 use sistership_simulation::{PlantError, Ship};
 
 use super::input::RefinementInput;
 
 /// Simulates the usual additional manoeuvres with the refined model.
-pub(crate) fn sailed(input: &RefinementInput<'_>) -> Result<FurtherManoeuvres, PlantError> {
+pub(crate) fn simulate_further(
+    input: &RefinementInput<'_>,
+) -> Result<FurtherManoeuvres, PlantError> {
     let (model, law) = (&input.refinement.model, input.law);
     let ship = Ship::new(model, law)?;
-    Ok(further(model, law, &ship, &ManoeuvreSettings::default(), &FurtherAsked::usual()))
+    Ok(simulate_further_manoeuvres(
+        model,
+        law,
+        &ship,
+        &ManoeuvreSettings::default(),
+        &FurtherSelection::default_selection(),
+    ))
 }
 
 /// Remarks that are needed to read the figures.
-pub(crate) fn remarks(sailed: &FurtherManoeuvres, lpp_m: f64) -> Vec<String> {
+pub(crate) fn further_remarks(sailed: &FurtherManoeuvres, lpp_m: f64) -> Vec<String> {
     let stable = match sailed.straight_line_stable {
         Some(true) => Some("by pull-outs to both sides the ship is stable on a straight course"),
         Some(false) => Some("by pull-outs the ship is not stable on a straight course"),
         None if sailed.pull_outs.is_empty() => None,
         None => Some("by pull-outs it cannot be told whether it is stable on a straight course"),
     };
-    let mut all = sailed.remarks(lpp_m);
+    let mut all = sailed.reader_remarks(lpp_m);
     all.extend(stable.map(str::to_owned));
     all
 }

@@ -3,18 +3,18 @@
 use askama::Template;
 use sistership_model::source::Source;
 use sistership_model::vessel::Status;
-use sistership_model_selection::Ladder;
+use sistership_model_selection::SelectionReport;
 
-use super::coefficients::Coefficients;
+use super::coefficients::CoefficientReport;
 use super::content::RefinementContent;
 use super::summary::method_text;
 use super::{further, ladder, moved, similarity, tables};
-use crate::numbers::{list, significant, stated};
-use crate::plots::{self, Plot};
+use crate::numbers::{format_significant, format_stated, join_words};
+use crate::plots::{self, SvgPlot};
 use crate::rendered::ReportError;
 use crate::replayed::{ReplaySummary, ReplayedTrial};
-use crate::tables::Table;
-use crate::tile::Tile;
+use crate::tables::ReportTable;
+use crate::tile::ErrorTile;
 use crate::words;
 
 /// Page as the template takes it.
@@ -23,42 +23,42 @@ use crate::words;
 struct RefinementPage<'a> {
     content: &'a RefinementContent<'a>,
     method: String,
-    tiles: Vec<Tile>,
-    errors: Table,
+    tiles: Vec<ErrorTile>,
+    errors: ReportTable,
     trials: Vec<RefinementTrialPlots<'a>>,
-    moved: Vec<(&'static str, Plot)>,
-    coefficients: Table,
+    moved: Vec<(&'static str, SvgPlot)>,
+    coefficients: ReportTable,
     groups: Vec<String>,
     condition: String,
-    options: Table,
-    turns: Table,
-    zigzags: Table,
-    imo: Table,
+    options: ReportTable,
+    turns: ReportTable,
+    zigzags: ReportTable,
+    imo: ReportTable,
     /// Stopping, pull-outs and spirals, if the ship's length is known.
-    further: Option<Table>,
+    further: Option<ReportTable>,
     further_remarks: Vec<String>,
-    sailed: Table,
+    sailed: ReportTable,
     why: Option<SourceChoice>,
-    ladder: Option<Table>,
+    ladder: Option<ReportTable>,
     /// Error of the most similar ship, refined with the l2 prior.
     reference: Option<String>,
     /// Reason why a learned correction was selected or not.
     branch: Option<&'a str>,
     /// Warning that the trials leave wide uncertainty bands.
     wide: Option<String>,
-    particulars: Table,
-    parameters: Table,
-    settings: Table,
+    particulars: ReportTable,
+    parameters: ReportTable,
+    settings: ReportTable,
     steering: String,
-    sources: Vec<(&'static str, Vec<Citation<'a>>)>,
+    sources: Vec<(&'static str, Vec<CitedSource<'a>>)>,
 }
 
 /// Plots of one trial.
 struct RefinementTrialPlots<'a> {
     shown: &'a ReplaySummary<'a>,
     caption: String,
-    trajectory: Plot,
-    series: Plot,
+    trajectory: SvgPlot,
+    series: SvgPlot,
 }
 
 /// Reasons for the choice of the source.
@@ -66,17 +66,17 @@ struct SourceChoice {
     definition: &'static str,
     vector: String,
     remark: Option<String>,
-    table: Table,
+    table: ReportTable,
 }
 
 /// Publication with its key.
-struct Citation<'a> {
+struct CitedSource<'a> {
     key: &'a str,
     source: &'a Source,
 }
 
 /// Renders the page.
-pub(crate) fn page(
+pub(crate) fn render_page(
     content: &RefinementContent<'_>,
     replayed: &[ReplayedTrial<'_>],
 ) -> Result<String, ReportError> {
@@ -85,43 +85,43 @@ pub(crate) fn page(
     let page = RefinementPage {
         content,
         method: method_text(&content.headline),
-        tiles: content.errors.headline().map(Tile::of).collect(),
-        errors: tables::errors(&content.errors),
+        tiles: content.errors.headline_rows().map(ErrorTile::from_row).collect(),
+        errors: tables::error_table(&content.errors),
         trials: content
             .replays
             .iter()
             .zip(replayed)
-            .map(|(shown, replayed)| RefinementTrialPlots::of(shown, replayed))
+            .map(|(shown, replayed)| RefinementTrialPlots::from_replay(shown, replayed))
             .collect(),
-        moved: moved::moved(&content.coefficients),
-        coefficients: tables::coefficients(&content.coefficients),
-        groups: groups(&content.coefficients),
-        condition: significant(provenance.condition_number, 2),
-        options: tables::options(&content.options),
-        turns: tables::turns(&content.manoeuvres),
-        zigzags: tables::zigzags(&content.manoeuvres),
-        imo: tables::imo(&content.manoeuvres),
-        further: lpp_m.map(|lpp_m| tables::further(&content.further, lpp_m)),
+        moved: moved::shift_plots(&content.coefficients),
+        coefficients: tables::coefficient_table(&content.coefficients),
+        groups: group_lines(&content.coefficients),
+        condition: format_significant(provenance.condition_number, 2),
+        options: tables::option_table(&content.options),
+        turns: tables::turn_table(&content.manoeuvres),
+        zigzags: tables::zigzag_table(&content.manoeuvres),
+        imo: tables::criteria_table(&content.manoeuvres),
+        further: lpp_m.map(|lpp_m| tables::further_table(&content.further, lpp_m)),
         further_remarks: lpp_m
-            .map_or_else(Vec::new, |lpp_m| further::remarks(&content.further, lpp_m)),
-        sailed: tables::sailed(&content.sailed),
-        why: why(content),
-        ladder: content.ladder.map(ladder::table),
-        reference: content.ladder.map(Ladder::reference),
+            .map_or_else(Vec::new, |lpp_m| further::further_remarks(&content.further, lpp_m)),
+        sailed: tables::measured_table(&content.sailed),
+        why: source_choice(content),
+        ladder: content.ladder.map(ladder::selection_report_table),
+        reference: content.ladder.map(SelectionReport::reference_summary),
         branch: content.ladder.and_then(|ladder| Some(ladder.branch.as_ref()?.reason.as_str())),
         wide: content.wide.clone(),
-        particulars: tables::particulars(&provenance.particulars),
-        parameters: tables::parameters(&provenance.parameters),
-        settings: tables::settings(provenance.settings),
-        steering: steering(content),
-        sources: sources(content),
+        particulars: tables::particulars_table(&provenance.particulars),
+        parameters: tables::parameters_table(&provenance.parameters),
+        settings: tables::settings_table(provenance.settings),
+        steering: steering_text(content),
+        sources: cited_sources(content),
     };
     Ok(page.render()?)
 }
 
 impl RefinementPage<'_> {
     fn badge(&self, status: &Status) -> &'static str {
-        words::status(*status)
+        words::status_word(*status)
     }
 
     fn meaning(&self, status: &Status) -> &'static str {
@@ -129,26 +129,26 @@ impl RefinementPage<'_> {
     }
 
     fn number(&self, value: &f64, digits: usize) -> String {
-        stated(*value, digits)
+        format_stated(*value, digits)
     }
 }
 
 impl<'a> RefinementTrialPlots<'a> {
-    fn of(shown: &'a ReplaySummary<'a>, replayed: &ReplayedTrial<'_>) -> Self {
+    fn from_replay(shown: &'a ReplaySummary<'a>, replayed: &ReplayedTrial<'_>) -> Self {
         Self {
             shown,
-            caption: caption(shown),
-            trajectory: plots::trajectory(replayed),
-            series: plots::series(replayed),
+            caption: plot_caption(shown),
+            trajectory: plots::trajectory_plot(replayed),
+            series: plots::series_plot(replayed),
         }
     }
 }
 
 /// Caption of the plots of a trial, with the errors of both models.
-fn caption(shown: &ReplaySummary<'_>) -> String {
-    let error = |quantity: &words::ShownChannel| {
+fn plot_caption(shown: &ReplaySummary<'_>) -> String {
+    let error = |quantity: &words::DisplayChannel| {
         let of = |errors: &std::collections::BTreeMap<String, f64>| {
-            Some(significant(errors.get(quantity.channel)? * quantity.factor, 3))
+            Some(format_significant(errors.get(quantity.channel)? * quantity.factor, 3))
         };
         Some(format!(
             "{} {} → {} {}",
@@ -159,19 +159,19 @@ fn caption(shown: &ReplaySummary<'_>) -> String {
         ))
     };
     let wanted =
-        |quantity: &&words::ShownChannel| ["r", "psi", "x", "y"].contains(&quantity.channel);
+        |quantity: &&words::DisplayChannel| ["r", "psi", "x", "y"].contains(&quantity.channel);
     let errors: Vec<String> = words::CHANNELS.iter().filter(wanted).filter_map(error).collect();
-    let dots = stated(plots::mark_interval_s(shown.duration_s), 3);
+    let dots = format_stated(plots::mark_interval_s(shown.duration_s), 3);
     let part = if shown.fitted { "was fitted with" } else { "has not seen" };
     format!(
         "Outlines of the ship (dots where they would be too small to see) every {dots} s. The \
          refined model {part} this trial. RMS error over the whole run, source → refined: {}.",
-        list(&errors)
+        join_words(&errors)
     )
 }
 
 /// One line for each collinear group.
-fn groups(coefficients: &Coefficients<'_>) -> Vec<String> {
+fn group_lines(coefficients: &CoefficientReport<'_>) -> Vec<String> {
     coefficients
         .collinear_groups
         .iter()
@@ -180,31 +180,33 @@ fn groups(coefficients: &Coefficients<'_>) -> Vec<String> {
 }
 
 /// Choice of the source; `None` if the source was named without a ranking.
-fn why(content: &RefinementContent<'_>) -> Option<SourceChoice> {
+fn source_choice(content: &RefinementContent<'_>) -> Option<SourceChoice> {
     content.similarity.map(|ranking| SourceChoice {
-        definition: similarity::definition(ranking.definition),
-        vector: similarity::vector(ranking),
+        definition: similarity::definition_source(ranking.definition),
+        vector: similarity::vector_text(ranking),
         // The remark on a named source does not apply to a selection among candidates.
         remark: match content.ladder {
             Some(_) => None,
-            None => similarity::remark(ranking, content.headline.source),
+            None => similarity::source_remark(ranking, content.headline.source),
         },
-        table: similarity::table(ranking, content.headline.source),
+        table: similarity::ranking_table(ranking, content.headline.source),
     })
 }
 
-fn steering(content: &RefinementContent<'_>) -> String {
+fn steering_text(content: &RefinementContent<'_>) -> String {
     let gear = content.provenance.steering;
     let source = gear.source.as_deref().unwrap_or("default of SOLAS II-1/29");
-    let figures =
-        [gear.limit_deg, gear.rate_deg_s, gear.time_constant_s].map(|value| stated(value, 3));
+    let figures = [gear.limit_deg, gear.rate_deg_s, gear.time_constant_s]
+        .map(|value| format_stated(value, 3));
     format!(
         "rudder to {} deg, at most {} deg/s, time constant {} s ({source})",
         figures[0], figures[1], figures[2]
     )
 }
 
-fn sources<'a>(content: &'a RefinementContent<'a>) -> Vec<(&'static str, Vec<Citation<'a>>)> {
+fn cited_sources<'a>(
+    content: &'a RefinementContent<'a>,
+) -> Vec<(&'static str, Vec<CitedSource<'a>>)> {
     let provenance = &content.provenance;
     let lists = [
         ("of the ship", provenance.ship_sources),
@@ -212,7 +214,7 @@ fn sources<'a>(content: &'a RefinementContent<'a>) -> Vec<(&'static str, Vec<Cit
         ("of the law", provenance.law_sources),
     ];
     let cited = lists.map(|(of, sources)| {
-        (of, sources.iter().map(|(key, source)| Citation { key, source }).collect::<Vec<_>>())
+        (of, sources.iter().map(|(key, source)| CitedSource { key, source }).collect::<Vec<_>>())
     });
     cited.into_iter().filter(|(_, citations)| !citations.is_empty()).collect()
 }

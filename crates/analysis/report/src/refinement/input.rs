@@ -3,8 +3,8 @@
 use sistership_identification::refine::Refinement;
 use sistership_model::trial::Trial;
 use sistership_model::{Law, Vessel};
-use sistership_model_selection::Ladder;
-use sistership_priors::source::Similarity;
+use sistership_model_selection::SelectionReport;
+use sistership_priors::source::SimilarityRanking;
 
 use crate::rendered::VersionLabel;
 
@@ -20,9 +20,9 @@ pub struct RefinementInput<'a> {
     /// All given trials, fitted and held out.
     pub trials: &'a [&'a Trial],
     /// Ranking by similarity, if the source was not named.
-    pub similarity: Option<&'a Similarity>,
+    pub similarity: Option<&'a SimilarityRanking>,
     /// Selection report, if the model was selected among candidates.
-    pub ladder: Option<&'a Ladder>,
+    pub ladder: Option<&'a SelectionReport>,
     /// Version of the model, if it is stored.
     pub version: Option<VersionLabel>,
 }

@@ -1,52 +1,54 @@
 //! Selection report: candidates that were evaluated before this model was selected.
 
-use sistership_model_selection::{Ladder, Line, Rung};
+use sistership_model_selection::{ReportLine, SelectionReport, SelectionStage};
 
-use crate::numbers::{known, significant};
-use crate::tables::{Cell, Column, Row, Table};
+use crate::numbers::{format_known, format_significant};
+use crate::tables::{ReportTable, TableCell, TableColumn, TableRow};
 
 /// Table with one row for each source and law at each stage.
-pub(crate) fn table(ladder: &Ladder) -> Table {
+pub(crate) fn selection_report_table(ladder: &SelectionReport) -> ReportTable {
     let columns = vec![
-        Column::text("source", ""),
-        Column::text("law", ""),
-        Column::text("estimator", ""),
-        Column::number("fitted", ""),
-        Column::number("error", ""),
-        Column::number("std. error", ""),
-        Column::number("elsewhere", ""),
-        Column::number("took", "s"),
-        Column::prose("why"),
+        TableColumn::text_column("source", ""),
+        TableColumn::text_column("law", ""),
+        TableColumn::text_column("estimator", ""),
+        TableColumn::number_column("fitted", ""),
+        TableColumn::number_column("error", ""),
+        TableColumn::number_column("std. error", ""),
+        TableColumn::number_column("elsewhere", ""),
+        TableColumn::number_column("took", "s"),
+        TableColumn::prose_column("why"),
     ];
-    Table { columns, rows: ladder.lines.iter().map(row).collect() }
+    ReportTable { columns, rows: ladder.lines.iter().map(candidate_row).collect() }
 }
 
-fn row(line: &Line) -> Row {
-    let source = Cell::new(line.source.as_deref().unwrap_or("none"));
-    let figure = |value: Option<f64>| Cell::new(known(value, |value| significant(value, 3)));
+fn candidate_row(line: &ReportLine) -> TableRow {
+    let source = TableCell::new(line.source.as_deref().unwrap_or("none"));
+    let figure = |value: Option<f64>| {
+        TableCell::new(format_known(value, |value| format_significant(value, 3)))
+    };
     let cells = vec![
         match (line.chosen, line.reference) {
-            (true, _) => source.mark("taken", "chosen"),
-            (false, true) => source.mark("reference", "note"),
+            (true, _) => source.with_mark("taken", "chosen"),
+            (false, true) => source.with_mark("reference", "note"),
             (false, false) => source,
         },
-        Cell::new(&line.law),
-        Cell::new(estimator(line.rung)),
-        Cell::new(line.coefficients.to_string()),
+        TableCell::new(&line.law),
+        TableCell::new(stage_estimator(line.rung)),
+        TableCell::new(line.coefficients.to_string()),
         figure(line.error),
         figure(line.standard_error),
         figure(line.variance),
-        Cell::new(significant(line.cost_s, 2)),
-        Cell::new(&line.reason),
+        TableCell::new(format_significant(line.cost_s, 2)),
+        TableCell::new(&line.reason),
     ];
-    Row::of(cells).highlighted(line.chosen)
+    TableRow::from_cells(cells).with_highlight(line.chosen)
 }
 
 /// Estimator of a stage.
-fn estimator(rung: Rung) -> &'static str {
+fn stage_estimator(rung: SelectionStage) -> &'static str {
     match rung {
-        Rung::CarriedOver => "none: as carried over",
-        Rung::Weak => "weak form",
-        Rung::Trajectory => "trajectory form",
+        SelectionStage::CarriedOver => "none: as carried over",
+        SelectionStage::Weak => "weak form",
+        SelectionStage::Trajectory => "trajectory form",
     }
 }

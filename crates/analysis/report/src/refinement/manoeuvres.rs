@@ -3,9 +3,9 @@
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-use sistership_assessment::uncertainty::Bands;
+use sistership_assessment::uncertainty::UncertaintyBands;
 use sistership_model::validity::Excursion;
-use sistership_simulation::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+use sistership_simulation::metrics::{ImoCriterion, TurningMetrics, ZigzagMetrics};
 
 use super::input::RefinementInput;
 use crate::metrics::{TURN, ZIGZAG};
@@ -62,26 +62,26 @@ pub(crate) struct ManoeuvreComparison<'a> {
 }
 
 impl<'a> ManoeuvreComparison<'a> {
-    pub fn of(input: &RefinementInput<'a>) -> Self {
+    pub fn from_input(input: &RefinementInput<'a>) -> Self {
         let both = &input.refinement.manoeuvres;
         let (source, refined, bands) = (&both.source, &both.refined, both.bands.as_ref());
         Self {
             lpp_m: input.vessel.particular("lpp_m"),
             speed_m_s: input.refinement.model.speed_m_s,
-            turns: turns(&source.turns, &refined.turns, bands),
-            zigzags: zigzags(&source.zigzags, &refined.zigzags, bands),
-            imo: criteria(&source.imo, &refined.imo, bands),
+            turns: turn_figures(&source.turns, &refined.turns, bands),
+            zigzags: zigzag_figures(&source.zigzags, &refined.zigzags, bands),
+            imo: compare_criteria(&source.imo, &refined.imo, bands),
             source_failures: &source.failures,
             refined_failures: &refined.failures,
             outside: &refined.outside,
-            next_trial: bands.and_then(|bands| Some(bands.next_trial.as_ref()?.words())),
+            next_trial: bands.and_then(|bands| Some(bands.next_trial.as_ref()?.as_sentence())),
         }
     }
 }
 
 /// Pairs of equal items of both lists, in the order of the first; an item that is only in one list
 /// has no partner.
-fn matched<'t, T>(
+fn match_pairs<'t, T>(
     source: &'t [T],
     refined: &'t [T],
     same: impl Fn(&T, &T) -> bool,
@@ -97,24 +97,24 @@ fn matched<'t, T>(
 }
 
 /// Limits of the uncertainty band of a figure.
-fn band(bands: Option<&Bands>, name: &str) -> Option<[f64; 2]> {
-    bands?.of(name).map(|band| [band.low, band.high])
+fn band_limits(bands: Option<&UncertaintyBands>, name: &str) -> Option<[f64; 2]> {
+    bands?.figure_band(name).map(|band| [band.low, band.high])
 }
 
 /// Figures of the turning circles, paired by rudder angle.
-fn turns(
+fn turn_figures(
     source: &[TurningMetrics],
     refined: &[TurningMetrics],
-    bands: Option<&Bands>,
+    bands: Option<&UncertaintyBands>,
 ) -> Vec<ManoeuvreFigure> {
     let mut figures = Vec::new();
-    for (before, after) in matched(source, refined, |a, b| a.rudder_deg == b.rudder_deg) {
+    for (before, after) in match_pairs(source, refined, |a, b| a.rudder_deg == b.rudder_deg) {
         let rudder = before.or(after).map_or(0.0, |turn| turn.rudder_deg);
-        let manoeuvre = format!("turn, {} deg to {}", rudder.abs(), side(rudder));
+        let manoeuvre = format!("turn, {} deg to {}", rudder.abs(), turn_side(rudder));
         for (figure, read) in TURN {
             let pair = FigurePair { source: before.and_then(read), refined: after.and_then(read) };
             // The key is the name under which the bands store a figure.
-            let band = band(bands, &format!("turn {rudder} deg: {figure}"));
+            let band = band_limits(bands, &format!("turn {rudder} deg: {figure}"));
             figures.push(ManoeuvreFigure {
                 manoeuvre: manoeuvre.clone(),
                 figure,
@@ -128,27 +128,29 @@ fn turns(
 }
 
 /// Figures of the zigzags, paired by rudder and switching angle.
-fn zigzags(
+fn zigzag_figures(
     source: &[ZigzagMetrics],
     refined: &[ZigzagMetrics],
-    bands: Option<&Bands>,
+    bands: Option<&UncertaintyBands>,
 ) -> Vec<ManoeuvreFigure> {
     let same = |a: &ZigzagMetrics, b: &ZigzagMetrics| {
         a.rudder_deg == b.rudder_deg && a.switch_deg == b.switch_deg
     };
     let mut figures = Vec::new();
-    for (before, after) in matched(source, refined, same) {
+    for (before, after) in match_pairs(source, refined, same) {
         let Some(one) = before.or(after) else { continue };
         let manoeuvre = format!(
             "zigzag {}/{}, first to {}",
             one.rudder_deg.abs(),
             one.switch_deg,
-            side(one.rudder_deg)
+            turn_side(one.rudder_deg)
         );
         for (figure, unit, read) in ZIGZAG {
             let pair = FigurePair { source: before.and_then(read), refined: after.and_then(read) };
-            let band =
-                band(bands, &format!("zigzag {}/{}: {figure}", one.rudder_deg, one.switch_deg));
+            let band = band_limits(
+                bands,
+                &format!("zigzag {}/{}: {figure}", one.rudder_deg, one.switch_deg),
+            );
             figures.push(ManoeuvreFigure {
                 manoeuvre: manoeuvre.clone(),
                 figure,
@@ -161,16 +163,16 @@ fn zigzags(
     figures
 }
 
-fn criteria<'a>(
-    source: &'a [Criterion],
-    refined: &'a [Criterion],
-    bands: Option<&Bands>,
+fn compare_criteria<'a>(
+    source: &'a [ImoCriterion],
+    refined: &'a [ImoCriterion],
+    bands: Option<&UncertaintyBands>,
 ) -> Vec<CriterionComparison<'a>> {
-    let pairs = matched(source, refined, |a, b| a.criterion == b.criterion);
-    let one = |(before, after): (Option<&'a Criterion>, Option<&'a Criterion>)| {
+    let pairs = match_pairs(source, refined, |a, b| a.criterion == b.criterion);
+    let one = |(before, after): (Option<&'a ImoCriterion>, Option<&'a ImoCriterion>)| {
         // Name and limit are the same on both sides.
         let any = after.or(before)?;
-        let drawn = bands.and_then(|bands| bands.of(&format!("IMO: {}", any.criterion)));
+        let drawn = bands.and_then(|bands| bands.figure_band(&format!("IMO: {}", any.criterion)));
         Some(CriterionComparison {
             criterion: &any.criterion,
             limit: any.limit,
@@ -186,6 +188,6 @@ fn criteria<'a>(
     pairs.into_iter().filter_map(one).collect()
 }
 
-fn side(rudder_deg: f64) -> &'static str {
+fn turn_side(rudder_deg: f64) -> &'static str {
     if rudder_deg < 0.0 { "port" } else { "starboard" }
 }

@@ -25,17 +25,17 @@ mod tests;
 
 pub use input::RefinementInput;
 
-use crate::rendered::{Rendered, ReportError};
+use crate::rendered::{RenderedReport, ReportError};
 use content::RefinementContent;
 
 /// Renders the report of a refinement; the same input gives the same bytes.
 ///
 /// # Errors
 /// Returns an error if a model cannot be simulated under the law, or if the page cannot be written.
-pub fn render_refinement(input: &RefinementInput<'_>) -> Result<Rendered, ReportError> {
+pub fn render_refinement(input: &RefinementInput<'_>) -> Result<RenderedReport, ReportError> {
     let replayed = replays::replay_chosen(input)?;
-    let further = further::sailed(input)?;
-    let content = RefinementContent::of(input, &replayed, further);
-    let html = html::page(&content, &replayed)?;
-    Ok(Rendered { json: serde_json::to_value(&content)?, html })
+    let further = further::simulate_further(input)?;
+    let content = RefinementContent::from_input(input, &replayed, further);
+    let html = html::render_page(&content, &replayed)?;
+    Ok(RenderedReport { json: serde_json::to_value(&content)?, html })
 }

@@ -14,11 +14,11 @@ pub(crate) struct StepOptions<'a> {
 }
 
 impl<'a> StepOptions<'a> {
-    pub fn of(input: &RefinementInput<'a>) -> Self {
+    pub fn from_input(input: &RefinementInput<'a>) -> Self {
         let steps = input.refinement.options.as_slice();
         let width = steps.iter().map(|step| step.lambda.len()).max().unwrap_or(0);
         let axes: Vec<String> =
-            input.law.axes.keys().map(|axis| format!("d{}/dt", axis.velocity())).collect();
+            input.law.axes.keys().map(|axis| format!("d{}/dt", axis.velocity_name())).collect();
         // Names by number, if the regressions are not one for each axis.
         let numbered = || (1..=width).map(|number| format!("regression {number}")).collect();
         // A law may be regressed in another number of equations than it has axes.

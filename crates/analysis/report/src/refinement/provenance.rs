@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use sistership_identification::refine::Settings;
+use sistership_identification::refine::RefinementSettings;
 use sistership_model::estimated_particulars::{EstimatedParticular, SCALED, estimated_particulars};
-use sistership_model::law::Parameter;
-use sistership_model::model::DERIVED;
+use sistership_model::law::LawParameter;
+use sistership_model::model::DERIVED_SOURCE;
 use sistership_model::quantity::Quantity;
 use sistership_model::source::Source;
 use sistership_model::vessel::{Status, Steering};
@@ -16,7 +16,7 @@ use crate::words;
 
 /// Inputs of the refined model.
 #[derive(Debug, Serialize)]
-pub(crate) struct Provenance<'a> {
+pub(crate) struct ModelProvenance<'a> {
     pub particulars: Vec<StatedQuantity<'a>>,
     pub estimated_particulars: Vec<EstimatedParticular>,
     pub parameters: Vec<StatedQuantity<'a>>,
@@ -28,7 +28,7 @@ pub(crate) struct Provenance<'a> {
     pub trials: Vec<&'a str>,
     pub remarks: &'a [String],
     pub condition_number: f64,
-    pub settings: &'a Settings,
+    pub settings: &'a RefinementSettings,
 }
 
 /// Value with its source.
@@ -43,20 +43,20 @@ pub(crate) struct StatedQuantity<'a> {
     pub kind: Option<&'static str>,
 }
 
-impl<'a> Provenance<'a> {
-    pub fn of(input: &RefinementInput<'a>) -> Self {
+impl<'a> ModelProvenance<'a> {
+    pub fn from_input(input: &RefinementInput<'a>) -> Self {
         let (refinement, model) = (input.refinement, &input.refinement.model);
         Self {
             particulars: model
                 .particulars
                 .iter()
-                .map(|(name, quantity)| particular(name, quantity))
+                .map(|(name, quantity)| stated_particular(name, quantity))
                 .collect(),
             estimated_particulars: estimated_particulars(&model.particulars),
             parameters: model
                 .parameters
                 .iter()
-                .map(|(name, q)| parameter(name, q, input.law.parameters.get(name)))
+                .map(|(name, q)| stated_parameter(name, q, input.law.parameters.get(name)))
                 .collect(),
             steering: &model.steering,
             ship_sources: &input.vessel.file.sources,
@@ -71,15 +71,15 @@ impl<'a> Provenance<'a> {
     }
 }
 
-fn particular<'a>(name: &'a str, quantity: &'a Quantity) -> StatedQuantity<'a> {
-    let (meaning, unit) = words::field(name);
-    StatedQuantity { name, meaning, unit, quantity, kind: kind(&quantity.source) }
+fn stated_particular<'a>(name: &'a str, quantity: &'a Quantity) -> StatedQuantity<'a> {
+    let (meaning, unit) = words::field_words(name);
+    StatedQuantity { name, meaning, unit, quantity, kind: derivation_kind(&quantity.source) }
 }
 
-fn parameter<'a>(
+fn stated_parameter<'a>(
     name: &'a str,
     quantity: &'a Quantity,
-    of: Option<&'a Parameter>,
+    of: Option<&'a LawParameter>,
 ) -> StatedQuantity<'a> {
     let (meaning, unit) =
         of.map_or(("", "–"), |parameter| (parameter.meaning.as_str(), parameter.unit.as_str()));
@@ -88,14 +88,14 @@ fn parameter<'a>(
         meaning: meaning.to_owned(),
         unit,
         quantity,
-        kind: kind(&quantity.source),
+        kind: derivation_kind(&quantity.source),
     }
 }
 
 /// Kind of derivation of a value, by its source.
-fn kind(source: &str) -> Option<&'static str> {
+fn derivation_kind(source: &str) -> Option<&'static str> {
     match source {
-        DERIVED => Some("derived"),
+        DERIVED_SOURCE => Some("derived"),
         "approach-speed" => Some("from trials"),
         _ if source.starts_with(SCALED) => Some("scaled"),
         _ if is_estimated(source) => Some("estimated"),

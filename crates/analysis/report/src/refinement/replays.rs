@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use sistership_model::Model;
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::error::SquaredError;
-use sistership_simulation::recorded::{Replay, ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, TrialReplay, replay_trial};
 use sistership_simulation::{PlantError, Ship};
 
 use super::input::RefinementInput;
-use crate::plots::Hull;
+use crate::plots::HullOutline;
 use crate::replayed::{ReplaySummary, ReplayedTrial};
 
 /// Largest number of plotted trials.
@@ -19,34 +19,36 @@ const MOST: usize = 4;
 pub(crate) fn replay_chosen<'a>(
     input: &RefinementInput<'a>,
 ) -> Result<Vec<ReplayedTrial<'a>>, PlantError> {
-    let source = ready(&input.refinement.transferred, input)?;
-    let refined = ready(&input.refinement.model, input)?;
+    let source = prepare_ship(&input.refinement.transferred, input)?;
+    let refined = prepare_ship(&input.refinement.model, input)?;
     let settings = ReplaySettings::default();
     let one = |trial: &'a Trial| {
-        let runs =
-            (replay(&source, trial, &settings).ok()?, replay(&refined, trial, &settings).ok()?);
-        Some(replayed(input, trial, runs))
+        let runs = (
+            replay_trial(&source, trial, &settings).ok()?,
+            replay_trial(&refined, trial, &settings).ok()?,
+        );
+        Some(replayed_trial(input, trial, runs))
     };
-    Ok(ranked(input).into_iter().filter_map(one).take(MOST).collect())
+    Ok(ranked_trials(input).into_iter().filter_map(one).take(MOST).collect())
 }
 
-fn replayed<'a>(
+fn replayed_trial<'a>(
     input: &RefinementInput<'a>,
     trial: &'a Trial,
-    (source, refined): (Replay, Replay),
+    (source, refined): (TrialReplay, TrialReplay),
 ) -> ReplayedTrial<'a> {
-    let stopped = |run: &Replay| run.stopped.as_ref().map(ToString::to_string);
+    let stopped = |run: &TrialReplay| run.stopped.as_ref().map(ToString::to_string);
     let shown = ReplaySummary {
         trial: &trial.name,
         manoeuvre: trial.manoeuvre.as_deref(),
         duration_s: trial.duration_s(),
         fitted: is_fitted(input, trial) && !input.refinement.is_source_kept(),
-        source: SquaredError::of(trial, &source).rmse(),
-        refined: SquaredError::of(trial, &refined).rmse(),
+        source: SquaredError::from_trial(trial, &source).rmse_by_channel(),
+        refined: SquaredError::from_trial(trial, &refined).rmse_by_channel(),
         source_stopped: stopped(&source),
         refined_stopped: stopped(&refined),
     };
-    let hull = Hull::of(&input.refinement.model.particulars);
+    let hull = HullOutline::from_particulars(&input.refinement.model.particulars);
     ReplayedTrial { trial, source, refined, rolls: input.law.has_roll(), hull, shown }
 }
 
@@ -55,7 +57,7 @@ fn is_fitted(input: &RefinementInput<'_>, trial: &Trial) -> bool {
 }
 
 /// Ship whose envelope covers the speeds of the trials.
-fn ready(model: &Model, input: &RefinementInput<'_>) -> Result<Ship, PlantError> {
+fn prepare_ship(model: &Model, input: &RefinementInput<'_>) -> Result<Ship, PlantError> {
     let mut ship = Ship::new(model, input.law)?;
     let speeds =
         input.trials.iter().flat_map(|trial| trial.channel(Channel::U).into_iter().flatten());
@@ -65,15 +67,18 @@ fn ready(model: &Model, input: &RefinementInput<'_>) -> Result<Ship, PlantError>
 
 /// Trials in order of interest: held-out before fitted, kinds of manoeuvre in turn, and within a
 /// kind first one from each half of the list, as similar names are neighbours.
-fn ranked<'a>(input: &RefinementInput<'a>) -> Vec<&'a Trial> {
+fn ranked_trials<'a>(input: &RefinementInput<'a>) -> Vec<&'a Trial> {
     let mut kinds: BTreeMap<(bool, ManoeuvreKind), Vec<&Trial>> = BTreeMap::new();
     for trial in input.trials {
-        kinds.entry((is_fitted(input, trial), ManoeuvreKind::of(trial))).or_default().push(trial);
+        kinds
+            .entry((is_fitted(input, trial), ManoeuvreKind::from_trial(trial)))
+            .or_default()
+            .push(trial);
     }
     let mut keyed: Vec<((bool, usize, ManoeuvreKind), &Trial)> = Vec::new();
     for ((fitted, kind), trials) in kinds {
         keyed.extend(
-            spread(trials)
+            middle_second(trials)
                 .into_iter()
                 .enumerate()
                 .map(|(turn, trial)| ((fitted, turn, kind), trial)),
@@ -85,7 +90,7 @@ fn ranked<'a>(input: &RefinementInput<'a>) -> Vec<&'a Trial> {
 }
 
 /// Moves the middle trial to the second place.
-fn spread(mut trials: Vec<&Trial>) -> Vec<&Trial> {
+fn middle_second(mut trials: Vec<&Trial>) -> Vec<&Trial> {
     if trials.len() > 2 {
         let middle = trials.remove(trials.len() / 2);
         trials.insert(1, middle);
@@ -102,7 +107,7 @@ enum ManoeuvreKind {
 }
 
 impl ManoeuvreKind {
-    fn of(trial: &Trial) -> Self {
+    fn from_trial(trial: &Trial) -> Self {
         let text =
             format!("{} {}", trial.manoeuvre.as_deref().unwrap_or(""), trial.name).to_lowercase();
         // The name of the trial is the only hint if no manoeuvre is stated.

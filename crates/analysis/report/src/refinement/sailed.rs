@@ -5,11 +5,11 @@ use sistership_identification::refine::MeasuredManoeuvre;
 use sistership_simulation::metrics::ManoeuvreMetrics;
 
 use super::input::RefinementInput;
-use crate::metrics::{MetricValue, read};
+use crate::metrics::{MetricValue, manoeuvre_figures};
 
 /// One figure of one trial.
 #[derive(Debug, Serialize)]
-pub(crate) struct Sailed {
+pub(crate) struct MeasuredFigure {
     /// Name of the trial, with the remark fitted or held out.
     pub trial: String,
     pub figure: &'static str,
@@ -20,19 +20,21 @@ pub(crate) struct Sailed {
 }
 
 /// Returns the figures of every recognised manoeuvre.
-pub(crate) fn figures(input: &RefinementInput<'_>) -> Vec<Sailed> {
-    input.refinement.manoeuvres.measured.iter().flat_map(of_manoeuvre).collect()
+pub(crate) fn collect_figures(input: &RefinementInput<'_>) -> Vec<MeasuredFigure> {
+    input.refinement.manoeuvres.measured.iter().flat_map(manoeuvre_figures).collect()
 }
 
-fn of_manoeuvre(manoeuvre: &MeasuredManoeuvre) -> Vec<Sailed> {
+fn manoeuvre_figures(manoeuvre: &MeasuredManoeuvre) -> Vec<MeasuredFigure> {
     let seen = if manoeuvre.fitted { "fitted" } else { "kept out of the fit" };
     let trial = format!("{}, {seen}", manoeuvre.trial);
-    let measured = read(&manoeuvre.measured);
-    let of = |metrics: &Option<ManoeuvreMetrics>| metrics.as_ref().map(read).unwrap_or_default();
+    let measured = manoeuvre_figures(&manoeuvre.measured);
+    let of = |metrics: &Option<ManoeuvreMetrics>| {
+        metrics.as_ref().map(manoeuvre_figures).unwrap_or_default()
+    };
     let (source, refined) = (of(&manoeuvre.source), of(&manoeuvre.refined));
     // A model that did not complete the manoeuvre has no figures.
     let value = |all: &[MetricValue], index: usize| all.get(index).and_then(|figure| figure.2);
-    let one = |(index, &(figure, unit, measured)): (usize, &MetricValue)| Sailed {
+    let one = |(index, &(figure, unit, measured)): (usize, &MetricValue)| MeasuredFigure {
         trial: trial.clone(),
         figure,
         unit,
@@ -41,6 +43,6 @@ fn of_manoeuvre(manoeuvre: &MeasuredManoeuvre) -> Vec<Sailed> {
         refined: value(&refined, index),
     };
     // With the recorded rudder both models have the period of the record.
-    let known = |sailed: &Sailed| sailed.measured.is_some() && sailed.figure != "period";
+    let known = |sailed: &MeasuredFigure| sailed.measured.is_some() && sailed.figure != "period";
     measured.iter().enumerate().map(one).filter(known).collect()
 }

@@ -6,14 +6,14 @@ use sistership_model::vessel::Status;
 
 use super::input::RefinementInput;
 use super::provenance;
-use crate::error_row::{ErrorRow, times};
-use crate::numbers::list;
+use crate::error_row::{ErrorRow, format_factor};
+use crate::numbers::join_words;
 use crate::rendered::VersionLabel;
-use crate::words::{self, CHANNELS, ShownChannel};
+use crate::words::{self, CHANNELS, DisplayChannel};
 
 /// Subject and result of the report.
 #[derive(Debug, Serialize)]
-pub(crate) struct Headline<'a> {
+pub(crate) struct ReportHeadline<'a> {
     pub ship: &'a str,
     pub title: &'a str,
     pub source: &'a str,
@@ -27,8 +27,8 @@ pub(crate) struct Headline<'a> {
     pub verdict: String,
 }
 
-impl<'a> Headline<'a> {
-    pub fn of(input: &RefinementInput<'a>, errors: &HeldOutErrors<'_>) -> Self {
+impl<'a> ReportHeadline<'a> {
+    pub fn from_input(input: &RefinementInput<'a>, errors: &HeldOutErrors<'_>) -> Self {
         let refinement = input.refinement;
         Self {
             ship: &refinement.ship,
@@ -41,7 +41,7 @@ impl<'a> Headline<'a> {
             method: &refinement.method,
             trials: input.trials.len(),
             version: input.version.clone(),
-            verdict: verdict(input, errors),
+            verdict: verdict_sentence(input, errors),
         }
     }
 }
@@ -60,16 +60,16 @@ pub(crate) struct HeldOutErrors<'a> {
 }
 
 impl<'a> HeldOutErrors<'a> {
-    pub fn of(input: &RefinementInput<'a>) -> Self {
+    pub fn from_input(input: &RefinementInput<'a>) -> Self {
         let (held_out, settings) = (&input.refinement.held_out, &input.refinement.settings);
         // Roll channels only for laws with roll.
-        let rolls = |quantity: &ShownChannel| {
+        let rolls = |quantity: &DisplayChannel| {
             input.law.has_roll() || !matches!(quantity.channel, "phi" | "p")
         };
         let rows = CHANNELS
             .into_iter()
             .filter(rolls)
-            .map(|q| ErrorRow::of(q, &held_out.source, &held_out.refined));
+            .map(|q| ErrorRow::from_errors(q, &held_out.source, &held_out.refined));
         Self {
             how: &held_out.how,
             on_fitted_trial: settings.held_out.is_empty() && input.trials.len() == 1,
@@ -80,7 +80,7 @@ impl<'a> HeldOutErrors<'a> {
     }
 
     /// Rows of the headline: speeds, yaw rate, heading and position.
-    pub fn headline(&self) -> impl Iterator<Item = &ErrorRow> {
+    pub fn headline_rows(&self) -> impl Iterator<Item = &ErrorRow> {
         self.rows
             .iter()
             .filter(|row| ["u", "v", "r", "psi", "position"].contains(&row.quantity.channel))
@@ -102,13 +102,15 @@ fn without_coefficients(input: &RefinementInput<'_>) -> String {
 }
 
 /// Result of the refinement, as a sentence.
-fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
+fn verdict_sentence(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
     if input.refinement.is_source_kept() {
         return "No refinement beat the source on manoeuvres left out: the source model is kept as \
             it is.".into();
     }
-    let phrases: Vec<String> =
-        ["fell", "rose", "unchanged"].into_iter().filter_map(|word| phrase(errors, word)).collect();
+    let phrases: Vec<String> = ["fell", "rose", "unchanged"]
+        .into_iter()
+        .filter_map(|word| change_phrase(errors, word))
+        .collect();
     let place = if errors.on_fitted_trial {
         "On the trial that was fitted (nothing could be left out)"
     } else {
@@ -117,24 +119,26 @@ fn verdict(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
     if phrases.is_empty() {
         return format!("{place}, no error is known.");
     }
-    let compared = if is_blank(input) { without_coefficients(input) } else { String::new() };
+    let compared =
+        if has_no_coefficients(input) { without_coefficients(input) } else { String::new() };
     format!("{place}, the error {}.{compared}", phrases.join("; it "))
 }
 
 /// True if the model before the fit is a law without coefficients.
-fn is_blank(input: &RefinementInput<'_>) -> bool {
+fn has_no_coefficients(input: &RefinementInput<'_>) -> bool {
     input.refinement.transferred.coefficients.values().all(|coefficient| coefficient.value == 0.0)
 }
 
 /// Phrase of the channels with one kind of change: `fell by a factor of 4.2 in surge speed and 1.3
 /// in heading`.
-fn phrase(errors: &HeldOutErrors<'_>, word: &str) -> Option<String> {
-    let rows: Vec<&ErrorRow> = errors.headline().filter(|row| row.change().0 == word).collect();
-    let named = |row: &&ErrorRow| match row.change() {
+fn change_phrase(errors: &HeldOutErrors<'_>, word: &str) -> Option<String> {
+    let rows: Vec<&ErrorRow> =
+        errors.headline_rows().filter(|row| row.error_change().0 == word).collect();
+    let named = |row: &&ErrorRow| match row.error_change() {
         ("unchanged", _) => row.quantity.name.to_owned(),
-        (_, factor) => format!("{} in {}", times(factor), row.quantity.name),
+        (_, factor) => format!("{} in {}", format_factor(factor), row.quantity.name),
     };
-    let words = list(&rows.iter().map(named).collect::<Vec<_>>());
+    let words = join_words(&rows.iter().map(named).collect::<Vec<_>>());
     match word {
         _ if rows.is_empty() => None,
         "unchanged" => Some(format!("is unchanged in {words}")),
@@ -143,8 +147,8 @@ fn phrase(errors: &HeldOutErrors<'_>, word: &str) -> Option<String> {
 }
 
 /// Estimator in words.
-pub(crate) fn method_text(headline: &Headline<'_>) -> String {
-    match words::method(headline.method) {
+pub(crate) fn method_text(headline: &ReportHeadline<'_>) -> String {
+    match words::method_words(headline.method) {
         "" => headline.method.to_owned(),
         text => format!("{}: {text}", headline.method),
     }

@@ -2,13 +2,13 @@
 //! A report of made-up trials: what it says, that it says it the same way twice, and that nothing
 //! leaks out of its text.
 
-use sistership_identification::refine::{Refinement, Request, Settings, refine};
+use sistership_identification::refine::{Refinement, RefinementSettings, RefinementSpec, refine};
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Vessel, Zoo};
-use sistership_priors::source::similar;
+use sistership_priors::source::rank_similar;
 
 use super::{RefinementInput, render_refinement};
-use crate::rendered::{Rendered, VersionLabel};
+use crate::rendered::{RenderedReport, VersionLabel};
 
 /// A record of a ship that answers its rudder, by a formula and not by the law that is fitted.
 fn trial(name: &str, period_s: f64, rudder: f64) -> Trial {
@@ -54,7 +54,7 @@ struct Case {
 
 impl Case {
     fn new(names: &[&str]) -> Self {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let mut vessel = Vessel::clone(zoo.vessel("sr108").unwrap());
         vessel.file.title = "<script>alert(\"a & b\")</script>".into();
         let trials: Vec<Trial> = names
@@ -62,11 +62,13 @@ impl Case {
             .enumerate()
             .map(|(k, name)| trial(name, 110.0 + 47.0 * k as f64, 0.1 + 0.06 * k as f64))
             .collect();
-        let (source, settings) =
-            (zoo.model("mariner").unwrap(), Settings { lambda_count: 5, ..Settings::default() });
+        let (source, settings) = (
+            zoo.find_model("mariner").unwrap(),
+            RefinementSettings { lambda_count: 5, ..RefinementSettings::default() },
+        );
         let given: Vec<&Trial> = trials.iter().collect();
         let law = zoo.law(&source.law).unwrap();
-        let request = Request {
+        let request = RefinementSpec {
             target: &vessel,
             source: &source,
             source_law: None,
@@ -79,9 +81,9 @@ impl Case {
         Self { zoo, vessel, trials, refinement }
     }
 
-    fn render(&self) -> Rendered {
+    fn render(&self) -> RenderedReport {
         let trials: Vec<&Trial> = self.trials.iter().collect();
-        let similarity = similar(&self.zoo, &self.vessel, None, &[]);
+        let similarity = rank_similar(&self.zoo, &self.vessel, None, &[]);
         let version = VersionLabel { ship: "sr108".into(), number: 7, sha256: "ab".repeat(32) };
         let law = self.zoo.law(&self.refinement.model.law).unwrap();
         let (refinement, similarity) = (&self.refinement, Some(&similarity));
@@ -121,7 +123,7 @@ fn the_same_input_gives_the_same_self_contained_page() {
 #[test]
 fn a_page_says_what_a_reader_asks() {
     let case = Case::new(&["zigzag", "turn"]);
-    let Rendered { html, json } = case.render();
+    let RenderedReport { html, json } = case.render();
     let ids = ["errors", "trials", "coefficients", "options", "manoeuvres", "source", "provenance"];
     let places: Vec<usize> =
         ids.iter().map(|id| html.find(&format!("<section id=\"{id}\"")).unwrap()).collect();
@@ -146,7 +148,7 @@ fn a_page_says_what_a_reader_asks() {
 #[test]
 fn a_single_trial_is_not_said_to_be_left_out() {
     let case = Case::new(&["turn"]);
-    let Rendered { html, json } = case.render();
+    let RenderedReport { html, json } = case.render();
     assert_eq!(json["errors"]["on_fitted_trial"], true);
     let verdict = json["headline"]["verdict"].as_str().unwrap();
     assert!(!verdict.contains("had not seen"), "{verdict}");
@@ -158,7 +160,7 @@ fn a_trial_without_a_channel_is_left_out_of_the_plots() {
     let mut case = Case::new(&["zigzag", "turn"]);
     case.trials[0].channels.remove(&Channel::Delta);
     case.trials[1].channels.remove(&Channel::X);
-    let Rendered { html, json } = case.render();
+    let RenderedReport { html, json } = case.render();
     assert_eq!(json["replays"].as_array().unwrap().len(), 1);
     assert!(html.contains("id=\"trials\""));
 }

@@ -7,7 +7,7 @@ use sistership_jobs::upkeep::{self, BackupManifest};
 
 use super::store::{StoreArguments, block_on, with_archive};
 use crate::failure::Failure;
-use crate::output::{self, count};
+use crate::output::{self, format_count};
 
 const BACKUP_EXAMPLES: &str = "\
 Examples:
@@ -59,10 +59,11 @@ pub struct RestoreArguments {
 /// # Errors
 /// Returns an error if the store does not exist, if the folder is not empty, if something cannot be
 /// read or written, or if samples are missing.
-pub fn backup(backup: &BackupArguments) -> Result<(), Failure> {
-    let manifest =
-        with_archive(&backup.store, async |archive| upkeep::backup(archive, &backup.folder).await)?;
-    output::print(backup.json, &manifest, || text("backed up", &manifest))?;
+pub fn run_backup(backup: &BackupArguments) -> Result<(), Failure> {
+    let manifest = with_archive(&backup.store, async |archive| {
+        upkeep::back_up_archive(archive, &backup.folder).await
+    })?;
+    output::print_result(backup.json, &manifest, || format_manifest("backed up", &manifest))?;
     // The backup is complete except for the lost samples, which the text above lists.
     if manifest.lost.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
@@ -72,24 +73,24 @@ pub fn backup(backup: &BackupArguments) -> Result<(), Failure> {
 /// # Errors
 /// Returns an error if the place is not empty, if the backup is damaged or of another kind of
 /// database, or if something cannot be written.
-pub fn restore(restore: &RestoreArguments) -> Result<(), Failure> {
+pub fn run_restore(restore: &RestoreArguments) -> Result<(), Failure> {
     let RestoreArguments { folder, store, json } = restore;
-    let place = store.place(&store.file()?)?;
+    let place = store.resolve_place(&store.read_config()?)?;
     let manifest = block_on(async {
-        let restored = upkeep::restore(folder, &place.database_url, &place.objects).await;
+        let restored = upkeep::restore_archive(folder, &place.database_url, &place.objects).await;
         restored.map_err(|error| Failure::Refused(error.to_string()))
     })?;
-    output::print(*json, &manifest, || text("restored", &manifest))
+    output::print_result(*json, &manifest, || format_manifest("restored", &manifest))
 }
 
-fn text(done: &str, manifest: &BackupManifest) -> String {
+fn format_manifest(done: &str, manifest: &BackupManifest) -> String {
     let files: u64 = manifest.files.values().map(|file| file.bytes).sum();
     let lost: String = manifest
         .lost
         .iter()
         .map(|key| format!("lost: the samples {key} are missing or damaged\n"))
         .collect();
-    let objects = count(manifest.objects, "object");
+    let objects = format_count(manifest.objects, "object");
     format!(
         "{lost}{done}: {files} bytes of the database, {objects} of {} bytes\n",
         manifest.object_bytes

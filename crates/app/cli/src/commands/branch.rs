@@ -3,23 +3,24 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use sistership_jobs::derive::corrected_with_uncertainty;
+use sistership_jobs::derive::correction_with_uncertainty;
 use sistership_learned::{
-    BranchChoice, BranchKind, BranchSettings, HeldOutFold, HeldOutTrials, Judgement, Kinds,
-    Training, attach, choose, judge, train, with_branch,
+    BranchChoice, BranchKind, BranchSettings, CorrectionEvaluation, CorrectionTraining,
+    HeldOutFold, HeldOutTrials, KindSearch, attach, evaluate_training, select_kind,
+    train_correction, with_branch,
 };
-use sistership_model::branch::BranchMode;
+use sistership_model::branch::CorrectionMode;
 use sistership_model::{Law, Model, Trial, Zoo};
 
 use super::branch_document::BranchDocument;
 use super::branch_text;
-use super::written::{WrittenFiles, guard, model_file, promised};
-use crate::failure::{Failure, both};
+use super::written::{WrittenFiles, check_outputs, model_file, output_file};
+use crate::failure::{Failure, combine_results};
 use crate::named;
-use crate::output::{self, count, note};
+use crate::output::{self, format_count, print_note};
 use crate::trials;
 use crate::values::positive;
-use crate::weights::{self, BranchWords};
+use crate::weights::{self, CorrectionSummary};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -42,11 +43,11 @@ pub struct BranchArguments {
     trials: Vec<PathBuf>,
     /// Kind of regressor.
     #[arg(long, value_enum, default_value_t)]
-    kind: Kind,
+    kind: RegressorKind,
     /// Combination with the law: `parallel` adds to its accelerations, `serial` replaces them and
     /// takes them as inputs, `convert` replaces them without.
     #[arg(long, value_enum, default_value_t)]
-    mode: Mode,
+    mode: CombinationMode,
     /// Seed of the random numbers.
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
@@ -68,7 +69,7 @@ pub struct BranchArguments {
 
 /// Kinds of regressors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-enum Kind {
+enum RegressorKind {
     /// The best on held-out trials, if it is significantly better than none.
     #[default]
     Auto,
@@ -84,7 +85,7 @@ enum Kind {
 
 /// Combinations of a learned correction with the law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-enum Mode {
+enum CombinationMode {
     /// Adds to the accelerations of the law.
     #[default]
     Parallel,
@@ -94,8 +95,8 @@ enum Mode {
     Convert,
 }
 
-impl Kind {
-    fn named(self) -> Option<BranchKind> {
+impl RegressorKind {
+    fn branch_kind(self) -> Option<BranchKind> {
         match self {
             Self::Auto => None,
             Self::Forest => Some(BranchKind::Forest),
@@ -106,22 +107,22 @@ impl Kind {
     }
 }
 
-impl From<Mode> for BranchMode {
-    fn from(mode: Mode) -> Self {
+impl From<CombinationMode> for CorrectionMode {
+    fn from(mode: CombinationMode) -> Self {
         match mode {
-            Mode::Parallel => Self::Parallel,
-            Mode::Serial => Self::Serial,
-            Mode::Convert => Self::Convert,
+            CombinationMode::Parallel => Self::Parallel,
+            CombinationMode::Serial => Self::Serial,
+            CombinationMode::Convert => Self::Convert,
         }
     }
 }
 
 /// Learned correction with its training and its cross-validation.
-struct Trained {
+struct TrainedCorrection {
     model: Model,
     weights: Vec<u8>,
-    training: Training,
-    judgement: Option<Judgement>,
+    training: CorrectionTraining,
+    judgement: Option<CorrectionEvaluation>,
 }
 
 /// Runs the command.
@@ -131,39 +132,45 @@ struct Trained {
 pub fn run(zoo: &Zoo, arguments: &BranchArguments) -> Result<(), Failure> {
     let inputs: Vec<PathBuf> =
         arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
-    let beside = arguments.out.as_deref().map(weights::beside);
+    let beside = arguments.out.as_deref().map(weights::weights_path);
     // Output files are checked before the work, and all faults of the call are reported together.
-    let files =
-        both(promised(arguments.out.as_deref(), &inputs), promised(beside.as_deref(), &inputs));
-    let asked = both(settings(arguments), named::foundation(zoo, &arguments.model));
-    let read = both(files, trials::read(&arguments.trials));
-    let ((settings, (model, law)), ((out, beside_file), read)) = both(asked, read)?;
+    let files = combine_results(
+        output_file(arguments.out.as_deref(), &inputs),
+        output_file(beside.as_deref(), &inputs),
+    );
+    let asked = combine_results(
+        branch_settings(arguments),
+        named::resolve_foundation(zoo, &arguments.model),
+    );
+    let read = combine_results(files, trials::read_trials(&arguments.trials));
+    let ((settings, (model, law)), ((out, beside_file), read)) = combine_results(asked, read)?;
     // A warning only: a sister ship's trials may be used on purpose.
     trials::remark_other_ship(&read, &model.ship);
     let mut files = WrittenFiles { out: arguments.out.as_deref(), report: None };
-    guard(&files, &read)?;
-    note(&format!("{}: {} read", model.name, count(read.len(), "trial")));
-    let (choice, trained) = trained((zoo, &model, &law), &trials::trials(&read), &settings)?;
+    check_outputs(&files, &read)?;
+    print_note(&format!("{}: {} read", model.name, format_count(read.len(), "trial")));
+    let (choice, trained) =
+        train_correction((zoo, &model, &law), &trials::trial_refs(&read), &settings)?;
     match (out, beside_file, &trained) {
         (Some(out), Some(beside), Some(trained)) => {
             // Weights first, so that a model that exists has its weights.
             beside.write(&trained.weights)?;
             out.write(model_file(zoo, &trained.model, "with a learned branch")?.as_bytes())?;
         }
-        (Some(_), ..) => note("no branch is taken, and --out writes nothing"),
+        (Some(_), ..) => print_note("no branch is taken, and --out writes nothing"),
         _ => {}
     }
     // The output names only files that were written.
     files.out = files.out.filter(|_| trained.is_some());
     let beside = beside.as_deref().filter(|_| trained.is_some());
-    let document = document(&model, choice.as_ref(), trained.as_ref(), files, beside);
-    output::print(arguments.json, &document, || branch_text::text(&document))
+    let document = output_document(&model, choice.as_ref(), trained.as_ref(), files, beside);
+    output::print_result(arguments.json, &document, || branch_text::format_branch(&document))
 }
 
 /// Returns the settings. A setting that is wrong regardless of the data is an error of the call.
-fn settings(arguments: &BranchArguments) -> Result<BranchSettings, Failure> {
+fn branch_settings(arguments: &BranchArguments) -> Result<BranchSettings, Failure> {
     let settings = BranchSettings {
-        kind: arguments.kind.named(),
+        kind: arguments.kind.branch_kind(),
         mode: Some(arguments.mode.into()),
         seed: Some(arguments.seed),
         window_s: arguments.window_s,
@@ -177,52 +184,53 @@ fn settings(arguments: &BranchArguments) -> Result<BranchSettings, Failure> {
     Ok(settings)
 }
 
-fn refused(error: impl std::fmt::Display) -> Failure {
+fn refusal(error: impl std::fmt::Display) -> Failure {
     Failure::Refused(error.to_string())
 }
 
 /// Trains the requested kind, or the one that the comparison on held-out trials selects; `None` if
 /// that selects none.
-fn trained(
+fn train_correction(
     (zoo, model, law): (&Zoo, &Model, &Law),
     trials: &[&Trial],
     settings: &BranchSettings,
-) -> Result<(Option<BranchChoice>, Option<Trained>), Failure> {
+) -> Result<(Option<BranchChoice>, Option<TrainedCorrection>), Failure> {
     let (choice, settings) = if settings.is_open() {
         let told = |kind: BranchKind| {
-            note(&format!("trying {} on trials left out", kind.name()));
+            print_note(&format!("trying {} on trials left out", kind.name()));
             true
         };
         // The foundation is the same in every fold.
-        let folds = HeldOutFold::of_one(model, trials.len());
+        let folds = HeldOutFold::with_one_foundation(model, trials.len());
         let on = HeldOutTrials { law, trials, folds: &folds };
-        let choice = choose(model, &on, (settings, Kinds::Every), &told).map_err(refused)?;
+        let choice =
+            select_kind(model, &on, (settings, KindSearch::Every), &told).map_err(refusal)?;
         match choice.as_ref().and_then(|choice| choice.taken) {
             // The comparison is part of the output, also when it selects nothing.
-            Some(kind) => (choice, settings.of(kind)),
+            Some(kind) => (choice, settings.with_kind(kind)),
             None => return Ok((choice, None)),
         }
     } else {
         (None, settings.clone())
     };
-    let training = settings.training(model, law, trials).map_err(refused)?;
-    note("training the branch, and judging it on trials left out");
-    let (branch, weights) = train(model, law, trials, &training).map_err(refused)?;
-    let judgement = judge(model, law, trials, &training).map_err(refused)?;
-    let weights = weights.bytes().map_err(refused)?;
+    let training = settings.complete_training(model, law, trials).map_err(refusal)?;
+    print_note("training the branch, and judging it on trials left out");
+    let (branch, weights) = train_correction(model, law, trials, &training).map_err(refusal)?;
+    let judgement = evaluate_training(model, law, trials, &training).map_err(refusal)?;
+    let weights = weights.to_bytes().map_err(refusal)?;
     let mut model = with_branch(model, branch);
     // The calibration simulates the model, so the weights must be attached before it.
-    attach(&mut model, &weights).map_err(refused)?;
-    note("learning what these trials leave open beside it");
+    attach(&mut model, &weights).map_err(refusal)?;
+    print_note("learning what these trials leave open beside it");
     let effects: Vec<_> = zoo.effects().cloned().collect();
-    let model = corrected_with_uncertainty(model, law, &effects, trials);
-    Ok((choice, Some(Trained { model, weights, training, judgement })))
+    let model = correction_with_uncertainty(model, law, &effects, trials);
+    Ok((choice, Some(TrainedCorrection { model, weights, training, judgement })))
 }
 
-fn document<'a>(
+fn output_document<'a>(
     model: &'a Model,
     choice: Option<&'a BranchChoice>,
-    trained: Option<&'a Trained>,
+    trained: Option<&'a TrainedCorrection>,
     files: WrittenFiles<'a>,
     weights: Option<&'a Path>,
 ) -> BranchDocument<'a> {
@@ -231,11 +239,11 @@ fn document<'a>(
     BranchDocument {
         model: &model.name,
         choice,
-        branch: branch.map(BranchWords::of),
+        branch: branch.map(CorrectionSummary::from_branch),
         training: trained.map(|trained| &trained.training),
         weights_sha256: branch.map(|branch| branch.weights_sha256.as_str()),
         judgement,
-        wins: judgement.map(Judgement::wins),
+        wins: judgement.map(CorrectionEvaluation::is_better),
         files,
         weights,
     }

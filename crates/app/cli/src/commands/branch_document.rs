@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use serde::Serialize;
-use sistership_learned::{BranchChoice, Judgement, Training};
+use sistership_learned::{BranchChoice, CorrectionEvaluation, CorrectionTraining};
 
 use super::written::WrittenFiles;
-use crate::weights::BranchWords;
+use crate::weights::CorrectionSummary;
 
 /// Output document.
 #[derive(Serialize)]
@@ -17,13 +17,13 @@ pub struct BranchDocument<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub choice: Option<&'a BranchChoice>,
     /// The learned correction; null if none is used.
-    pub branch: Option<BranchWords<'a>>,
+    pub branch: Option<CorrectionSummary<'a>>,
     /// Every setting of the training.
-    pub training: Option<&'a Training>,
+    pub training: Option<&'a CorrectionTraining>,
     /// The hash of the weights.
     pub weights_sha256: Option<&'a str>,
     /// Cross-validation on held-out trials; null if there is only one trial.
-    pub judgement: Option<&'a Judgement>,
+    pub judgement: Option<&'a CorrectionEvaluation>,
     /// True if the correction is better there by more than one standard error.
     pub wins: Option<bool>,
     /// The model written.

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use sistership_jobs::comparison::{
-    Compared, ComparedTrial, Comparison, TrialError, check, compare,
+    ComparedTrial, Comparison, ComparisonModel, TrialError, check_names, compare,
 };
 use sistership_model::Zoo;
 use sistership_model::trial::{Channel, Trial};
 
-use crate::failure::{Failure, all, both};
-use crate::table::{TextTable, number, optional};
+use crate::failure::{Failure, collect_results, combine_results};
+use crate::table::{TextTable, format_number, format_optional};
 use crate::{named, output, trials};
 
 const EXAMPLES: &str = "\
@@ -43,28 +43,28 @@ pub struct CompareArguments {
 pub fn run(zoo: &Zoo, asked: &CompareArguments) -> Result<(), Failure> {
     let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
     let names: Vec<&str> = asked.models.iter().map(String::as_str).collect();
-    check(&names).map_err(|error| Failure::Call(error.to_string()))?;
+    check_names(&names).map_err(|error| Failure::Call(error.to_string()))?;
     // All unknown names and faulty trials are reported together.
-    let models = all(names.iter().map(|name| named::model(zoo, name)));
-    let (models, read) = both(models, trials::read(&asked.trials))?;
-    let compared: Vec<Compared<'_>> = names
+    let models = collect_results(names.iter().map(|name| named::resolve_model(zoo, name)));
+    let (models, read) = combine_results(models, trials::read_trials(&asked.trials))?;
+    let compared: Vec<ComparisonModel<'_>> = names
         .iter()
         .zip(&models)
-        .map(|(name, (model, law))| Compared { name, model, law })
+        .map(|(name, (model, law))| ComparisonModel { name, model, law })
         .collect();
     let on: Vec<(&str, &Trial)> =
         read.iter().map(|read| (read.file.as_str(), &read.trial)).collect();
     let comparison = compare(&compared, &on).map_err(|error| refused(&error))?;
-    output::print(asked.json, &comparison, || text(&comparison))
+    output::print_result(asked.json, &comparison, || format_comparison(&comparison))
 }
 
-fn text(comparison: &Comparison) -> String {
-    let mut parts = vec![models(comparison), coefficients(comparison)];
+fn format_comparison(comparison: &Comparison) -> String {
+    let mut parts = vec![format_models(comparison), format_coefficients(comparison)];
     if !comparison.trials.is_empty() {
         // Without trials there is no table of errors.
-        parts.push(errors(comparison));
+        parts.push(format_errors(comparison));
     }
-    parts.push(figures(comparison));
+    parts.push(format_figures(comparison));
     let failures = comparison.models.iter().flat_map(|model| {
         model.failures.iter().map(|failure| format!("{}: {failure}\n", model.name))
     });
@@ -73,22 +73,28 @@ fn text(comparison: &Comparison) -> String {
 }
 
 /// Creates a table with a column for each model.
-fn table(comparison: &Comparison, first: &[&str]) -> TextTable {
+fn model_table(comparison: &Comparison, first: &[&str]) -> TextTable {
     let names = comparison.models.iter().map(|model| model.name.as_str());
-    TextTable::of(first.iter().copied().chain(names))
+    TextTable::with_columns(first.iter().copied().chain(names))
 }
 
-fn models(comparison: &Comparison) -> String {
+fn format_models(comparison: &Comparison) -> String {
     let mut table = TextTable::new(["model", "law", "ship", "Lpp m", "speed m/s"]);
     for model in &comparison.models {
         let (name, law, ship) = (model.name.clone(), model.law.clone(), model.ship.clone());
-        table.row(vec![name, law, ship, number(model.lpp_m), number(model.speed_m_s)]);
+        table.add_row(vec![
+            name,
+            law,
+            ship,
+            format_number(model.lpp_m),
+            format_number(model.speed_m_s),
+        ]);
     }
     table.to_string()
 }
 
-fn coefficients(comparison: &Comparison) -> String {
-    let mut table = table(comparison, &["coefficient"]);
+fn format_coefficients(comparison: &Comparison) -> String {
+    let mut table = model_table(comparison, &["coefficient"]);
     for row in &comparison.coefficients {
         let cell = |value: &Option<sistership_jobs::comparison::Estimate>| match value {
             // The model does not have this coefficient.
@@ -99,13 +105,13 @@ fn coefficients(comparison: &Comparison) -> String {
                 format!("{:.5e}{error}", estimate.value)
             }
         };
-        table.row(std::iter::once(row.name.clone()).chain(row.values.iter().map(cell)));
+        table.add_row(std::iter::once(row.name.clone()).chain(row.values.iter().map(cell)));
     }
     table.to_string()
 }
 
 /// Channels of the table of errors, with unit and factor from SI to that unit.
-const SHOWN: [(Channel, &str, f64); 6] = [
+const ERROR_CHANNELS: [(Channel, &str, f64); 6] = [
     (Channel::U, "u m/s", 1.0),
     (Channel::V, "v m/s", 1.0),
     (Channel::R, "r deg/s", 180.0 / std::f64::consts::PI),
@@ -114,21 +120,22 @@ const SHOWN: [(Channel, &str, f64); 6] = [
     (Channel::Y, "y m", 1.0),
 ];
 
-fn errors(comparison: &Comparison) -> String {
-    let mut table = table(comparison, &["trial", "error"]);
+fn format_errors(comparison: &Comparison) -> String {
+    let mut table = model_table(comparison, &["trial", "error"]);
     for trial in &comparison.trials {
-        for (channel, unit, factor) in SHOWN {
+        for (channel, unit, factor) in ERROR_CHANNELS {
             let of = |error: &TrialError| {
-                optional(error.rmse.get(channel.name()).map(|rmse| rmse * factor))
+                format_optional(error.rmse.get(channel.name()).map(|rmse| rmse * factor))
             };
-            table.row(error_row(trial, unit, of));
+            table.add_row(error_row(trial, unit, of));
         }
-        table.row(error_row(trial, "std. MSE", |error| optional(error.standardised_mse)));
+        table
+            .add_row(error_row(trial, "std. MSE", |error| format_optional(error.standardised_mse)));
     }
     // For a single trial the total would repeat its row.
     if comparison.trials.len() > 1 {
-        let all = comparison.models.iter().map(|model| optional(model.standardised_mse));
-        table.row(["all".to_owned(), "std. MSE".to_owned()].into_iter().chain(all));
+        let all = comparison.models.iter().map(|model| format_optional(model.standardised_mse));
+        table.add_row(["all".to_owned(), "std. MSE".to_owned()].into_iter().chain(all));
     }
     // A missing error has a reason, which follows the table.
     let reasons = comparison.trials.iter().flat_map(|trial| {
@@ -145,8 +152,8 @@ fn error_row(trial: &ComparedTrial, what: &str, of: impl Fn(&TrialError) -> Stri
     head.into_iter().chain(trial.errors.iter().map(of)).collect()
 }
 
-fn figures(comparison: &Comparison) -> String {
-    let mut table = table(comparison, &["figure", "unit"]);
+fn format_figures(comparison: &Comparison) -> String {
+    let mut table = model_table(comparison, &["figure", "unit"]);
     for row in &comparison.figures {
         let cell = |value: &Option<sistership_jobs::comparison::FigureValue>| match value {
             None => "-".to_owned(),
@@ -157,11 +164,11 @@ fn figures(comparison: &Comparison) -> String {
                     Some(false) => " NOT met",
                     None => "",
                 };
-                format!("{}{met}", optional(figure.value))
+                format!("{}{met}", format_optional(figure.value))
             }
         };
         let head = [row.name.clone(), row.unit.clone()];
-        table.row(head.into_iter().chain(row.values.iter().map(cell)));
+        table.add_row(head.into_iter().chain(row.values.iter().map(cell)));
     }
     table.to_string()
 }

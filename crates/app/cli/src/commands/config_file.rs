@@ -8,7 +8,7 @@ use sistership_auth::openid::OpenIdArguments;
 
 use super::log_format::LogFormat;
 use crate::failure::{Failure, about_file};
-use crate::zoo::text_of;
+use crate::zoo::read_text_file;
 
 /// Settings of a file; each has the name and the meaning of a flag.
 #[derive(Debug, Default, PartialEq, Deserialize)]
@@ -61,15 +61,15 @@ pub struct ConfigFile {
 ///
 /// # Errors
 /// Returns an error that names file, line and setting.
-pub fn read(path: Option<&Path>) -> Result<ConfigFile, Failure> {
+pub fn read_config(path: Option<&Path>) -> Result<ConfigFile, Failure> {
     let Some(path) = path else { return Ok(ConfigFile::default()) };
-    let text = text_of(path)?;
+    let text = read_text_file(path)?;
     // A file of comments only is valid, but no YAML mapping.
     if text.lines().all(|line| line.trim().is_empty() || line.trim_start().starts_with('#')) {
         return Ok(ConfigFile::default());
     }
     let mut file: ConfigFile =
-        sistership_model::yaml::read(&text).map_err(|error| about_file(path, error))?;
+        sistership_model::yaml::read_document(&text).map_err(|error| about_file(path, error))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let secret = &mut file.oidc.client_secret_file;
     for relative in [&mut file.data_dir, &mut file.api_key_file, secret].into_iter().flatten() {
@@ -87,7 +87,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("sistership.yaml");
         std::fs::write(&path, text).unwrap();
-        read(Some(&path)).map(|mut file| {
+        read_config(Some(&path)).map(|mut file| {
             file.data_dir = file
                 .data_dir
                 .map(|data| data.strip_prefix(folder.path()).unwrap_or(&data).to_path_buf());
@@ -118,6 +118,6 @@ mod tests {
         assert!(refusal("lisen: 127.0.0.1:9000\n").contains("lisen"));
         assert!(refusal("workers: 1\nlisten: nowhere\n").contains("line 2"));
         assert!(refusal("workers: 1\nworkers: 2\n").contains("workers"));
-        assert!(read(Some(Path::new("/nowhere.yaml"))).is_err());
+        assert!(read_config(Some(Path::new("/nowhere.yaml"))).is_err());
     }
 }

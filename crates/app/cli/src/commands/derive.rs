@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
-use sistership_model::hybrid::{Derivation, Unknowns, derive};
+use sistership_model::hybrid::{LawDerivation, UnknownCounts, derive_law};
 use sistership_model::law::LawFile;
 use sistership_model::{FileError, Zoo};
 
 use crate::failure::Failure;
-use crate::files::PromisedFile;
+use crate::files::OutputFile;
 use crate::table::TextTable;
-use crate::zoo::text_of;
+use crate::zoo::read_text_file;
 use crate::{named, output};
 
 const EXAMPLES: &str = "\
@@ -42,7 +42,7 @@ struct DeriveDocument<'a> {
     name: &'a str,
     order: u32,
     #[serde(flatten)]
-    unknowns: &'a Unknowns,
+    unknowns: &'a UnknownCounts,
     submodels: Vec<&'a str>,
     law: &'a LawFile,
 }
@@ -57,13 +57,13 @@ pub fn run(zoo: &Zoo, asked: &DeriveArguments) -> Result<(), Failure> {
     let promised = asked
         .out
         .as_deref()
-        .map(|out| PromisedFile::new(out, std::slice::from_ref(path)))
+        .map(|out| OutputFile::new(out, std::slice::from_ref(path)))
         .transpose()?;
-    let text = text_of(path)?;
-    named::must_be(path, &text, "hybrid", "a declaration")?;
-    let derived = derive(&path.display().to_string(), &text)?;
+    let text = read_text_file(path)?;
+    named::check_kind(path, &text, "hybrid", "a declaration")?;
+    let derived = derive_law(&path.display().to_string(), &text)?;
     let unknowns =
-        derived.unknowns(zoo).map_err(|(field, message)| blamed(path, field, message))?;
+        derived.count_unknowns(zoo).map_err(|(field, message)| file_error(path, field, message))?;
     // Written after all checks, so that a refused declaration leaves no law.
     if let Some(promised) = promised {
         promised.write(derived.text.as_bytes())?;
@@ -76,36 +76,39 @@ pub fn run(zoo: &Zoo, asked: &DeriveArguments) -> Result<(), Failure> {
         submodels,
         law: &derived.law_file,
     };
-    output::print(asked.json, &document, || report(&derived, &unknowns, asked.out.as_deref()))
+    output::print_result(asked.json, &document, || {
+        format_report(&derived, &unknowns, asked.out.as_deref())
+    })
 }
 
-fn blamed(path: &Path, field: String, message: String) -> FileError {
+fn file_error(path: &Path, field: String, message: String) -> FileError {
     FileError { file: path.display().to_string(), line: None, field, message, further: Vec::new() }
 }
 
-fn report(derived: &Derivation, unknowns: &Unknowns, out: Option<&Path>) -> String {
+fn format_report(derived: &LawDerivation, unknowns: &UnknownCounts, out: Option<&Path>) -> String {
     let mut table = TextTable::new(["terms after", "setting", "X", "Y", "N", "all"]);
     for rule in &unknowns.rules {
         let counts = [rule.x, rule.y, rule.n, rule.total].map(|count| count.to_string());
-        table.row([rule.rule.to_owned(), rule.setting.clone()].into_iter().chain(counts));
+        table.add_row([rule.rule.to_owned(), rule.setting.clone()].into_iter().chain(counts));
     }
     let written = out.map_or(String::new(), |out| format!("\nlaw written to {}", out.display()));
     format!(
         "{}: {}\n\n{table}\n{}{written}",
         derived.law.name,
         derived.law.title,
-        sum(derived, unknowns)
+        format_unknowns(derived, unknowns)
     )
 }
 
 /// Formats the number of unknowns: coefficients by set, inertia and effects.
-fn sum(derived: &Derivation, unknowns: &Unknowns) -> String {
+fn format_unknowns(derived: &LawDerivation, unknowns: &UnknownCounts) -> String {
     let mut table = TextTable::new(["unknowns", "of", "number"]);
     // The shared set first, then one for each regime.
     let sets: Vec<&str> =
         std::iter::once("shared").chain(derived.law.submodels.keys().map(String::as_str)).collect();
-    let mut row =
-        |what: &str, of: String, count: usize| table.row([what.to_owned(), of, count.to_string()]);
+    let mut row = |what: &str, of: String, count: usize| {
+        table.add_row([what.to_owned(), of, count.to_string()])
+    };
     row(
         "coefficients",
         format!("{} sets: {}", unknowns.coefficient_sets, sets.join(", ")),
@@ -138,13 +141,13 @@ mod tests {
     fn the_law_is_written_and_its_unknowns_counted() {
         let folder = tempfile::tempdir().unwrap();
         let asked = asked(folder.path(), DECLARATION);
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         run(&zoo, &asked).unwrap();
         let text = std::fs::read_to_string(folder.path().join("law.yaml")).unwrap();
         let law = sistership_model::Law::parse("law.yaml", &text).unwrap();
         assert_eq!(law.coefficient_names().len(), 120);
-        let derived = derive("ferry.yaml", DECLARATION).unwrap();
-        let report = report(&derived, &derived.unknowns(&zoo).unwrap(), None);
+        let derived = derive_law("ferry.yaml", DECLARATION).unwrap();
+        let report = format_report(&derived, &derived.count_unknowns(&zoo).unwrap(), None);
         for part in ["A: symmetry", "2 sets: shared, astern", "133"] {
             assert!(report.contains(part), "{part} in\n{report}");
         }
@@ -153,7 +156,7 @@ mod tests {
     #[test]
     fn faults_name_file_and_field_and_leave_nothing() {
         let folder = tempfile::tempdir().unwrap();
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let refused = |from: &str, to: &str| {
             let asked = asked(folder.path(), &DECLARATION.replace(from, to));
             run(&zoo, &asked).unwrap_err().message().unwrap().to_owned()

@@ -7,16 +7,16 @@ use std::sync::Arc;
 use clap::Args;
 use serde::Serialize;
 use serde_json::Value;
-use sistership_diagnosis::{Diagnosis, Request, Settings, diagnose};
+use sistership_diagnosis::{Diagnosis, DiagnosisInputs, Settings, diagnose};
 use sistership_model::{Effect, Law, Model, Zoo};
 use sistership_report::{DiagnosisInput, render_diagnosis};
 
 use super::diagnose_text;
-use super::written::{WrittenFiles, guard, model_file, promised};
-use crate::failure::{Failure, both};
-use crate::files::PromisedFile;
+use super::written::{WrittenFiles, check_outputs, model_file, output_file};
+use crate::failure::{Failure, combine_results};
+use crate::files::OutputFile;
 use crate::named;
-use crate::output::{self, count, note};
+use crate::output::{self, format_count, print_note};
 use crate::trials::{self, ReadTrial};
 use crate::values::{odds, positive};
 use crate::weights;
@@ -88,38 +88,46 @@ struct DiagnoseDocument<'a> {
 pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
     let named: Vec<PathBuf> =
         arguments.trials.iter().cloned().chain([PathBuf::from(&arguments.model)]).collect();
-    let beside = arguments.out.as_deref().map(weights::beside);
+    let beside = arguments.out.as_deref().map(weights::weights_path);
     // Output files are checked before the work, and all faults of the call are reported together.
-    let files = both(
-        both(promised(arguments.out.as_deref(), &named), promised(beside.as_deref(), &named)),
-        promised(arguments.report.as_deref(), &named),
+    let files = combine_results(
+        combine_results(
+            output_file(arguments.out.as_deref(), &named),
+            output_file(beside.as_deref(), &named),
+        ),
+        output_file(arguments.report.as_deref(), &named),
     );
-    let asked = both(settings(zoo, arguments), named::model(zoo, &arguments.model));
-    let read = both(files, trials::read(&arguments.trials));
-    let ((settings, (model, law)), (((out, beside), report), read)) = both(asked, read)?;
+    let asked = combine_results(
+        diagnosis_settings(zoo, arguments),
+        named::resolve_model(zoo, &arguments.model),
+    );
+    let read = combine_results(files, trials::read_trials(&arguments.trials));
+    let ((settings, (model, law)), (((out, beside), report), read)) = combine_results(asked, read)?;
     trials::remark_other_ship(&read, &model.ship);
-    note(&format!("{}: {} read", model.name, count(read.len(), "trial")));
+    print_note(&format!("{}: {} read", model.name, format_count(read.len(), "trial")));
     let mut files =
         WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
-    guard(&files, &read)?;
-    let diagnosis = diagnosed(zoo, &model, &law, &settings, &read)?;
+    check_outputs(&files, &read)?;
+    let diagnosis = run_diagnosis(zoo, &model, &law, &settings, &read)?;
     if let (Some(found), Some(_), Some(file)) = (&diagnosis.model, &out, beside) {
         // Weights first, so that a model that exists has its weights.
-        let kept = weights::read_beside(Path::new(&arguments.model), found)?;
+        let kept = weights::read_weights(Path::new(&arguments.model), found)?;
         kept.map_or(Ok(()), |bytes| file.write(&bytes))?;
     }
-    let kept = written(zoo, out, &diagnosis)?;
+    let kept = write_model(zoo, out, &diagnosis)?;
     if let Some(report) = report {
         report.write(&report_html(&model, &law, &diagnosis, &read)?)?;
     }
     // The output names only files that were written.
     files.out = files.out.filter(|_| kept);
-    let document = DiagnoseDocument { diagnosis: printed(&diagnosis)?, files };
-    output::print(arguments.json, &document, || diagnose_text::text(&diagnosis, &model, &files))
+    let document = DiagnoseDocument { diagnosis: output_document(&diagnosis)?, files };
+    output::print_result(arguments.json, &document, || {
+        diagnose_text::format_diagnosis(&diagnosis, &model, &files)
+    })
 }
 
 /// Returns the settings. A setting that is wrong regardless of the data is an error of the call.
-fn settings(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<Settings, Failure> {
+fn diagnosis_settings(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<Settings, Failure> {
     // The zoo of the call counts: it may have effects of the folders in --zoo.
     let unknown = |(name, _): &&(String, f64)| zoo.effect(name).is_none();
     if let Some((name, _)) = arguments.prior_odds.iter().find(unknown) {
@@ -138,12 +146,12 @@ fn settings(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<Settings, Failur
     };
     let flag = |field: String| field.replace('_', "-");
     settings
-        .check()
+        .check_values()
         .map_err(|(field, message)| Failure::Call(format!("--{}: {message}", flag(field))))?;
     Ok(settings)
 }
 
-fn diagnosed(
+fn run_diagnosis(
     zoo: &Zoo,
     model: &Model,
     law: &Law,
@@ -151,23 +159,23 @@ fn diagnosed(
     read: &[ReadTrial],
 ) -> Result<Diagnosis, Failure> {
     let effects: Vec<Arc<Effect>> = zoo.effects().cloned().collect();
-    let trials = trials::trials(read);
-    let request = Request { model, law, effects: &effects, trials: &trials, settings };
+    let trials = trials::trial_refs(read);
+    let request = DiagnosisInputs { model, law, effects: &effects, trials: &trials, settings };
     let told = |fraction: f64, what: &str| {
-        note(&format!("{:3.0} % {what}", 100.0 * fraction));
+        print_note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
     };
     diagnose(&request, &told).map_err(|error| Failure::Refused(error.to_string()))
 }
 
 /// Writes the model with the effects; returns true if there was one to write.
-fn written(zoo: &Zoo, out: Option<PromisedFile>, diagnosis: &Diagnosis) -> Result<bool, Failure> {
+fn write_model(zoo: &Zoo, out: Option<OutputFile>, diagnosis: &Diagnosis) -> Result<bool, Failure> {
     match (out, &diagnosis.model) {
         (Some(out), Some(model)) => out
             .write(model_file(zoo, model, "with the effects that a diagnosis found")?.as_bytes())
             .map(|()| true),
         (Some(_), None) => {
-            note("no effect was found: the model stays as it is, and --out writes nothing");
+            print_note("no effect was found: the model stays as it is, and --out writes nothing");
             Ok(false)
         }
         (None, _) => Ok(false),
@@ -180,7 +188,7 @@ fn report_html(
     diagnosis: &Diagnosis,
     read: &[ReadTrial],
 ) -> Result<Vec<u8>, Failure> {
-    let trials = trials::trials(read);
+    let trials = trials::trial_refs(read);
     let input = DiagnosisInput { diagnosis, model, law, trials: &trials, of: None, made: None };
     let rendered = render_diagnosis(&input)
         .map_err(|error| Failure::Refused(format!("the report: {error}")))?;
@@ -189,7 +197,7 @@ fn report_html(
 
 /// Returns the diagnosis without the model, which `--out` writes, and without the series that only
 /// plots need.
-fn printed(diagnosis: &Diagnosis) -> Result<Value, Failure> {
+fn output_document(diagnosis: &Diagnosis) -> Result<Value, Failure> {
     let document = serde_json::to_value(diagnosis);
     let mut document = document
         .map_err(|error| Failure::Refused(format!("the result cannot be written: {error}")))?;

@@ -3,48 +3,52 @@
 use std::collections::BTreeMap;
 
 use sistership_diagnosis::{
-    Confounded, Diagnosis, Found, Hypothesis, LimitedBy, NextTrial, Unexplained, Verdict,
+    ConfoundedEffect, Diagnosis, HypothesisReport, LimitedBy, MissingEffect, NextTrial,
+    UnexplainedSegment, Verdict,
 };
 use sistership_model::Model;
-use sistership_report::{change, dependence, distinct, origin};
+use sistership_report::{change_words, dependence_sentence, distinct_hypotheses, origin_sentence};
 
-use super::channels::CHANNELS;
-use super::worth;
+use super::channels::TABLE_CHANNELS;
+use super::describe_status;
 use super::written::WrittenFiles;
-use crate::table::{TextTable, number, optional};
+use crate::table::{TextTable, format_number, format_optional};
 
 /// Largest number of hypotheses that are listed.
-const MOST: usize = 8;
+const MAX_HYPOTHESES: usize = 8;
 
 /// Formats a diagnosis as text.
-pub fn text(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> String {
+pub fn format_diagnosis(diagnosis: &Diagnosis, model: &Model, files: &WrittenFiles<'_>) -> String {
     // From the verdict to the details: a reader may stop after any part.
     let mut parts = vec![format!(
         "{} ({})\n{}\n",
         diagnosis.diagnosed,
-        worth(model.status),
-        verdict(diagnosis)
+        describe_status(model.status),
+        format_verdict(diagnosis)
     )];
-    parts.extend(diagnosis.effects.iter().map(effect));
+    parts.extend(diagnosis.effects.iter().map(format_effect));
     if !diagnosis.unexplained.is_empty() {
-        parts.push(format!("What no effect explains\n{}", unexplained(&diagnosis.unexplained)));
-        parts.extend(changed(diagnosis));
-        parts.extend(origin(&diagnosis.origins).map(|said| said + "\n"));
-        parts.extend(diagnosis.depends_on.iter().map(|left| dependence(left) + "\n"));
+        parts.push(format!(
+            "What no effect explains\n{}",
+            format_unexplained(&diagnosis.unexplained)
+        ));
+        parts.extend(format_changes(diagnosis));
+        parts.extend(origin_sentence(&diagnosis.origins).map(|said| said + "\n"));
+        parts.extend(diagnosis.depends_on.iter().map(|left| dependence_sentence(left) + "\n"));
     }
-    parts.extend(diagnosis.next_trial.as_ref().map(next_trial));
-    parts.extend(limits(diagnosis));
-    parts.push(format!("Root mean square errors: {}\n{}", diagnosis.how, errors(diagnosis)));
+    parts.extend(diagnosis.next_trial.as_ref().map(format_next_trial));
+    parts.extend(format_limits(diagnosis));
+    parts.push(format!("Root mean square errors: {}\n{}", diagnosis.how, format_errors(diagnosis)));
     parts.push(format!(
         "Most probable hypotheses (evidence: natural logarithm)\n{}",
-        hypotheses(&diagnosis.hypotheses)
+        format_hypotheses(&diagnosis.hypotheses)
     ));
-    parts.push(end(diagnosis, files));
+    parts.push(format_remarks(diagnosis, files));
     parts.join("\n")
 }
 
 /// Formats the verdict for a reader who knows nothing of the method.
-fn verdict(diagnosis: &Diagnosis) -> String {
+fn format_verdict(diagnosis: &Diagnosis) -> String {
     let names: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.name.as_str()).collect();
     match diagnosis.verdict {
         Verdict::Complete => {
@@ -66,17 +70,17 @@ fn verdict(diagnosis: &Diagnosis) -> String {
 
 /// Formats an effect with its parameters, whose names carry their units, and with the effects from
 /// which it can hardly be distinguished.
-fn effect(found: &Found) -> String {
+fn format_effect(found: &MissingEffect) -> String {
     let mut table = TextTable::new(["parameter", "value", "standard error"]);
     for (name, value) in &found.parameters {
-        table.row([name.clone(), number(value.value), number(value.se)]);
+        table.add_row([name.clone(), format_number(value.value), format_number(value.se)]);
     }
     let (name, form, meaning, evidence) =
         (&found.name, &found.form, &found.meaning, found.evidence);
     let head = format!(
         "{name} ({form}): {meaning}; evidence {evidence:.1} (above 5 is very strong)\n{table}"
     );
-    let other = |other: &Confounded| {
+    let other = |other: &ConfoundedEffect| {
         format!("{} ({:.1} deg, evidence {:.1} behind)", other.name, other.angle_deg, other.behind)
     };
     let others: Vec<String> = found.confounded_with.iter().map(other).collect();
@@ -87,25 +91,25 @@ fn effect(found: &Found) -> String {
     }
 }
 
-fn unexplained(stretches: &[Unexplained]) -> TextTable {
+fn format_unexplained(stretches: &[UnexplainedSegment]) -> TextTable {
     let mut table = TextTable::new(["trial", "channel", "from s", "to s", "rms / noise"]);
     for stretch in stretches {
-        let figures = [stretch.from_s, stretch.to_s, stretch.rms_over_noise].map(number);
-        table.row([stretch.trial.clone(), stretch.channel.clone()].into_iter().chain(figures));
+        let figures = [stretch.from_s, stretch.to_s, stretch.rms_over_noise].map(format_number);
+        table.add_row([stretch.trial.clone(), stretch.channel.clone()].into_iter().chain(figures));
     }
     table
 }
 
 /// Formats the changes within trials (begin, end, drift); `None` if there are none.
-fn changed(diagnosis: &Diagnosis) -> Option<String> {
+fn format_changes(diagnosis: &Diagnosis) -> Option<String> {
     let lines: Vec<String> =
-        diagnosis.changes.iter().map(|one| format!("  {}\n", change(one))).collect();
+        diagnosis.changes.iter().map(|one| format!("  {}\n", change_words(one))).collect();
     let of_the_day = "it is of that day: no model carries it";
     (!lines.is_empty()).then(|| format!("What changed then ({of_the_day})\n{}", lines.concat()))
 }
 
-fn next_trial(next: &NextTrial) -> String {
-    let (speed, heading) = (number(next.speed_m_s), number(next.heading_deg));
+fn format_next_trial(next: &NextTrial) -> String {
+    let (speed, heading) = (format_number(next.speed_m_s), format_number(next.heading_deg));
     format!(
         "To be sure, sail next: {} at {speed} m/s, heading {heading} deg; it tells {} apart\n",
         next.manoeuvre,
@@ -114,7 +118,7 @@ fn next_trial(next: &NextTrial) -> String {
 }
 
 /// Formats the detection limits of effects; `None` if there are none.
-fn limits(diagnosis: &Diagnosis) -> Option<String> {
+fn format_limits(diagnosis: &Diagnosis) -> Option<String> {
     let mut table = TextTable::new(["effect", "form", "parameter", "shown from", "usual", "told"]);
     for limit in &diagnosis.limits {
         // The cause says what would lower the limit.
@@ -124,15 +128,15 @@ fn limits(diagnosis: &Diagnosis) -> Option<String> {
             LimitedBy::Sensors => "cannot tell: the instruments scatter too much",
         });
         let names = [&limit.effect, &limit.form, &limit.parameter].map(Clone::clone);
-        let sizes = [optional(limit.size), number(limit.usual), told.to_owned()];
-        table.row(names.into_iter().chain(sizes));
+        let sizes = [format_optional(limit.size), format_number(limit.usual), told.to_owned()];
+        table.add_row(names.into_iter().chain(sizes));
     }
     (!diagnosis.limits.is_empty())
         .then(|| format!("The smallest sizes that would have been shown (90 %)\n{table}"))
 }
 
 /// Formats the errors on held-out trials, before and after, also relative to the noise.
-fn errors(diagnosis: &Diagnosis) -> TextTable {
+fn format_errors(diagnosis: &Diagnosis) -> TextTable {
     let mut table = TextTable::new([
         "channel",
         "unit",
@@ -143,7 +147,7 @@ fn errors(diagnosis: &Diagnosis) -> TextTable {
         "before / noise",
         "after / noise",
     ]);
-    for (name, unit, factor) in CHANNELS {
+    for (name, unit, factor) in TABLE_CHANNELS {
         let of =
             // `f64::MAX` marks the error of a simulation that left the physical range.
             |all: &BTreeMap<String, f64>| all.get(name).copied().filter(|value| *value != f64::MAX);
@@ -156,40 +160,41 @@ fn errors(diagnosis: &Diagnosis) -> TextTable {
         if before.is_none() && after.is_none() {
             continue;
         }
-        let shown = |value: Option<f64>| optional(value.map(|value| value * factor));
-        let over =
-            |value: Option<f64>| optional(value.zip(noise).map(|(value, noise)| value / noise));
+        let shown = |value: Option<f64>| format_optional(value.map(|value| value * factor));
+        let over = |value: Option<f64>| {
+            format_optional(value.zip(noise).map(|(value, noise)| value / noise))
+        };
         let change = before.zip(after).filter(|(before, _)| *before > 0.0);
         let change = change.map_or("-".to_owned(), |(before, after)| {
             format!("{:+.0} %", 100.0 * (after / before - 1.0))
         });
         let figures =
             [shown(before), shown(after), change, shown(noise), over(before), over(after)];
-        table.row([name.to_owned(), unit.to_owned()].into_iter().chain(figures));
+        table.add_row([name.to_owned(), unit.to_owned()].into_iter().chain(figures));
     }
     table
 }
 
-fn hypotheses(hypotheses: &[Hypothesis]) -> TextTable {
+fn format_hypotheses(hypotheses: &[HypothesisReport]) -> TextTable {
     let mut table = TextTable::new(["hypothesis", "evidence", "on trials left out", "taken"]);
-    for hypothesis in distinct(hypotheses).into_iter().take(MOST) {
+    for hypothesis in distinct_hypotheses(hypotheses).into_iter().take(MAX_HYPOTHESES) {
         let name = if hypothesis.effects.is_empty() {
             "the model alone".to_owned()
         } else {
             hypothesis.effects.join(" + ")
         };
         let taken = if hypothesis.taken { "yes" } else { "" };
-        table.row([
+        table.add_row([
             name,
-            number(hypothesis.evidence),
-            optional(hypothesis.held_out),
+            format_number(hypothesis.evidence),
+            format_optional(hypothesis.held_out),
             taken.to_owned(),
         ]);
     }
     table
 }
 
-fn end(diagnosis: &Diagnosis, files: &WrittenFiles<'_>) -> String {
+fn format_remarks(diagnosis: &Diagnosis, files: &WrittenFiles<'_>) -> String {
     let mut lines: Vec<String> =
         diagnosis.remarks.iter().map(|remark| format!("remark: {remark}")).collect();
     lines.extend(match (files.out, &diagnosis.model) {

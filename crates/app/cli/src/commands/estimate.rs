@@ -5,21 +5,22 @@ use std::sync::Arc;
 
 use clap::Args;
 use serde::Serialize;
-use sistership_assessment::uncertainty::Band;
+use sistership_assessment::uncertainty::UncertaintyBand;
 use sistership_model::estimated_particulars::{
-    EstimatedParticular, estimated_particulars, estimated_words,
+    EstimatedParticular, describe_estimates, estimated_particulars,
 };
 use sistership_model::vessel::Status;
 use sistership_model::{Law, Model, Vessel, Zoo};
 use sistership_priors::estimates::particulars::complete_particulars;
 use sistership_priors::estimates::{
-    Estimate, EstimateBands, LAW, Library, Spread, estimate as estimated, estimate_bands,
+    EstimateBands, EstimateSpread, LAW, RegressionLibrary, ShipEstimate, estimate_bands,
+    estimate_ship as estimated,
 };
-use sistership_simulation::manoeuvre::{Figure, StandardManoeuvres};
+use sistership_simulation::manoeuvre::{NamedFigure, StandardManoeuvres};
 
-use super::written::{model_file, promised};
+use super::written::{model_file, output_file};
 use crate::failure::Failure;
-use crate::table::{TextTable, number};
+use crate::table::{TextTable, format_number};
 use crate::{named, output};
 
 const EXAMPLES: &str = "\
@@ -65,8 +66,8 @@ struct EstimateDocument<'a> {
     draws: usize,
     failed: usize,
     manoeuvres: &'a StandardManoeuvres,
-    bands: &'a [Band],
-    values: &'a [Spread],
+    bands: &'a [UncertaintyBand],
+    values: &'a [EstimateSpread],
     estimated_particulars: Vec<EstimatedParticular>,
     model: &'a Model,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -78,13 +79,13 @@ struct EstimateDocument<'a> {
 /// # Errors
 /// Returns an error that names the missing particulars, or if the model cannot be written.
 pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
-    let vessel = named::ship(zoo, &asked.ship)?;
+    let vessel = named::resolve_ship(zoo, &asked.ship)?;
     // Before the estimate: the regressions need a speed.
     let vessel = with_speed(&vessel, asked.speed_m_s);
     let inputs = [PathBuf::from(&asked.ship)];
-    let file = promised(asked.out.as_deref(), &inputs)?;
-    let (estimate, law) = estimate_of(zoo, &vessel, asked.speed_m_s)?;
-    let speed_m_s = speed(&vessel, asked.speed_m_s)?;
+    let file = output_file(asked.out.as_deref(), &inputs)?;
+    let (estimate, law) = estimate_model(zoo, &vessel, asked.speed_m_s)?;
+    let speed_m_s = approach_speed(&vessel, asked.speed_m_s)?;
     let bands = estimate_bands(&estimate, &law, asked.seed)
         .ok_or_else(|| Failure::Refused(format!("{}: the law does not fit", vessel.name())))?;
     if let Some(file) = file {
@@ -92,7 +93,7 @@ pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
         file.write(text.as_bytes())?;
     }
     // Every value of the model with its deviation and the particulars that it was estimated from.
-    let values = estimate.spreads();
+    let values = estimate.value_spreads();
     let document = EstimateDocument {
         ship: vessel.name(),
         status: estimate.model.status,
@@ -108,7 +109,7 @@ pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
         model: &estimate.model,
         out: asked.out.as_ref(),
     };
-    output::print(asked.json, &document, || text(&vessel, &document, &bands))
+    output::print_result(asked.json, &document, || format_estimate(&vessel, &document, &bands))
 }
 
 /// Returns the ship with an estimated service speed if none is known.
@@ -127,13 +128,13 @@ pub(super) fn with_speed(vessel: &Vessel, asked: Option<f64>) -> Vessel {
 ///
 /// # Errors
 /// Returns an error that names the missing particulars.
-pub(super) fn estimate_of(
+pub(super) fn estimate_model(
     zoo: &Zoo,
     vessel: &Vessel,
     speed_m_s: Option<f64>,
-) -> Result<(Estimate, Arc<Law>), Failure> {
-    let speed_m_s = speed(vessel, speed_m_s)?;
-    let library = Library::embedded()?;
+) -> Result<(ShipEstimate, Arc<Law>), Failure> {
+    let speed_m_s = approach_speed(vessel, speed_m_s)?;
+    let library = RegressionLibrary::parse_embedded()?;
     let law = zoo.law(LAW).ok_or_else(|| Failure::Refused(format!("there is no law `{LAW}`")))?;
     let refused =
         |error: sistership_priors::estimates::EstimateError| Failure::Refused(error.to_string());
@@ -141,7 +142,7 @@ pub(super) fn estimate_of(
     Ok((estimate, Arc::clone(law)))
 }
 
-fn speed(vessel: &Vessel, asked: Option<f64>) -> Result<f64, Failure> {
+fn approach_speed(vessel: &Vessel, asked: Option<f64>) -> Result<f64, Failure> {
     let own = || vessel.file.models.first().and_then(|model| model.speed_m_s);
     let speed = asked.or_else(own).or_else(|| vessel.particular("service_speed_m_s"));
     match speed {
@@ -157,48 +158,53 @@ fn speed(vessel: &Vessel, asked: Option<f64>) -> Result<f64, Failure> {
     }
 }
 
-fn text(vessel: &Vessel, document: &EstimateDocument<'_>, bands: &EstimateBands) -> String {
+fn format_estimate(
+    vessel: &Vessel,
+    document: &EstimateDocument<'_>,
+    bands: &EstimateBands,
+) -> String {
     let head = format!(
         "{} ({}): ESTIMATED from particulars, law {LAW}, {} m/s, {} 1/s\n",
         vessel.name(),
         vessel.file.title,
-        number(document.speed_m_s),
-        document.revolutions_rps.map_or("-".into(), number),
+        format_number(document.speed_m_s),
+        document.revolutions_rps.map_or("-".into(), format_number),
     );
     let written =
         document.out.map_or(String::new(), |out| format!("\nmodel written to {}\n", out.display()));
-    let estimated = estimated_words(&document.model.particulars);
+    let estimated = describe_estimates(&document.model.particulars);
     let estimated = estimated.map(|words| format!("remark: {words}\n")).unwrap_or_default();
     format!(
         "{head}\n{}\n{}\n{estimated}Bands hold 95 % of {} models drawn from the estimate's \
          covariance; {} of them left the physical range in some manoeuvre.\n{written}",
-        manoeuvres(bands),
-        values(document.values),
+        format_manoeuvres(bands),
+        format_values(document.values),
         document.draws,
         document.failed
     )
 }
 
-fn manoeuvres(bands: &EstimateBands) -> TextTable {
+fn format_manoeuvres(bands: &EstimateBands) -> TextTable {
     let mut table = TextTable::new(["figure", "unit", "estimate", "low", "high"]);
     // Figures and bands are matched by name; one without a band gets empty cells.
     let band = |name: &str| bands.figures.iter().find(|band| band.figure == name);
-    for Figure { name, unit, value, .. } in bands.manoeuvres.figures() {
-        let (low, high) = band(&name)
-            .map_or(("-".into(), "-".into()), |band| (number(band.low), number(band.high)));
-        table.row([name, unit, value.map_or("-".into(), number), low, high]);
+    for NamedFigure { name, unit, value, .. } in bands.manoeuvres.list_figures() {
+        let (low, high) = band(&name).map_or(("-".into(), "-".into()), |band| {
+            (format_number(band.low), format_number(band.high))
+        });
+        table.add_row([name, unit, value.map_or("-".into(), format_number), low, high]);
     }
     table
 }
 
-fn values(spreads: &[Spread]) -> TextTable {
+fn format_values(spreads: &[EstimateSpread]) -> TextTable {
     let mut table = TextTable::new(["value", "estimate", "deviation", "by"]);
     for spread in spreads {
         let by: Vec<&str> = spread.given.keys().map(String::as_str).collect();
-        table.row([
+        table.add_row([
             spread.name.clone(),
-            number(spread.mean),
-            number(spread.deviation),
+            format_number(spread.mean),
+            format_number(spread.deviation),
             by.join(", "),
         ]);
     }
@@ -216,18 +222,18 @@ mod tests {
 
     #[test]
     fn a_ship_without_a_model_gets_one_that_reads_back() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("pcc.yaml");
         run(&zoo, &asked("pcc", Some(out.clone()))).unwrap();
-        let (model, _) = named::model(&zoo, out.to_str().unwrap()).unwrap();
+        let (model, _) = named::resolve_model(&zoo, out.to_str().unwrap()).unwrap();
         assert_eq!(model.status, Status::Estimated);
-        assert!(model.posterior().is_some());
+        assert!(model.valid_posterior().is_some());
     }
 
     #[test]
     fn what_is_missing_is_said() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let message =
             |name: &str| run(&zoo, &asked(name, None)).unwrap_err().message().unwrap().to_owned();
         assert!(message("ferry-140m").contains("beam_m, draught_m"), "{}", message("ferry-140m"));

@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use sistership_export::{Plan, Subject};
-use sistership_jobs::bundle::{BundleError, SigningKey, gather};
-use sistership_model::version::sha256;
+use sistership_export::{ExportPlan, ExportSubject};
+use sistership_jobs::bundle::{BundleError, SigningKey, collect_bundle};
+use sistership_model::version::sha256_hex;
 use sistership_model::{Model, Zoo};
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::{Failure, about_file};
-use crate::files::PromisedFile;
+use crate::files::OutputFile;
 use crate::values::{ExportFormat, export_format};
 use crate::{named, output};
 
@@ -56,40 +56,41 @@ pub struct ExportArguments {
 /// Returns an error if the model cannot be exported, or if the file cannot be written.
 pub fn run(zoo: &Zoo, asked: &ExportArguments) -> Result<(), Failure> {
     let format = match asked.format {
-        ExportFormat::Bundle => return bundle(asked),
+        ExportFormat::Bundle => return export_bundle(asked),
         // Refused instead of ignored: the user expects a signed file.
         ExportFormat::Model(_) if asked.sign_key.is_some() => {
             return Err(Failure::Call("--sign-key: only a bundle is signed".to_owned()));
         }
         ExportFormat::Model(format) => format,
     };
-    let (model, law) = named::model(zoo, &asked.model)?;
-    let file = PromisedFile::new(&asked.out, &[PathBuf::from(&asked.model)])?;
+    let (model, law) = named::resolve_model(zoo, &asked.model)?;
+    let file = OutputFile::new(&asked.out, &[PathBuf::from(&asked.model)])?;
     let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
     // The hash identifies the model in the exported file; a model outside a store has no version.
-    let sha256 = hash(&model)?;
-    let subject = Subject { model: &model, law: &law, version: None, sha256 };
-    let plan = Plan::new(&subject).map_err(|error| refused(&error))?;
+    let sha256 = model_hash(&model)?;
+    let subject = ExportSubject { model: &model, law: &law, version: None, sha256 };
+    let plan = ExportPlan::new(&subject).map_err(|error| refused(&error))?;
     file.write(&format.write(&plan).map_err(|error| refused(&error))?)?;
-    output::note(&format!("{} as {}: {}", model.name, format.name(), asked.out.display()));
+    output::print_note(&format!("{} as {}: {}", model.name, format.name(), asked.out.display()));
     Ok(())
 }
 
-fn bundle(asked: &ExportArguments) -> Result<(), Failure> {
-    let file = PromisedFile::new(&asked.out, &[])?;
+fn export_bundle(asked: &ExportArguments) -> Result<(), Failure> {
+    let file = OutputFile::new(&asked.out, &[])?;
     let ship = &asked.model;
-    let key = asked.sign_key.as_deref().map(|path| key(path, SigningKey::from_pem)).transpose()?;
+    let key =
+        asked.sign_key.as_deref().map(|path| read_key(path, SigningKey::from_pem)).transpose()?;
     let bytes = with_archive(&asked.store, async |archive| {
-        gather(archive, ship).await?.packed(key.as_ref())
+        collect_bundle(archive, ship).await?.to_bytes(key.as_ref())
     })?;
     file.write(&bytes)?;
-    let by = key.map_or_else(String::new, |key| format!(", signed by {}", key.verifying()));
-    output::note(&format!("{ship} with its versions: {}{by}", asked.out.display()));
+    let by = key.map_or_else(String::new, |key| format!(", signed by {}", key.verifying_key()));
+    output::print_note(&format!("{ship} with its versions: {}{by}", asked.out.display()));
     Ok(())
 }
 
 /// Reads a key from a PEM file.
-pub(super) fn key<T>(
+pub(super) fn read_key<T>(
     path: &Path,
     from_pem: fn(&[u8]) -> Result<T, BundleError>,
 ) -> Result<T, Failure> {
@@ -98,8 +99,8 @@ pub(super) fn key<T>(
 }
 
 /// Returns the SHA-256 of the model's document, as JSON without spaces.
-fn hash(model: &Model) -> Result<String, Failure> {
+fn model_hash(model: &Model) -> Result<String, Failure> {
     let document = serde_json::to_vec(model)
         .map_err(|error| Failure::Refused(format!("{}: {error}", model.name)))?;
-    Ok(sha256(&document))
+    Ok(sha256_hex(&document))
 }

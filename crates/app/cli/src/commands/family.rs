@@ -6,14 +6,15 @@ use serde_json::{Value, json};
 use sistership_jobs::Archive;
 use sistership_jobs::derive::DeriveError;
 use sistership_jobs::fleet::{
-    Asked, OrderError, PriorChoice, Rule, Standing, Start, learn, order_refinement,
+    BulkProgress, BulkRefinementRequest, OrderError, PriorChoice, Rule, Start, learn_family_prior,
+    order_refinement,
 };
 use sistership_store::StoreError;
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
-use crate::output::{self, count, note};
-use crate::table::{TextTable, number};
+use crate::output::{self, format_count, print_note};
+use crate::table::{TextTable, format_number};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -113,8 +114,8 @@ enum PriorArgument {
 /// Returns an error if something that is named does not exist, or if the store refuses it.
 pub fn run(family: &FamilyArguments) -> Result<(), Failure> {
     let (document, text) =
-        with_archive(&family.store, async |archive| done(&family.what, archive).await)?;
-    output::print(family.json, &document, || text)
+        with_archive(&family.store, async |archive| run_action(&family.what, archive).await)?;
+    output::print_result(family.json, &document, || text)
 }
 
 /// Error of a command on a family.
@@ -135,20 +136,20 @@ enum FamilyError {
 /// Result as a document and as text.
 type FamilyResult = Result<(Value, String), FamilyError>;
 
-async fn done(what: &FamilyAction, archive: &Archive) -> FamilyResult {
+async fn run_action(what: &FamilyAction, archive: &Archive) -> FamilyResult {
     let families = archive.store.families();
     match what {
         FamilyAction::Create { family, foundation, ship } => {
             // The foundation is resolved to an id, so that a later move of the champion does not
             // change it.
-            let version = version(archive, foundation).await?;
+            let version = resolve_version(archive, foundation).await?;
             let family = families.create(family, family, &version).await?.name;
-            added(archive, &family, ship).await
+            add_members(archive, &family, ship).await
         }
-        FamilyAction::Add { family, ships } => added(archive, family, ships).await,
-        FamilyAction::Learn { family } => learned(archive, family).await,
+        FamilyAction::Add { family, ships } => add_members(archive, family, ships).await,
+        FamilyAction::Learn { family } => learn_prior(archive, family).await,
         FamilyAction::Refine { family, start, prior, no_worse_than } => {
-            let asked = Asked {
+            let asked = BulkRefinementRequest {
                 start: match start {
                     StartArgument::Champion => Start::Champion,
                     StartArgument::Foundation => Start::Foundation,
@@ -158,26 +159,26 @@ async fn done(what: &FamilyAction, archive: &Archive) -> FamilyResult {
                     PriorArgument::Foundation => PriorChoice::Foundation,
                 },
                 rule: Rule { no_worse_than: *no_worse_than },
-                ..Asked::default()
+                ..BulkRefinementRequest::default()
             };
             let queued = order_refinement(&archive.store, family, &asked).await;
-            status(archive, &queued.map_err(FamilyError::NotQueued)?.id).await
+            refinement_status(archive, &queued.map_err(FamilyError::NotQueued)?.id).await
         }
-        FamilyAction::Status { id } => status(archive, id).await,
+        FamilyAction::Status { id } => refinement_status(archive, id).await,
         FamilyAction::Cancel { id } => {
             archive.store.bulks().request_cancel(id).await?;
-            status(archive, id).await
+            refinement_status(archive, id).await
         }
         // Ships that are done keep their outcome; only failed or cancelled jobs are queued again.
         FamilyAction::Retry { id } => {
-            archive.store.bulks().retry(id).await?;
-            status(archive, id).await
+            archive.store.bulks().retry_chunks(id).await?;
+            refinement_status(archive, id).await
         }
     }
 }
 
 /// Returns the id of the version with this name.
-async fn version(archive: &Archive, name: &str) -> Result<String, FamilyError> {
+async fn resolve_version(archive: &Archive, name: &str) -> Result<String, FamilyError> {
     let (ship, rest) = name.split_once('/').unwrap_or((name, "champion"));
     // What is no number is an alias; without either it is the champion.
     let number = match rest.parse() {
@@ -187,34 +188,34 @@ async fn version(archive: &Archive, name: &str) -> Result<String, FamilyError> {
     Ok(archive.store.versions().get(ship, number).await?.head.id)
 }
 
-async fn added(archive: &Archive, family: &str, ships: &[String]) -> FamilyResult {
+async fn add_members(archive: &Archive, family: &str, ships: &[String]) -> FamilyResult {
     // Ships that are members already do not count as new.
-    let new = archive.store.families().add(family, ships).await?;
-    let members = archive.store.families().count(family).await?;
+    let new = archive.store.families().add_members(family, ships).await?;
+    let members = archive.store.families().count_members(family).await?;
     let text = format!(
         "{family}: {new} added, {}",
-        count(usize::try_from(members).unwrap_or(0), "member")
+        format_count(usize::try_from(members).unwrap_or(0), "member")
     );
     Ok((json!({ "family": family, "added": new, "members": members }), text))
 }
 
-async fn learned(archive: &Archive, family: &str) -> FamilyResult {
+async fn learn_prior(archive: &Archive, family: &str) -> FamilyResult {
     let told = |fraction: f64, what: &str| {
-        note(&format!("{:3.0} % {what}", 100.0 * fraction));
+        print_note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
     };
     // Estimated in this process; the server queues the same work as a job.
-    let prior = learn(archive, family, &told).await?;
+    let prior = learn_family_prior(archive, family, &told).await?;
     let document = serde_json::to_string(&prior)?;
-    let kept = archive.store.families().teach(family, &document).await?;
+    let kept = archive.store.families().insert_prior(family, &document).await?;
     // One row for each coefficient of each axis.
     let mut table = TextTable::new(["coefficient", "mean", "differs by", "told by trials"]);
     for axis in &prior.axes {
         for (j, name) in axis.names.iter().enumerate() {
-            table.row([
+            table.add_row([
                 name.clone(),
-                number(axis.mean[j]),
-                number(axis.deviation[j]),
+                format_number(axis.mean[j]),
+                format_number(axis.deviation[j]),
                 format!("{:.2}", axis.told_by_trials[j]),
             ]);
         }
@@ -222,7 +223,7 @@ async fn learned(archive: &Archive, family: &str) -> FamilyResult {
     let head = format!(
         "{family}: prior {} of {}; one sample in {:.1} counts; {:.0} % of the correlations kept\n",
         kept.revision,
-        count(prior.members.len(), "member"),
+        format_count(prior.members.len(), "member"),
         prior.design_effect,
         100.0 * prior.correlations_kept
     );
@@ -232,9 +233,9 @@ async fn learned(archive: &Archive, family: &str) -> FamilyResult {
     ))
 }
 
-async fn status(archive: &Archive, id: &str) -> FamilyResult {
+async fn refinement_status(archive: &Archive, id: &str) -> FamilyResult {
     let bulk = archive.store.bulks().get(id).await?;
-    let standing = Standing::of(&archive.store, &bulk).await?;
+    let standing = BulkProgress::read_current(&archive.store, &bulk).await?;
     let mut text = format!(
         "{} of {}: {}, {} of {} ships done",
         bulk.id, bulk.family, standing.state, standing.done, bulk.ships

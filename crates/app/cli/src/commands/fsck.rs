@@ -1,11 +1,11 @@
 //! `sistership fsck`: integrity check of a store.
 
 use clap::Args;
-use sistership_jobs::upkeep::{self, Checked, Fault, Findings};
+use sistership_jobs::upkeep::{self, CheckCounts, Findings, IntegrityFault};
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
-use crate::output::{self, count};
+use crate::output::{self, format_count};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -32,32 +32,33 @@ pub struct FsckArguments {
 /// # Errors
 /// Returns an error if the store does not exist, does not answer, or has faults.
 pub fn run(fsck: &FsckArguments) -> Result<(), Failure> {
-    let findings = with_archive(&fsck.store, async |archive| upkeep::fsck(archive).await)?;
-    output::print(fsck.json, &findings, || text(&findings))?;
+    let findings = with_archive(&fsck.store, async |archive| upkeep::check_archive(archive).await)?;
+    output::print_result(fsck.json, &findings, || format_findings(&findings))?;
     if findings.clean { Ok(()) } else { Err(Failure::Told) }
 }
 
-fn text(findings: &Findings) -> String {
+fn format_findings(findings: &Findings) -> String {
     let Findings { faults, checked, unreferred, unfinished, .. } = findings;
-    let Checked { laws, effects, versions, trials, jobs, diagnoses, objects, audit } = checked;
-    let fault = |fault: &Fault| format!("{}: {}: {}\n", fault.check, fault.place, fault.message);
+    let CheckCounts { laws, effects, versions, trials, jobs, diagnoses, objects, audit } = checked;
+    let fault =
+        |fault: &IntegrityFault| format!("{}: {}: {}\n", fault.check, fault.place, fault.message);
     let mut text: String = faults.iter().map(fault).collect();
     text += &format!(
         "looked at {laws} laws, {effects} libraries of effects, {versions} versions, {trials} \
          trials, {jobs} jobs, {diagnoses} diagnoses, {objects} objects, {audit} entries of the \
          audit: {}\n",
-        if faults.is_empty() { "clean".to_owned() } else { count(faults.len(), "fault") }
+        if faults.is_empty() { "clean".to_owned() } else { format_count(faults.len(), "fault") }
     );
     // Unreferenced objects are no fault: `gc` removes them.
     if unreferred.objects > 0 {
-        let (objects, bytes) = (count(unreferred.objects, "object"), unreferred.bytes);
+        let (objects, bytes) = (format_count(unreferred.objects, "object"), unreferred.bytes);
         text += &format!(
             "{objects} ({bytes} bytes) that no trial refers to; `sistership gc` removes what is \
              old enough\n"
         );
     }
     if unfinished.objects > 0 {
-        let (puts, bytes) = (count(unfinished.objects, "put"), unfinished.bytes);
+        let (puts, bytes) = (format_count(unfinished.objects, "put"), unfinished.bytes);
         text += &format!(
             "{puts} ({bytes} bytes) under way or never ended; `sistership gc` removes what is old \
              enough\n"

@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use clap::Args;
-use sistership_jobs::upkeep::{self, Collected};
+use sistership_jobs::upkeep::{self, RemovedObjects};
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
-use crate::output::{self, count};
+use crate::output::{self, format_count};
 use crate::values::hours;
 
 const EXAMPLES: &str = "\
@@ -40,19 +40,20 @@ pub struct GcArguments {
 /// # Errors
 /// Returns an error if the store does not exist or does not answer.
 pub fn run(gc: &GcArguments) -> Result<(), Failure> {
-    let collected =
-        with_archive(&gc.store, async |archive| upkeep::gc(archive, gc.grace_h, gc.dry_run).await)?;
-    output::print(gc.json, &collected, || text(&collected))
+    let collected = with_archive(&gc.store, async |archive| {
+        upkeep::collect_garbage(archive, gc.grace_h, gc.dry_run).await
+    })?;
+    output::print_result(gc.json, &collected, || format_removed(&collected))
 }
 
-fn text(collected: &Collected) -> String {
-    let Collected { dry_run, removed, unfinished, bytes, objects } = collected;
+fn format_removed(collected: &RemovedObjects) -> String {
+    let RemovedObjects { dry_run, removed, unfinished, bytes, objects } = collected;
     let lines: String =
         removed.iter().chain(unfinished).map(|place| format!("{place}\n")).collect();
     let done = if *dry_run { "would be removed" } else { "removed" };
-    let puts = count(unfinished.len(), "put");
+    let puts = format_count(unfinished.len(), "put");
     format!(
         "{lines}{} of {objects} and {puts} that never ended ({bytes} bytes) {done}\n",
-        count(removed.len(), "object")
+        format_count(removed.len(), "object")
     )
 }

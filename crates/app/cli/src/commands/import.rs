@@ -6,19 +6,19 @@ use clap::Args;
 use sistership_model::trial::Trial;
 use sistership_model::{FileError, Zoo};
 use sistership_trials::{
-    Exclusion, GivenColumn, Loaded, ManifestFile, ProposalRequest, Role, find_faults, lacking,
-    load_path, propose_files,
+    Exclusion, GivenColumn, LoadedTrials, ManifestFile, ProposalRequest, Role, find_faults,
+    load_path, missing_channels, propose_files,
 };
 
 use super::import_bundle;
-use super::import_log::searched;
-use super::import_outcome::{GuessRow, Import, LawNeeds};
+use super::import_log::segment_logs;
+use super::import_outcome::{GuessRow, ImportDocument, LawNeeds};
 use super::import_text;
 use super::store::StoreArguments;
 use crate::failure::{Failure, about_file};
-use crate::files::PromisedFile;
+use crate::files::OutputFile;
 use crate::output;
-use crate::trials::place;
+use crate::trials::format_finding;
 use crate::values::positive;
 
 const EXAMPLES: &str = "\
@@ -85,12 +85,12 @@ fn given_column(text: &str) -> Result<GivenColumn, String> {
     let name = parts.next().unwrap_or_default().trim();
     let role = match name {
         "" => None,
-        name => Some(Role::by_name(name).ok_or_else(|| format!("`{name}` is not a channel"))?),
+        name => Some(Role::from_name(name).ok_or_else(|| format!("`{name}` is not a channel"))?),
     };
     // An empty unit leaves the unit to the identification.
     let unit = parts.next().map(|unit| unit.trim().to_owned()).filter(|unit| !unit.is_empty());
     if let (Some(role), Some(unit)) = (role, &unit) {
-        let known: Vec<&str> = role.kind().units().iter().map(|unit| unit.name).collect();
+        let known: Vec<&str> = role.kind().known_units().iter().map(|unit| unit.name).collect();
         if !known.contains(&unit.as_str()) {
             return Err(format!("`{unit}` does not fit {name}; use one of {}", known.join(", ")));
         }
@@ -110,14 +110,19 @@ fn given_column(text: &str) -> Result<GivenColumn, String> {
 /// Returns an error that lists each file that cannot be read, or if the manifest cannot be written.
 pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     if let Some(bundle) = &arguments.bundle {
-        return import_bundle::run(bundle, &arguments.signed_by, &arguments.store, arguments.json);
+        return import_bundle::run_import(
+            bundle,
+            &arguments.signed_by,
+            &arguments.store,
+            arguments.json,
+        );
     }
-    let out = arguments.out.clone().unwrap_or_else(|| beside(&arguments.files));
+    let out = arguments.out.clone().unwrap_or_else(|| default_manifest(&arguments.files));
     // A manifest may have been edited by hand; only an explicit --out replaces it.
     if arguments.out.is_none() && out.exists() {
         return Err(about_file(&out, "is there already; name another place with --out"));
     }
-    let promised = PromisedFile::new(&out, &arguments.files)?;
+    let promised = OutputFile::new(&out, &arguments.files)?;
     let files: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
     let folder = out.parent().unwrap_or(Path::new(""));
     let request = ProposalRequest {
@@ -126,23 +131,24 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
         folder: Some(folder),
         given: &arguments.columns,
     };
-    let mut proposal = propose_files(&request).map_err(all)?;
+    let mut proposal = propose_files(&request).map_err(join_errors)?;
     // Segmentation first: faults are then searched only in the segments that become trials.
-    let logs = searched(&mut proposal.manifest, folder, length(zoo, arguments));
-    let excluded = cleaned(&mut proposal.manifest, folder)?;
+    let logs = segment_logs(&mut proposal.manifest, folder, ship_length(zoo, arguments));
+    let excluded = exclude_faults(&mut proposal.manifest, folder)?;
     let text = proposal.manifest.to_yaml().map_err(|error| about_file(&out, error))?;
     promised.write(text.as_bytes())?;
     let (guesses, notes) = (proposal.guesses, proposal.notes);
     let guesses = guesses.into_iter().map(GuessRow::from).collect();
     let explain = arguments.explain;
-    let import = Import { logs, notes, guesses, excluded, explain, ..checked(zoo, out)? };
-    output::print(arguments.json, &import, || import_text::text(&import))?;
+    let import =
+        ImportDocument { logs, notes, guesses, excluded, explain, ..check_manifest(zoo, out)? };
+    output::print_result(arguments.json, &import, || import_text::format_import(&import))?;
     if import.errors.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
 
 /// Finds faults of the files and excludes them in the manifest. A temporary manifest in the same
 /// folder is read, so that relative paths stay valid.
-fn cleaned(manifest: &mut ManifestFile, folder: &Path) -> Result<Vec<Exclusion>, Failure> {
+fn exclude_faults(manifest: &mut ManifestFile, folder: &Path) -> Result<Vec<Exclusion>, Failure> {
     let place = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     // Removed when it is dropped, also after an error.
     let draft = tempfile::Builder::new().prefix(".import").suffix(".yaml").tempfile_in(place);
@@ -154,12 +160,12 @@ fn cleaned(manifest: &mut ManifestFile, folder: &Path) -> Result<Vec<Exclusion>,
     Ok(excluded)
 }
 
-fn beside(files: &[PathBuf]) -> PathBuf {
-    folder(files).join("trials.yaml")
+fn default_manifest(files: &[PathBuf]) -> PathBuf {
+    common_folder(files).join("trials.yaml")
 }
 
 /// Returns the deepest folder that contains all files.
-fn folder(files: &[PathBuf]) -> PathBuf {
+fn common_folder(files: &[PathBuf]) -> PathBuf {
     let mut folders = files.iter().map(|file| file.parent().unwrap_or(Path::new("")));
     let first = folders.next().unwrap_or(Path::new("")).to_path_buf();
     folders.fold(first, |common, folder| {
@@ -169,20 +175,20 @@ fn folder(files: &[PathBuf]) -> PathBuf {
 }
 
 /// Returns the ship's length: as given, or of the ship with that name in the zoo.
-fn length(zoo: &Zoo, arguments: &ImportArguments) -> Option<f64> {
+fn ship_length(zoo: &Zoo, arguments: &ImportArguments) -> Option<f64> {
     let known =
         || zoo.vessel(&arguments.ship)?.particulars.get("lpp_m").map(|quantity| quantity.value);
     arguments.length.or_else(known)
 }
 
-fn all(errors: Vec<FileError>) -> Failure {
+fn join_errors(errors: Vec<FileError>) -> Failure {
     let lines: Vec<String> = errors.iter().map(ToString::to_string).collect();
     Failure::Refused(lines.join("\n"))
 }
 
 /// Reads the files by the manifest, and checks which laws the trials can identify.
-fn checked(zoo: &Zoo, manifest: PathBuf) -> Result<Import, Failure> {
-    let Loaded { trials: read, .. } = load_path(&manifest)?;
+fn check_manifest(zoo: &Zoo, manifest: PathBuf) -> Result<ImportDocument, Failure> {
+    let LoadedTrials { trials: read, .. } = load_path(&manifest)?;
     let (mut trials, mut errors) = (Vec::new(), Vec::new());
     for one in read {
         match one {
@@ -191,14 +197,14 @@ fn checked(zoo: &Zoo, manifest: PathBuf) -> Result<Import, Failure> {
                 refusal
                     .findings
                     .iter()
-                    .map(|finding| format!("{}: {}", refusal.file, place(finding))),
+                    .map(|finding| format!("{}: {}", refusal.file, format_finding(finding))),
             ),
         }
     }
     // The files of one manifest usually have the same channels: the first trial stands for all.
-    let needs = trials.first().map_or_else(Vec::new, |trial| needs(zoo, trial));
+    let needs = trials.first().map_or_else(Vec::new, |trial| missing_channels(zoo, trial));
     let names = trials.into_iter().map(|trial| trial.name).collect();
-    Ok(Import {
+    Ok(ImportDocument {
         manifest,
         guesses: Vec::new(),
         notes: Vec::new(),
@@ -211,10 +217,10 @@ fn checked(zoo: &Zoo, manifest: PathBuf) -> Result<Import, Failure> {
     })
 }
 
-fn needs(zoo: &Zoo, trial: &Trial) -> Vec<LawNeeds> {
+fn missing_channels(zoo: &Zoo, trial: &Trial) -> Vec<LawNeeds> {
     let of = |law: &std::sync::Arc<sistership_model::Law>| LawNeeds {
         law: law.name.clone(),
-        lacks: lacking(law, trial).iter().map(ToString::to_string).collect(),
+        lacks: missing_channels(law, trial).iter().map(ToString::to_string).collect(),
     };
     zoo.laws().map(of).collect()
 }

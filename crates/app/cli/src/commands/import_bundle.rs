@@ -3,18 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use sistership_jobs::bundle::{Bundle, Taken, VerifyingKey, take, trusted};
+use sistership_jobs::bundle::{Bundle, BundleImport, VerifyingKey, check_signer, import_bundle};
 
-use super::export::key;
+use super::export::read_key;
 use super::store::{StoreArguments, with_archive};
 use crate::failure::{Failure, about_file};
-use crate::output::{self, count};
+use crate::output::{self, format_count};
 
 /// Result of the import, with the signer.
 #[derive(Serialize)]
-struct Import {
+struct BundleImportDocument {
     #[serde(flatten)]
-    taken: Taken,
+    taken: BundleImport,
     /// SHA-256 of the key that signed the bundle.
     signed_by: Option<String>,
     /// True if that key was one of the required ones.
@@ -26,26 +26,26 @@ struct Import {
 /// # Errors
 /// Returns an error if the file is no bundle, is not signed by a required key, or contradicts the
 /// store; nothing is written then.
-pub fn run(
+pub fn run_import(
     path: &Path,
     signed_by: &[PathBuf],
     store: &StoreArguments,
     json: bool,
 ) -> Result<(), Failure> {
-    let keys = signed_by.iter().map(|path| key(path, VerifyingKey::from_pem));
+    let keys = signed_by.iter().map(|path| read_key(path, VerifyingKey::from_pem));
     let keys = keys.collect::<Result<Vec<_>, _>>()?;
     let bytes = std::fs::read(path).map_err(|error| about_file(path, error))?;
-    let (bundle, signer) = Bundle::unpacked(&bytes).map_err(|error| about_file(path, error))?;
-    trusted(signer.as_ref(), &keys).map_err(|error| about_file(path, error))?;
-    let taken = with_archive(store, async |archive| take(archive, &bundle).await)?;
+    let (bundle, signer) = Bundle::from_bytes(&bytes).map_err(|error| about_file(path, error))?;
+    check_signer(signer.as_ref(), &keys).map_err(|error| about_file(path, error))?;
+    let taken = with_archive(store, async |archive| import_bundle(archive, &bundle).await)?;
     let signed_by = signer.map(|signer| signer.to_string());
     // With keys given, an unknown signer was refused above.
-    let import = Import { taken, signed_by, known_signer: !keys.is_empty() };
-    output::print(json, &import, || text(&import))
+    let import = BundleImportDocument { taken, signed_by, known_signer: !keys.is_empty() };
+    output::print_result(json, &import, || format_import(&import))
 }
 
-fn text(import: &Import) -> String {
-    let Taken { ship, ships, versions, trials, known } = &import.taken;
+fn format_import(import: &BundleImportDocument) -> String {
+    let BundleImport { ship, ships, versions, trials, known } = &import.taken;
     let named = |names: &[String]| if names.is_empty() { "none".into() } else { names.join(", ") };
     let signer = match &import.signed_by {
         None => "not signed".to_owned(),
@@ -56,7 +56,7 @@ fn text(import: &Import) -> String {
         "{ship}, {signer}\n  new ships: {}\n  new versions: {}\n  {} of them there already\n  {}\n",
         named(ships),
         named(versions),
-        count(*known, "version"),
-        count(*trials, "new trial")
+        format_count(*known, "version"),
+        format_count(*trials, "new trial")
     )
 }

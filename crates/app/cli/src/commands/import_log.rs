@@ -5,18 +5,20 @@ use std::path::Path;
 
 use serde::Serialize;
 use sistership_model::manifest::{FileTime, ManifestTrial};
-use sistership_trials::segmentation::{Finder, Found, Sample, Span, Stretch};
-use sistership_trials::{ManifestFile, Steering, scan};
+use sistership_trials::segmentation::{
+    LogSample, ManoeuvreSegment, SegmentFinder, SegmentationResult, TimeSpan,
+};
+use sistership_trials::{ManifestFile, SteeringSample, scan_file};
 
-use crate::output::{count, note};
+use crate::output::{format_count, print_note};
 use crate::table::TextTable;
 
 /// Resolution of written times, parts of a second.
-const PARTS: f64 = 10.0;
+const PARTS_PER_SECOND: f64 = 10.0;
 
 /// Log with its segments.
 #[derive(Serialize)]
-pub struct SearchedLog {
+pub struct SegmentedLog {
     file: String,
     rows: u64,
     duration_s: f64,
@@ -24,30 +26,31 @@ pub struct SearchedLog {
     speed_m_s: f64,
     /// Scatter of the rudder in course keeping.
     rudder_scatter_deg: f64,
-    stretches: Vec<Stretch>,
+    stretches: Vec<ManoeuvreSegment>,
     /// Steady course keeping: not used for the fit, but a model's drift shows in it.
-    steady: Vec<Span>,
+    steady: Vec<TimeSpan>,
 }
 
 /// Replaces each file that is a log, and no single trial, by its segments.
-pub fn searched(
+pub fn segment_logs(
     manifest: &mut ManifestFile,
     folder: &Path,
     length_m: Option<f64>,
-) -> Vec<SearchedLog> {
+) -> Vec<SegmentedLog> {
     let (mut logs, mut trials, mut sensors) = (Vec::new(), Vec::new(), Vec::new());
     for (at, trial) in manifest.manifest.trials.iter().enumerate() {
         let own = manifest.sensors.get(at).cloned().unwrap_or_default();
-        match found(manifest, trial, folder, length_m) {
+        match segment_file(manifest, trial, folder, length_m) {
             Some(found) if found.is_log() && !found.stretches.is_empty() => {
-                let entries = found.stretches.iter().map(|one| entry(trial, one, found.whole));
+                let entries =
+                    found.stretches.iter().map(|one| segment_entry(trial, one, found.whole));
                 trials.extend(entries);
-                logs.push(SearchedLog::of(&trial.file, found));
+                logs.push(SegmentedLog::from_segmentation(&trial.file, found));
             }
             // A log without manoeuvres stays one trial, with a note.
             Some(found) if found.is_log() => {
                 let hours = found.whole.duration_s() / 3600.0;
-                note(&format!(
+                print_note(&format!(
                     "note: {}: {hours:.1} h, in which neither rudder nor propeller moves beyond \
                      course keeping",
                     trial.file
@@ -64,28 +67,32 @@ pub fn searched(
 }
 
 /// Segments a file; `None` if it cannot be read, which is reported later when the manifest is read.
-fn found(
+fn segment_file(
     manifest: &ManifestFile,
     trial: &ManifestTrial,
     folder: &Path,
     length_m: Option<f64>,
-) -> Option<Found> {
+) -> Option<SegmentationResult> {
     // One pass over the rows: a log may be larger than the memory.
-    let mut finder = Finder::new(length_m);
-    let each = |steering: &Steering| finder.push(&sample(steering));
-    scan(&folder.join(&trial.file), &manifest.mapping(trial), each).ok()?;
+    let mut finder = SegmentFinder::new(length_m);
+    let each = |steering: &SteeringSample| finder.push(&to_sample(steering));
+    scan_file(&folder.join(&trial.file), &manifest.trial_mapping(trial), each).ok()?;
     finder.finish().ok()
 }
 
-fn sample(steering: &Steering) -> Sample {
-    let Steering { t_s, rudder_rad, revolutions_rps, yaw_rate_rad_s, heading_rad, speed_m_s } =
+fn to_sample(steering: &SteeringSample) -> LogSample {
+    let SteeringSample { t_s, rudder_rad, revolutions_rps, yaw_rate_rad_s, heading_rad, speed_m_s } =
         *steering;
-    Sample { t_s, rudder_rad, revolutions_rps, yaw_rate_rad_s, heading_rad, speed_m_s }
+    LogSample { t_s, rudder_rad, revolutions_rps, yaw_rate_rad_s, heading_rad, speed_m_s }
 }
 
 /// Returns the manifest entry of a segment; begin or end are omitted if they are those of the file.
-fn entry(trial: &ManifestTrial, stretch: &Stretch, whole: Span) -> ManifestTrial {
-    let (from_s, to_s) = ends(stretch.span);
+fn segment_entry(
+    trial: &ManifestTrial,
+    stretch: &ManoeuvreSegment,
+    whole: TimeSpan,
+) -> ManifestTrial {
+    let (from_s, to_s) = rounded_ends(stretch.span);
     let time = |time_s: f64, is_inside: bool| is_inside.then_some(FileTime::Seconds(time_s));
     ManifestTrial {
         from: time(from_s, from_s > whole.from_s),
@@ -98,13 +105,13 @@ fn entry(trial: &ManifestTrial, stretch: &Stretch, whole: Span) -> ManifestTrial
 }
 
 /// Rounds both ends down, so that neighbouring segments meet and do not overlap.
-fn ends(span: Span) -> (f64, f64) {
-    let down = |time_s: f64| (time_s * PARTS).floor() / PARTS;
+fn rounded_ends(span: TimeSpan) -> (f64, f64) {
+    let down = |time_s: f64| (time_s * PARTS_PER_SECOND).floor() / PARTS_PER_SECOND;
     (down(span.from_s), down(span.to_s))
 }
 
-impl SearchedLog {
-    fn of(file: &str, found: Found) -> Self {
+impl SegmentedLog {
+    fn from_segmentation(file: &str, found: SegmentationResult) -> Self {
         Self {
             file: file.to_owned(),
             rows: found.rows,
@@ -117,7 +124,7 @@ impl SearchedLog {
         }
     }
 
-    fn table(&self) -> TextTable {
+    fn segment_table(&self) -> TextTable {
         let mut table = TextTable::new([
             "",
             "from (s)",
@@ -130,9 +137,9 @@ impl SearchedLog {
             "why",
         ]);
         for (at, stretch) in self.stretches.iter().enumerate() {
-            let (from_s, to_s) = ends(stretch.span);
+            let (from_s, to_s) = rounded_ends(stretch.span);
             let excitation = &stretch.excitation;
-            table.row([
+            table.add_row([
                 (at + 1).to_string(),
                 format!("{from_s:.1}"),
                 format!("{to_s:.1}"),
@@ -148,17 +155,17 @@ impl SearchedLog {
     }
 }
 
-impl fmt::Display for SearchedLog {
+impl fmt::Display for SegmentedLog {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let hours = |seconds: f64| seconds / 3600.0;
-        let steady_s: f64 = self.steady.iter().map(Span::duration_s).sum();
+        let steady_s: f64 = self.steady.iter().map(TimeSpan::duration_s).sum();
         writeln!(
             out,
             "{}: a log of {:.1} h and {} rows; {} stand out of course keeping",
             self.file,
             hours(self.duration_s),
             self.rows,
-            count(self.stretches.len(), "manoeuvre"),
+            format_count(self.stretches.len(), "manoeuvre"),
         )?;
         writeln!(
             out,
@@ -166,14 +173,14 @@ impl fmt::Display for SearchedLog {
             self.length_m,
             self.speed_m_s,
             self.rudder_scatter_deg,
-            self.table()
+            self.segment_table()
         )?;
         writeln!(
             out,
             "{:.1} h ({:.0} %) in {} are steady course keeping: left out of the fit, for drift\n",
             hours(steady_s),
             100.0 * steady_s / self.duration_s,
-            count(self.steady.len(), "part"),
+            format_count(self.steady.len(), "part"),
         )
     }
 }

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use sistership_trials::{Exclusion, Guess};
+use sistership_trials::{ColumnGuess, Exclusion};
 
-use super::import_log::SearchedLog;
+use super::import_log::SegmentedLog;
 
 /// Result of an import.
 #[derive(Serialize)]
-pub(super) struct Import {
+pub(super) struct ImportDocument {
     pub manifest: PathBuf,
     pub guesses: Vec<GuessRow>,
     /// Remarks that concern several columns.
@@ -17,7 +17,7 @@ pub(super) struct Import {
     pub notes: Vec<String>,
     /// Logs that were segmented.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub logs: Vec<SearchedLog>,
+    pub logs: Vec<SegmentedLog>,
     /// Faulty values that are excluded.
     pub excluded: Vec<Exclusion>,
     pub trials: Vec<String>,
@@ -47,9 +47,9 @@ pub(super) struct LawNeeds {
     pub lacks: Vec<String>,
 }
 
-impl From<Guess> for GuessRow {
-    fn from(guess: Guess) -> Self {
-        let Guess { file, column, channel, unit, reversed, why, certain, question } = guess;
+impl From<ColumnGuess> for GuessRow {
+    fn from(guess: ColumnGuess) -> Self {
+        let ColumnGuess { file, column, channel, unit, reversed, why, certain, question } = guess;
         Self { file, column, channel, unit, reversed, certain, why, question }
     }
 }

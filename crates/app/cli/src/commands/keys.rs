@@ -4,10 +4,10 @@ use clap::{Args, Subcommand};
 use serde_json::{Value, json};
 use sistership_auth::{Grant, KeyText};
 use sistership_jobs::Archive;
-use sistership_store::{KeyRow, MAX_LIMIT, NewKey, Page, StoreError};
+use sistership_store::{KeyRow, MAX_LIMIT, NewKey, PageRequest, StoreError};
 
 use super::store::{StoreArguments, with_archive};
-use super::users::{rows, words};
+use super::users::{grant_rows, grant_texts};
 use crate::failure::Failure;
 use crate::output;
 use crate::table::TextTable;
@@ -21,7 +21,7 @@ Examples:
 A key is printed once; only its hash is kept. A program sends it as `Authorization: Bearer KEY`.";
 
 /// One day, µs.
-const DAY: i64 = 86_400_000_000;
+const DAY_US: i64 = 86_400_000_000;
 
 /// Manage the service keys of programs: add, list, revoke.
 #[derive(Debug, Args)]
@@ -68,12 +68,12 @@ enum KeysAction {
 pub fn run(keys: &KeysArguments) -> Result<(), Failure> {
     // Drawn before the store is opened.
     let text = KeyText::new().map_err(|error| Failure::Refused(error.to_string()))?;
-    let work = async |archive: &Archive| done(&keys.what, &text, archive).await;
+    let work = async |archive: &Archive| run_action(&keys.what, &text, archive).await;
     let (document, text) = with_archive(&keys.store, work)?;
-    output::print(keys.json, &document, || text)
+    output::print_result(keys.json, &document, || text)
 }
 
-async fn done(
+async fn run_action(
     what: &KeysAction,
     text: &KeyText,
     archive: &Archive,
@@ -81,17 +81,17 @@ async fn done(
     let keys = archive.store.service_keys();
     match what {
         KeysAction::Add { title, roles, user, days } => {
-            let kept = text.kept();
+            let kept = text.to_stored();
             // The clock of the store, which also decides whether a key is valid.
-            let ends = days.map(|days| archive.store.now_us().saturating_add(days * DAY));
+            let ends = days.map(|days| archive.store.now_us().saturating_add(days * DAY_US));
             let (title, user) = (title.clone(), user.clone());
             let new =
                 NewKey { prefix: kept.prefix, title, user, sha256: kept.sha256, expires_us: ends };
-            let row = keys.create(&new, &rows(roles)).await?;
+            let row = keys.create(&new, &grant_rows(roles)).await?;
             let key = text.as_str();
             Ok((json!({ "key": key, "prefix": row.prefix, "expires_us": ends }), key.to_owned()))
         }
-        KeysAction::List => list(archive).await,
+        KeysAction::List => list_keys(archive).await,
         KeysAction::Revoke { prefix } => {
             let row = keys.revoke(prefix).await?;
             let text = format!("{}: revoked", row.prefix);
@@ -100,18 +100,24 @@ async fn done(
     }
 }
 
-async fn list(archive: &Archive) -> Result<(Value, String), StoreError> {
+async fn list_keys(archive: &Archive) -> Result<(Value, String), StoreError> {
     let now = archive.store.now_us();
     let mut table = TextTable::new(["prefix", "for", "user", "roles", "state"]);
-    let (mut all, mut page) = (Vec::new(), Page::first(MAX_LIMIT));
+    let (mut all, mut page) = (Vec::new(), PageRequest::first_page(MAX_LIMIT));
     loop {
         let keys = archive.store.service_keys().list(&page).await?;
         for key in keys.items {
-            let roles = words(&archive.store.grants().of(&KeyRow::principal(&key.prefix)).await?);
+            let roles = grant_texts(
+                &archive
+                    .store
+                    .grants()
+                    .list_by_principal(&KeyRow::principal_name(&key.prefix))
+                    .await?,
+            );
             let state = if key.is_valid(now) { "valid" } else { "ended" };
             let user = key.user_name.clone().unwrap_or_default();
             let line = [key.prefix.clone(), key.title.clone(), user, roles.join(" "), state.into()];
-            table.row(line);
+            table.add_row(line);
             all.push(json!({
                 "prefix": key.prefix, "title": key.title, "user": key.user_name, "roles": roles,
                 "valid": key.is_valid(now), "expires_us": key.expires_us,
@@ -119,7 +125,7 @@ async fn list(archive: &Archive) -> Result<(Value, String), StoreError> {
             }));
         }
         let Some(next) = keys.next else { break };
-        page = Page::after(next, MAX_LIMIT);
+        page = PageRequest::after_key(next, MAX_LIMIT);
     }
     Ok((json!({ "keys": all }), table.to_string()))
 }

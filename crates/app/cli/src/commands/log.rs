@@ -27,7 +27,7 @@ impl LogArguments {
     ///
     /// # Errors
     /// Returns an error if the filter cannot be parsed.
-    pub fn begin(&self, file: &ConfigFile) -> Result<(), Failure> {
+    pub fn start_log(&self, file: &ConfigFile) -> Result<(), Failure> {
         // The flag and its environment variable have precedence over the file.
         let filter = self.log.as_deref().or(file.log.as_deref()).unwrap_or("info");
         let filter: Targets = filter

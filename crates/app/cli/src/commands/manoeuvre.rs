@@ -4,19 +4,19 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sistership_assessment::uncertainty::{Bands, Sampling, bands};
-use sistership_model::environment::Environment;
+use sistership_assessment::uncertainty::{Sampling, UncertaintyBands, uncertainty_bands};
+use sistership_model::environment::PredictionEnvironment;
 use sistership_model::{Law, Model, Zoo};
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, further};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_further_manoeuvres};
 
 use super::manoeuvre_document::ManoeuvreDocument;
 use super::manoeuvre_further::FurtherArguments;
-use super::sailed::sail;
-use super::{manoeuvre_text, ready, set_depth};
+use super::sailed::simulate_requested;
+use super::{build_ship, manoeuvre_text, set_depth};
 use crate::failure::Failure;
-use crate::files::PromisedFile;
-use crate::values::{Integration, positive, rudder_deg, zigzag_deg};
+use crate::files::OutputFile;
+use crate::values::{IntegrationMethod, positive, rudder_deg, zigzag_deg};
 use crate::{named, output, track};
 
 const EXAMPLES: &str = "\
@@ -67,7 +67,7 @@ pub struct ManoeuvreArguments {
     step_s: Option<f64>,
     /// Integration method.
     #[arg(long, value_enum, default_value_t)]
-    method: Integration,
+    method: IntegrationMethod,
     /// Number of draws from the posterior of a refined model, for uncertainty bands of the standard
     /// manoeuvres.
     #[arg(long, value_name = "SAMPLES", conflicts_with_all = ["turn", "zigzag", "stop", "pull_out", "spiral"])]
@@ -89,20 +89,22 @@ pub struct ManoeuvreArguments {
 /// Returns an error if the model is refused, or if a manoeuvre leaves the physical range.
 pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     check_single(manoeuvre)?;
-    let (mut model, law) = named::model(zoo, &manoeuvre.model)?;
+    let (mut model, law) = named::resolve_model(zoo, &manoeuvre.model)?;
     let inputs = [PathBuf::from(&manoeuvre.model)];
-    let file = manoeuvre.out.as_ref().map(|path| PromisedFile::new(path, &inputs)).transpose()?;
-    let mut remarks = remarks(manoeuvre, &mut model, &law);
-    let environment = Environment { depth_m: manoeuvre.depth_m, ..Environment::default() };
-    remarks.extend(environment.uncovered(&model).into_iter().map(|one| one.message));
-    let ship = ship(manoeuvre, &model, &law)?;
-    let settings = settings(manoeuvre);
+    let file = manoeuvre.out.as_ref().map(|path| OutputFile::new(path, &inputs)).transpose()?;
+    let mut remarks = adapt_to_speed(manoeuvre, &mut model, &law);
+    let environment =
+        PredictionEnvironment { depth_m: manoeuvre.depth_m, ..PredictionEnvironment::default() };
+    remarks.extend(environment.uncovered_inputs(&model).into_iter().map(|one| one.message));
+    let ship = prepare_ship(manoeuvre, &model, &law)?;
+    let settings = manoeuvre_settings(manoeuvre);
     // Without any manoeuvre in the call the standard set is simulated.
     let usual = manoeuvre.turn.is_empty() && manoeuvre.zigzag.is_empty();
-    let usual = usual && !manoeuvre.further.any();
-    let (sailed, tracks) = sail(&ship, &manoeuvre.turn, &manoeuvre.zigzag, usual, &settings);
-    let asked = manoeuvre.further.asked(usual);
-    let mut further = further(&model, &law, &ship, &settings, &asked);
+    let usual = usual && !manoeuvre.further.is_requested();
+    let (sailed, tracks) =
+        simulate_requested(&ship, &manoeuvre.turn, &manoeuvre.zigzag, usual, &settings);
+    let asked = manoeuvre.further.requested_manoeuvres(usual);
+    let mut further = simulate_further_manoeuvres(&model, &law, &ship, &settings, &asked);
     // In the standard set a law without a reversed propeller is a remark; on request it is a
     // failure.
     if !usual && let Some(reason) = further.no_stopping.take() {
@@ -110,19 +112,19 @@ pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     }
     let tracks = tracks.iter().chain(further.tracks.iter().map(|(_, track)| track));
     if let (Some(file), Some(track)) = (file, tracks.into_iter().next()) {
-        file.write(&track::csv(track, &law, ship.has_propeller())?)?;
+        file.write(&track::track_csv(track, &law, ship.has_propeller())?)?;
     }
-    let bands = drawn(manoeuvre, &model, &law)?;
-    let document = ManoeuvreDocument::of(&model, &ship, sailed, further, bands, remarks);
-    output::print(manoeuvre.json, &document, || {
-        manoeuvre_text::text(&document, &model, &law, &ship)
+    let bands = draw_bands(manoeuvre, &model, &law)?;
+    let document = ManoeuvreDocument::from_results(&model, &ship, sailed, further, bands, remarks);
+    output::print_result(manoeuvre.json, &document, || {
+        manoeuvre_text::format_manoeuvres(&document, &model, &law, &ship)
     })?;
     if document.failures.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
 
 /// Checks that a track is written for a single manoeuvre only.
 fn check_single(manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
-    let tracks = manoeuvre.turn.len() + manoeuvre.zigzag.len() + manoeuvre.further.tracks();
+    let tracks = manoeuvre.turn.len() + manoeuvre.zigzag.len() + manoeuvre.further.track_count();
     if manoeuvre.out.is_some() && tracks != 1 {
         return Err(Failure::Call(
             "--out writes the track of a single manoeuvre: give one --turn, --zigzag, --stop or \
@@ -135,7 +137,7 @@ fn check_single(manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
 
 /// Moves a law that is expanded about an approach speed to the requested speed; returns remarks on
 /// this and on the rudder limit.
-fn remarks(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) -> Vec<String> {
+fn adapt_to_speed(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) -> Vec<String> {
     let mut remarks = Vec::new();
     if let (Some(speed), Some(own), Some(_)) =
         (manoeuvre.speed_m_s, model.speed_m_s, law.approach_speed_parameter())
@@ -164,8 +166,8 @@ fn remarks(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) -> Vec<
     remarks
 }
 
-fn ship(manoeuvre: &ManoeuvreArguments, model: &Model, law: &Law) -> Result<Ship, Failure> {
-    let mut ship = ready(model, law)?;
+fn prepare_ship(manoeuvre: &ManoeuvreArguments, model: &Model, law: &Law) -> Result<Ship, Failure> {
+    let mut ship = build_ship(model, law)?;
     let speed = manoeuvre.speed_m_s.unwrap_or(ship.approach_speed_m_s());
     ship.set_envelope_speed(speed);
     if ship.has_propeller() && manoeuvre.n_rps.is_none() && ship.revolutions_at(speed) == 0.0 {
@@ -181,7 +183,7 @@ fn ship(manoeuvre: &ManoeuvreArguments, model: &Model, law: &Law) -> Result<Ship
     Ok(ship)
 }
 
-fn settings(manoeuvre: &ManoeuvreArguments) -> ManoeuvreSettings {
+fn manoeuvre_settings(manoeuvre: &ManoeuvreArguments) -> ManoeuvreSettings {
     ManoeuvreSettings {
         speed_m_s: manoeuvre.speed_m_s,
         n_rps: manoeuvre.n_rps,
@@ -193,11 +195,11 @@ fn settings(manoeuvre: &ManoeuvreArguments) -> ManoeuvreSettings {
 }
 
 /// Draws the requested bands.
-fn drawn(
+fn draw_bands(
     manoeuvre: &ManoeuvreArguments,
     model: &Model,
     law: &Law,
-) -> Result<Option<Bands>, Failure> {
+) -> Result<Option<UncertaintyBands>, Failure> {
     let Some(samples) = manoeuvre.bands else { return Ok(None) };
     let sampling =
         Sampling { samples, seed: manoeuvre.seed, within_steps: true, figures_only: true };
@@ -206,5 +208,7 @@ fn drawn(
         let why = "only a refined model whose coefficients are those that were estimated has one";
         Failure::Refused(format!("--bands: {} has no posterior to draw from; {why}", model.name))
     };
-    bands(model, law, &settings(manoeuvre), manoeuvre.depth_m, sampling).ok_or_else(none).map(Some)
+    uncertainty_bands(model, law, &manoeuvre_settings(manoeuvre), manoeuvre.depth_m, sampling)
+        .ok_or_else(none)
+        .map(Some)
 }

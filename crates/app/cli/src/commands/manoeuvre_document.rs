@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use sistership_assessment::uncertainty::Bands;
+use sistership_assessment::uncertainty::UncertaintyBands;
 use sistership_model::Model;
 use sistership_model::validity::Excursion;
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{FurtherManoeuvres, StandardManoeuvres};
-use sistership_simulation::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+use sistership_simulation::metrics::{ImoCriterion, TurningMetrics, ZigzagMetrics};
 
 /// Output document.
 #[derive(Debug, Serialize)]
@@ -31,7 +31,7 @@ pub struct ManoeuvreDocument {
     #[serde(flatten)]
     pub further: FurtherManoeuvres,
     /// The IMO criteria.
-    pub imo: Vec<Criterion>,
+    pub imo: Vec<ImoCriterion>,
     /// Manoeuvres that left the physical range.
     pub failures: Vec<String>,
     /// Manoeuvres that left the range covered by the model's trials.
@@ -42,29 +42,29 @@ pub struct ManoeuvreDocument {
     pub branch_share: BTreeMap<String, f64>,
     /// Confidence bands, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub bands: Option<Bands>,
+    pub bands: Option<UncertaintyBands>,
     /// Remarks that are needed to read the figures.
     pub remarks: Vec<String>,
 }
 
 impl ManoeuvreDocument {
     /// Combines the results of all manoeuvres.
-    pub fn of(
+    pub fn from_results(
         model: &Model,
         ship: &Ship,
         sailed: StandardManoeuvres,
         mut further: FurtherManoeuvres,
-        bands: Option<Bands>,
+        bands: Option<UncertaintyBands>,
         mut remarks: Vec<String>,
     ) -> Self {
         let mut failures = sailed.failures;
         // Failures of all manoeuvres are in one list.
         failures.append(&mut further.failures);
-        remarks.extend(further.remarks(ship.lpp_m()));
-        let stopping = further.criterion(ship.lpp_m());
+        remarks.extend(further.reader_remarks(ship.lpp_m()));
+        let stopping = further.stopping_criterion(ship.lpp_m());
         let mut outside = sailed.outside;
         for (name, track) in &further.tracks {
-            outside.extend(ship.leaves(track).map(|excursion| (name.clone(), excursion)));
+            outside.extend(ship.find_excursion(track).map(|excursion| (name.clone(), excursion)));
         }
         Self {
             model: model.name.clone(),

@@ -1,10 +1,12 @@
 //! Arguments and tables of stopping, pull-outs and spirals.
 
 use clap::Args;
-use sistership_simulation::manoeuvre::{AskedSpiral, AsternOrder, FurtherAsked, FurtherManoeuvres};
+use sistership_simulation::manoeuvre::{
+    AsternOrder, FurtherManoeuvres, FurtherSelection, SpiralSelection,
+};
 use sistership_simulation::metrics::{PullOutMetrics, SpiralMetrics, SpiralPoint, StoppingMetrics};
 
-use crate::table::{TextTable, number, optional};
+use crate::table::{TextTable, format_number, format_optional};
 use crate::values::{not_negative, positive, rudder_deg};
 
 /// Manoeuvres in addition to turns and zigzags.
@@ -29,13 +31,13 @@ pub struct FurtherArguments {
 
 impl FurtherArguments {
     /// Number of tracks that the manoeuvres give.
-    pub fn tracks(&self) -> usize {
+    pub fn track_count(&self) -> usize {
         usize::from(self.stop) + self.pull_out.len()
     }
 
     /// True if one of them is requested.
-    pub fn any(&self) -> bool {
-        self.tracks() > 0 || self.spiral
+    pub fn is_requested(&self) -> bool {
+        self.track_count() > 0 || self.spiral
     }
 
     /// Largest rudder angle that is ordered, deg.
@@ -44,25 +46,25 @@ impl FurtherArguments {
     }
 
     /// Returns the manoeuvres to simulate; with `usual` those of the standard set.
-    pub fn asked(&self, usual: bool) -> FurtherAsked {
+    pub fn requested_manoeuvres(&self, usual: bool) -> FurtherSelection {
         // The settings of a stop also apply to the stop of the standard set.
         let order = AsternOrder { astern_rps: self.astern_rps, reversal_s: self.reversal_s };
         if usual {
-            return FurtherAsked { stop: Some(order), ..FurtherAsked::usual() };
+            return FurtherSelection { stop: Some(order), ..FurtherSelection::default_selection() };
         }
-        FurtherAsked {
+        FurtherSelection {
             stop: self.stop.then_some(order),
             pull_outs_deg: self.pull_out.clone(),
-            spiral: if self.spiral { AskedSpiral::Always } else { AskedSpiral::Never },
+            spiral: if self.spiral { SpiralSelection::Always } else { SpiralSelection::Never },
         }
     }
 }
 
 /// Formats the results as tables with titles.
-pub fn tables(further: &FurtherManoeuvres, lpp_m: f64) -> Vec<(String, TextTable)> {
+pub fn further_tables(further: &FurtherManoeuvres, lpp_m: f64) -> Vec<(String, TextTable)> {
     let mut tables = Vec::new();
     if let Some(stop) = &further.stopping {
-        tables.push(("Full astern stop".to_owned(), stopping(stop, lpp_m)));
+        tables.push(("Full astern stop".to_owned(), stopping_table(stop, lpp_m)));
     }
     // The residual rates after pull-outs to both sides tell whether the ship is straight-line
     // stable.
@@ -72,15 +74,15 @@ pub fn tables(further: &FurtherManoeuvres, lpp_m: f64) -> Vec<(String, TextTable
             Some(false) => ": NOT stable on a straight course",
             None => "",
         };
-        tables.push((format!("Pull-outs{verdict}"), pull_outs(&further.pull_outs)));
+        tables.push((format!("Pull-outs{verdict}"), pull_out_table(&further.pull_outs)));
     }
     if let Some(spiral) = &further.spiral {
-        tables.push((title(spiral), points(spiral)));
+        tables.push((spiral_title(spiral), spiral_table(spiral)));
     }
     tables
 }
 
-fn stopping(stop: &StoppingMetrics, lpp_m: f64) -> TextTable {
+fn stopping_table(stop: &StoppingMetrics, lpp_m: f64) -> TextTable {
     let mut table = TextTable::new([
         "astern 1/s",
         "track reach m",
@@ -91,34 +93,34 @@ fn stopping(stop: &StoppingMetrics, lpp_m: f64) -> TextTable {
         "heading deg",
         "time s",
     ]);
-    let lengths = |metres: Option<f64>| optional(metres.map(|metres| metres / lpp_m));
-    table.row([
-        number(stop.astern_rps),
-        optional(stop.track_reach_m),
+    let lengths = |metres: Option<f64>| format_optional(metres.map(|metres| metres / lpp_m));
+    table.add_row([
+        format_number(stop.astern_rps),
+        format_optional(stop.track_reach_m),
         lengths(stop.track_reach_m),
-        optional(stop.head_reach_m),
+        format_optional(stop.head_reach_m),
         lengths(stop.head_reach_m),
-        optional(stop.lateral_deviation_m),
-        optional(stop.heading_change_deg),
-        optional(stop.time_s),
+        format_optional(stop.lateral_deviation_m),
+        format_optional(stop.heading_change_deg),
+        format_optional(stop.time_s),
     ]);
     table
 }
 
-fn pull_outs(all: &[PullOutMetrics]) -> TextTable {
+fn pull_out_table(all: &[PullOutMetrics]) -> TextTable {
     let mut table = TextTable::new(["rudder deg", "turning deg/s", "left deg/s", "left by U/L"]);
     for one in all {
-        table.row([
-            number(one.rudder_deg),
-            number(one.turning_rate_deg_s),
-            optional(one.residual_rate_deg_s),
-            optional(one.residual_rate_by_length),
+        table.add_row([
+            format_number(one.rudder_deg),
+            format_number(one.turning_rate_deg_s),
+            format_optional(one.residual_rate_deg_s),
+            format_optional(one.residual_rate_by_length),
         ]);
     }
     table
 }
 
-fn title(spiral: &SpiralMetrics) -> String {
+fn spiral_title(spiral: &SpiralMetrics) -> String {
     format!(
         "Spirals: loop {:.1} deg wide by the reverse one, {:.1} deg by the direct one, {:.2} deg/s \
          high; not above {:.1} deg by guidance",
@@ -129,7 +131,7 @@ fn title(spiral: &SpiralMetrics) -> String {
     )
 }
 
-fn points(spiral: &SpiralMetrics) -> TextTable {
+fn spiral_table(spiral: &SpiralMetrics) -> TextTable {
     let mut table = TextTable::new([
         "direct: rudder deg",
         "rate deg/s",
@@ -138,7 +140,8 @@ fn points(spiral: &SpiralMetrics) -> TextTable {
         "not steady",
     ]);
     let cells = |point: Option<&SpiralPoint>| {
-        [point.map(|point| point.rudder_deg), point.map(|point| point.rate_deg_s)].map(optional)
+        [point.map(|point| point.rudder_deg), point.map(|point| point.rate_deg_s)]
+            .map(format_optional)
     };
     // The two spirals have different numbers of points: the shorter column ends in empty cells.
     for k in 0..spiral.direct.len().max(spiral.reverse.len()) {
@@ -147,7 +150,7 @@ fn points(spiral: &SpiralMetrics) -> TextTable {
             .into_iter()
             .filter(|(point, _)| point.is_some_and(|point| !point.steady));
         let moving: Vec<&str> = moving.map(|(_, name)| name).collect();
-        table.row(cells(direct).into_iter().chain(cells(reverse)).chain([moving.join(", ")]));
+        table.add_row(cells(direct).into_iter().chain(cells(reverse)).chain([moving.join(", ")]));
     }
     table
 }

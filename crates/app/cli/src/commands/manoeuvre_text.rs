@@ -1,44 +1,50 @@
 //! Text output of the manoeuvres of a model.
 
-use sistership_assessment::uncertainty::Bands;
+use sistership_assessment::uncertainty::UncertaintyBands;
 use sistership_model::{Law, Model};
 use sistership_simulation::Ship;
-use sistership_simulation::metrics::{Criterion, TurningMetrics, ZigzagMetrics};
+use sistership_simulation::metrics::{ImoCriterion, TurningMetrics, ZigzagMetrics};
 
 use super::manoeuvre_document::ManoeuvreDocument;
-use super::manoeuvre_further::tables;
+use super::manoeuvre_further::further_tables;
 use super::model_line;
-use crate::table::{TextTable, number, optional};
+use crate::table::{TextTable, format_number, format_optional};
 
 /// Formats all results as text.
-pub fn text(document: &ManoeuvreDocument, model: &Model, law: &Law, ship: &Ship) -> String {
+pub fn format_manoeuvres(
+    document: &ManoeuvreDocument,
+    model: &Model,
+    law: &Law,
+    ship: &Ship,
+) -> String {
     let head = format!(
         "{}\nlength {} m, approach at {} m/s\n",
         model_line(model, law),
-        number(ship.lpp_m()),
-        number(document.speed_m_s)
+        format_number(ship.lpp_m()),
+        format_number(document.speed_m_s)
     );
-    let further = tables(&document.further, ship.lpp_m());
+    let further = further_tables(&document.further, ship.lpp_m());
     let further =
-        further.into_iter().map(|(title, table)| section(&title, false, || table)).collect();
+        further.into_iter().map(|(title, table)| format_section(&title, false, || table)).collect();
     // A section without rows is omitted with its title.
     let parts: [String; 5] = [
-        section("Turning circles", document.turns.is_empty(), || {
-            turns(&document.turns, ship.lpp_m())
+        format_section("Turning circles", document.turns.is_empty(), || {
+            turn_table(&document.turns, ship.lpp_m())
         }),
-        section("Zigzags", document.zigzags.is_empty(), || zigzags(&document.zigzags)),
+        format_section("Zigzags", document.zigzags.is_empty(), || zigzag_table(&document.zigzags)),
         further,
-        section("IMO criteria, MSC.137(76)", document.imo.is_empty(), || criteria(&document.imo)),
-        document
-            .bands
-            .as_ref()
-            .map_or(String::new(), |bands| section(&title(bands), false, || banded(bands))),
+        format_section("IMO criteria, MSC.137(76)", document.imo.is_empty(), || {
+            criteria_table(&document.imo)
+        }),
+        document.bands.as_ref().map_or(String::new(), |bands| {
+            format_section(&band_title(bands), false, || band_table(bands))
+        }),
     ];
     let lines = |label: &str, lines: &[String]| {
         lines.iter().map(|line| format!("{label}: {line}\n")).collect::<String>()
     };
     let outside: Vec<String> =
-        document.outside.iter().map(|(name, how)| format!("{name}: {}", how.words())).collect();
+        document.outside.iter().map(|(name, how)| format!("{name}: {}", how.describe())).collect();
     // Failures come last, next to the exit status.
     let end = lines("OUTSIDE", &outside)
         + &lines("remark", &document.remarks)
@@ -47,11 +53,11 @@ pub fn text(document: &ManoeuvreDocument, model: &Model, law: &Law, ship: &Ship)
     format!("{head}{}{gap}{end}", parts.concat())
 }
 
-fn section(title: &str, is_empty: bool, table: impl FnOnce() -> TextTable) -> String {
+fn format_section(title: &str, is_empty: bool, table: impl FnOnce() -> TextTable) -> String {
     if is_empty { String::new() } else { format!("\n{title}\n{}", table()) }
 }
 
-fn turns(turns: &[TurningMetrics], lpp_m: f64) -> TextTable {
+fn turn_table(turns: &[TurningMetrics], lpp_m: f64) -> TextTable {
     let mut table = TextTable::new([
         "rudder deg",
         "advance m",
@@ -66,22 +72,24 @@ fn turns(turns: &[TurningMetrics], lpp_m: f64) -> TextTable {
         "speed loss m/s",
     ]);
     for turn in turns {
-        let mut cells = vec![number(turn.rudder_deg)];
+        let mut cells = vec![format_number(turn.rudder_deg)];
         // Lengths in metres and in ship lengths, as in the IMO criteria.
         for length in [turn.advance_m, turn.transfer_m, turn.tactical_diameter_m] {
             cells.extend([
-                optional(length),
+                format_optional(length),
                 length.map_or_else(|| "-".to_owned(), |m| format!("{:.2}", m / lpp_m)),
             ]);
         }
-        cells.push(optional(turn.steady_radius_m));
-        cells.extend([turn.max_advance_m, turn.max_transfer_m, turn.speed_loss_m_s].map(number));
-        table.row(cells);
+        cells.push(format_optional(turn.steady_radius_m));
+        cells.extend(
+            [turn.max_advance_m, turn.max_transfer_m, turn.speed_loss_m_s].map(format_number),
+        );
+        table.add_row(cells);
     }
     table
 }
 
-fn zigzags(zigzags: &[ZigzagMetrics]) -> TextTable {
+fn zigzag_table(zigzags: &[ZigzagMetrics]) -> TextTable {
     let mut table = TextTable::new([
         "rudder deg",
         "heading deg",
@@ -97,16 +105,16 @@ fn zigzags(zigzags: &[ZigzagMetrics]) -> TextTable {
             zigzag.initial_turning_time_s,
             zigzag.period_s,
         ];
-        table.row(
-            [number(zigzag.rudder_deg), number(zigzag.switch_deg)]
+        table.add_row(
+            [format_number(zigzag.rudder_deg), format_number(zigzag.switch_deg)]
                 .into_iter()
-                .chain(known.map(optional)),
+                .chain(known.map(format_optional)),
         );
     }
     table
 }
 
-fn title(bands: &Bands) -> String {
+fn band_title(bands: &UncertaintyBands) -> String {
     let failed = if bands.failed > 0 {
         format!(", {} of which left the physical range", bands.failed)
     } else {
@@ -115,17 +123,17 @@ fn title(bands: &Bands) -> String {
     format!("Bands of 95 % by {} draws from the posterior{failed}", bands.sampling.samples)
 }
 
-fn banded(bands: &Bands) -> TextTable {
+fn band_table(bands: &UncertaintyBands) -> TextTable {
     let mut table = TextTable::new(["figure", "unit", "from", "to", "reached", "met"]);
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     for band in &bands.figures {
         // Share of the draws that meet the criterion.
         let met = band.pass.map_or_else(|| "-".to_owned(), percent);
-        table.row([
+        table.add_row([
             band.figure.clone(),
             band.unit.clone(),
-            number(band.low),
-            number(band.high),
+            format_number(band.low),
+            format_number(band.high),
             percent(band.reached),
             met,
         ]);
@@ -133,14 +141,14 @@ fn banded(bands: &Bands) -> TextTable {
     table
 }
 
-fn criteria(criteria: &[Criterion]) -> TextTable {
+fn criteria_table(criteria: &[ImoCriterion]) -> TextTable {
     let mut table = TextTable::new(["criterion", "value", "limit", "unit", "verdict"]);
     for criterion in criteria {
         let verdict =
             criterion.pass.map_or("not reached", |pass| if pass { "pass" } else { "FAIL" });
         let value = criterion.value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"));
         let limit = format!("{:.2}", criterion.limit);
-        table.row([
+        table.add_row([
             criterion.criterion.clone(),
             value,
             limit,

@@ -64,7 +64,7 @@ use crate::failure::Failure;
 ///
 /// # Errors
 /// Returns an error that names what the model lacks.
-fn ready(model: &Model, law: &Law) -> Result<Ship, Failure> {
+fn build_ship(model: &Model, law: &Law) -> Result<Ship, Failure> {
     Ship::new(model, law).map_err(|error| Failure::Refused(error.to_string()))
 }
 
@@ -73,7 +73,7 @@ fn ready(model: &Model, law: &Law) -> Result<Ship, Failure> {
 /// # Errors
 /// Returns an error if the law has no water depth, or if the water is too shallow for the ship.
 fn set_depth(ship: &mut Ship, model: &Model, law: &Law, depth_m: f64) -> Result<(), Failure> {
-    if !knows_depth(law) {
+    if !has_depth_input(law) {
         return Err(Failure::Refused(format!(
             "law `{}` does not know water depth: it sails in deep water only",
             law.name
@@ -90,7 +90,7 @@ fn set_depth(ship: &mut Ship, model: &Model, law: &Law, depth_m: f64) -> Result<
 /// Returns an error if the water is too shallow.
 fn check_floats(model: &Model, depth_m: f64) -> Result<(), Failure> {
     // Without a known draught every depth is accepted.
-    let draught_m = particulars::value(&model.particulars, "draught_m").unwrap_or(0.0);
+    let draught_m = particulars::particular_value(&model.particulars, "draught_m").unwrap_or(0.0);
     if depth_m <= draught_m {
         return Err(Failure::Refused(format!(
             "{depth_m} m of water do not float {}, which draws {draught_m} m",
@@ -101,18 +101,18 @@ fn check_floats(model: &Model, depth_m: f64) -> Result<(), Failure> {
 }
 
 /// True if a law covers shallow water.
-fn knows_depth(law: &Law) -> bool {
+fn has_depth_input(law: &Law) -> bool {
     law.inputs.contains_key("depth")
 }
 
 /// Describes a model with the status of its figures.
 fn model_line(model: &Model, law: &Law) -> String {
     let note = model.note.as_ref().map_or(String::new(), |note| format!("\nnote: {note}"));
-    format!("{}, law {}: {}{note}", model.name, law.name, worth(model.status))
+    format!("{}, law {}: {}{note}", model.name, law.name, describe_status(model.status))
 }
 
 /// Describes the status of a model's figures.
-fn worth(status: Status) -> &'static str {
+fn describe_status(status: Status) -> &'static str {
     match status {
         Status::Published => "as published",
         // Capitals warn: these figures are no measurements of the ship.

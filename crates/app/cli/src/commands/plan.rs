@@ -6,11 +6,13 @@ use std::sync::Arc;
 
 use clap::Args;
 use sistership_model::{Effect, Law, Model, Zoo, particulars};
-use sistership_trial_design::{Instruments, Plan, PlanError, PlanRequest, plan};
+use sistership_trial_design::{
+    InstrumentAccuracy, PlanError, PlanRequest, TrialPlan, design_trials,
+};
 
-use super::estimate::{estimate_of, with_speed};
+use super::estimate::{estimate_model, with_speed};
 use super::plan_text;
-use crate::failure::{Failure, both};
+use crate::failure::{Failure, combine_results};
 use crate::trials::{self, ReadTrial};
 use crate::values::positive;
 use crate::{named, output};
@@ -54,43 +56,44 @@ pub struct PlanArguments {
 /// Returns an error if the ship, a trial or an effect is refused, or if no trial fits into the
 /// time.
 pub fn run(zoo: &Zoo, asked: &PlanArguments) -> Result<(), Failure> {
-    let ((model, law), read) = both(model(zoo, &asked.ship), trials::read(&asked.trials))?;
+    let ((model, law), read) =
+        combine_results(model_or_estimate(zoo, &asked.ship), trials::read_trials(&asked.trials))?;
     trials::remark_other_ship(&read, &model.ship);
-    let plan = planned(zoo, asked, (&model, &law), &read)?;
-    output::print(asked.json, &plan, || plan_text::text(&plan))
+    let plan = design_trials(zoo, asked, (&model, &law), &read)?;
+    output::print_result(asked.json, &plan, || plan_text::format_plan(&plan))
 }
 
 /// Returns the model with this name; for a ship without a model, an estimate.
-fn model(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
-    match named::ship(zoo, name) {
+fn model_or_estimate(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
+    match named::resolve_ship(zoo, name) {
         Ok(vessel) if vessel.file.models.is_empty() => {
             let vessel = with_speed(&vessel, None);
-            let (estimate, law) = estimate_of(zoo, &vessel, None)?;
+            let (estimate, law) = estimate_model(zoo, &vessel, None)?;
             Ok((estimate.model, law))
         }
-        _ => named::model(zoo, name),
+        _ => named::resolve_model(zoo, name),
     }
 }
 
-fn planned(
+fn design_trials(
     zoo: &Zoo,
     asked: &PlanArguments,
     (model, law): (&Model, &Law),
     read: &[ReadTrial],
-) -> Result<Plan, Failure> {
+) -> Result<TrialPlan, Failure> {
     let library: Vec<Arc<Effect>> = zoo.effects().cloned().collect();
-    let lpp_m = particulars::value(&model.particulars, "lpp_m");
+    let lpp_m = particulars::particular_value(&model.particulars, "lpp_m");
     let request = PlanRequest {
         model,
         law,
         library: &library,
         budget_s: 60.0 * asked.budget_min,
         apart: &asked.apart,
-        sailed: &trials::trials(read),
+        sailed: &trials::trial_refs(read),
         // Without a length the instruments of a large ship are assumed.
-        instruments: Instruments::of(lpp_m.unwrap_or(f64::INFINITY)),
+        instruments: InstrumentAccuracy::for_length(lpp_m.unwrap_or(f64::INFINITY)),
     };
-    plan(&request).map_err(|error| match error {
+    design_trials(&request).map_err(|error| match error {
         PlanError::Budget => Failure::Call(format!("--budget-min: {error}")),
         PlanError::Effect { .. } => Failure::Call(format!("--apart: {error}")),
         error => Failure::Refused(error.to_string()),

@@ -1,20 +1,20 @@
 //! Text output of a trial design.
 
-use sistership_trial_design::{ExpectedBand, Plan, PlannedTrial};
+use sistership_trial_design::{ExpectedBand, PlannedTrial, TrialPlan};
 
-use crate::table::{TextTable, number};
+use crate::table::{TextTable, format_number};
 
 /// Formats the trial design as text.
-pub fn text(plan: &Plan) -> String {
-    let mut parts = vec![format!("{}\n{}\n", plan.model, summary(plan))];
-    parts.push(format!("Most informative first\n{}", trials(&plan.trials)));
-    parts.push(format!("Bands of 95 %, plus or minus\n{}", bands(&plan.bands)));
+pub fn format_plan(plan: &TrialPlan) -> String {
+    let mut parts = vec![format!("{}\n{}\n", plan.model, format_summary(plan))];
+    parts.push(format!("Most informative first\n{}", trial_table(&plan.trials)));
+    parts.push(format!("Bands of 95 %, plus or minus\n{}", band_table(&plan.bands)));
     parts.extend(plan.remarks.iter().map(|remark| format!("remark: {remark}")));
     parts.join("\n")
 }
 
 /// Summary for the decision, compared with the standard manoeuvres of IMO.
-fn summary(plan: &Plan) -> String {
+fn format_summary(plan: &TrialPlan) -> String {
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     let standard: Vec<&str> =
         plan.standard.trials.iter().map(|trial| trial.manoeuvre.as_str()).collect();
@@ -31,7 +31,7 @@ fn summary(plan: &Plan) -> String {
     )
 }
 
-fn trials(trials: &[PlannedTrial]) -> TextTable {
+fn trial_table(trials: &[PlannedTrial]) -> TextTable {
     let mut table = TextTable::new([
         "trial",
         "speed m/s",
@@ -42,20 +42,20 @@ fn trials(trials: &[PlannedTrial]) -> TextTable {
     ]);
     for trial in trials {
         // Without a heading, any one serves.
-        let heading = trial.heading_deg.map_or("any".to_owned(), number);
+        let heading = trial.heading_deg.map_or("any".to_owned(), format_number);
         let times = [trial.manoeuvre_min, trial.takes_min].map(|min| format!("{min:.1}"));
         let narrower = format!("{:.0} %", 100.0 * trial.narrower);
-        let first = [trial.manoeuvre.clone(), number(trial.speed_m_s), heading];
-        table.row(first.into_iter().chain(times).chain([narrower]));
+        let first = [trial.manoeuvre.clone(), format_number(trial.speed_m_s), heading];
+        table.add_row(first.into_iter().chain(times).chain([narrower]));
     }
     table
 }
 
-fn bands(bands: &[ExpectedBand]) -> TextTable {
+fn band_table(bands: &[ExpectedBand]) -> TextTable {
     let mut table = TextTable::new(["figure", "unit", "value", "now", "after", "after IMO's"]);
     for band in bands {
-        let widths = [band.value, band.now, band.after, band.after_standard].map(number);
-        table.row([band.figure.clone(), band.unit.clone()].into_iter().chain(widths));
+        let widths = [band.value, band.now, band.after, band.after_standard].map(format_number);
+        table.add_row([band.figure.clone(), band.unit.clone()].into_iter().chain(widths));
     }
     table
 }

@@ -5,15 +5,15 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 use sistership_api::Limits;
-use sistership_jobs::line::{CHAMPION, alias};
+use sistership_jobs::line::{CHAMPION, find_alias};
 use sistership_jobs::predictions::{PredictionRequest, predict};
 use sistership_model::{Law, Model, Zoo};
 
-use super::predict_orders::{self, Orders};
+use super::predict_orders::{self, OrderRow};
 use super::predict_text;
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
-use crate::files::PromisedFile;
+use crate::files::OutputFile;
 use crate::values::{not_negative, number, positive};
 use crate::{named, output};
 
@@ -101,38 +101,38 @@ pub struct PredictArguments {
 /// Returns an error if the model or an order is refused, or if the motion leaves the physical
 /// range.
 pub fn run(zoo: &Zoo, asked: &PredictArguments) -> Result<(), Failure> {
-    let orders = orders(asked)?;
-    let (model, law) = model(zoo, asked)?;
+    let orders = read_orders(asked)?;
+    let (model, law) = find_model(zoo, asked)?;
     let inputs: Vec<PathBuf> =
         asked.orders.iter().cloned().chain([PathBuf::from(&asked.model)]).collect();
-    let file = asked.out.as_ref().map(|path| PromisedFile::new(path, &inputs)).transpose()?;
+    let file = asked.out.as_ref().map(|path| OutputFile::new(path, &inputs)).transpose()?;
     let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
     let request: PredictionRequest =
-        serde_json::from_value(request(asked, &orders)).map_err(|error| refused(&error))?;
+        serde_json::from_value(horizon_request(asked, &orders)).map_err(|error| refused(&error))?;
     // The same limit as for a request to a server.
     let most = Limits::default().prediction_samples;
     let mut answer = predict(&request, &model, &law, most).map_err(|error| refused(&error))?;
     answer["model"] = json!(model.name);
     answer["law"] = json!(model.law);
     if let Some(file) = file {
-        file.write(predict_text::csv(&answer, &law).as_bytes())?;
+        file.write(predict_text::track_csv(&answer, &law).as_bytes())?;
     }
-    output::print(asked.json, &answer, || predict_text::text(&answer))?;
+    output::print_result(asked.json, &answer, || predict_text::format_prediction(&answer))?;
     if answer["stopped"].is_null() { Ok(()) } else { Err(Failure::Told) }
 }
 
-fn orders(asked: &PredictArguments) -> Result<Vec<Orders>, Failure> {
+fn read_orders(asked: &PredictArguments) -> Result<Vec<OrderRow>, Failure> {
     match &asked.orders {
-        Some(path) => predict_orders::read(path),
+        Some(path) => predict_orders::read_orders(path),
         None => {
             let delta_rad = asked.rudder_deg.map(f64::to_radians);
-            Ok(vec![Orders { t_s: 0.0, delta_rad, n_rps: asked.n_rps }])
+            Ok(vec![OrderRow { t_s: 0.0, delta_rad, n_rps: asked.n_rps }])
         }
     }
 }
 
 /// Builds the request as for a server.
-fn request(asked: &PredictArguments, orders: &[Orders]) -> Value {
+fn horizon_request(asked: &PredictArguments, orders: &[OrderRow]) -> Value {
     // Speed and direction come together or not at all, which the flags require.
     let steady = |speed: Option<f64>, key: &str, degrees: Option<f64>| {
         let (speed, degrees) = speed.zip(degrees)?;
@@ -153,34 +153,34 @@ fn request(asked: &PredictArguments, orders: &[Orders]) -> Value {
 }
 
 /// Returns a model of the zoo or of a file; else one of the store, if that exists.
-fn model(zoo: &Zoo, asked: &PredictArguments) -> Result<(Model, Law), Failure> {
-    match named::model(zoo, &asked.model) {
+fn find_model(zoo: &Zoo, asked: &PredictArguments) -> Result<(Model, Law), Failure> {
+    match named::resolve_model(zoo, &asked.model) {
         Ok((model, law)) => Ok((model, (*law).clone())),
-        Err(unknown) if !asked.store.is_there() => Err(unknown),
+        Err(unknown) if !asked.store.exists() => Err(unknown),
         // The fault of a file that exists is more useful than a search in the store.
         Err(unknown) if std::path::Path::new(&asked.model).is_file() => Err(unknown),
-        Err(_) => stored(asked),
+        Err(_) => stored_model(asked),
     }
 }
 
-fn stored(asked: &PredictArguments) -> Result<(Model, Law), Failure> {
+fn stored_model(asked: &PredictArguments) -> Result<(Model, Law), Failure> {
     let (ship, rest) = asked.model.split_once('/').unwrap_or((&asked.model, CHAMPION));
     with_archive(&asked.store, async |archive| {
         let number = match rest.parse() {
             Ok(number) => number,
-            Err(_) => match alias(&archive.store, ship, rest).await.map_err(told)? {
+            Err(_) => match find_alias(&archive.store, ship, rest).await.map_err(error_text)? {
                 Some(alias) => alias.version_number,
                 None => return Err(format!("the store has no model `{}`", asked.model)),
             },
         };
-        let version = archive.store.versions().get(ship, number).await.map_err(told)?;
-        let model = archive.model(&version).await.map_err(told)?;
-        let law = archive.store.laws().get(&model.law).await.map_err(told)?;
-        let law = Law::parse(&law.name, &law.document).map_err(told)?;
+        let version = archive.store.versions().get(ship, number).await.map_err(error_text)?;
+        let model = archive.model_with_weights(&version).await.map_err(error_text)?;
+        let law = archive.store.laws().get(&model.law).await.map_err(error_text)?;
+        let law = Law::parse(&law.name, &law.document).map_err(error_text)?;
         Ok((model, law))
     })
 }
 
-fn told(error: impl std::fmt::Display) -> String {
+fn error_text(error: impl std::fmt::Display) -> String {
     error.to_string()
 }

@@ -6,25 +6,26 @@ use std::sync::Arc;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use sistership_identification::refine::{
-    Constraints, Method, Prior, Refinement, Request, Settings, StraightLine, refine,
+    Constraints, EstimationMethod, Prior, Refinement, RefinementSettings, RefinementSpec,
+    StraightLine, refine,
 };
 use sistership_jobs::derive::with_uncertainty;
 use sistership_model::estimated_particulars::{EstimatedParticular, estimated_particulars};
 use sistership_model::{Law, Model, Vessel, Zoo};
-use sistership_model_selection::{Ladder, population};
+use sistership_model_selection::{SelectionReport, similar_population};
 use sistership_priors::similarity::RankedSource;
-use sistership_priors::source::{Similarity, best_source, similar};
-use sistership_priors::transfer::{approach_of, blank};
+use sistership_priors::source::{SimilarityRanking, best_source, rank_similar};
+use sistership_priors::transfer::{blank_model, trial_approach};
 use sistership_report::{RefinementInput, render_refinement};
 
-use super::refine_branch::TrainedBeside;
-use super::refine_search::{Start, searched};
-use super::refine_settings::{held_out, settings_file};
+use super::refine_branch::RefinementCorrection;
+use super::refine_search::{SelectedStart, select_start};
+use super::refine_settings::{resolve_held_out, settings_file};
 use super::refine_text;
-use super::written::{WrittenFiles, guard, model_file, promised};
-use crate::failure::{Failure, both};
+use super::written::{WrittenFiles, check_outputs, model_file, output_file};
+use crate::failure::{Failure, combine_results};
 use crate::named;
-use crate::output::{self, count, note};
+use crate::output::{self, format_count, print_note};
 use crate::trials::{self, ReadTrial};
 use crate::values::{method, positive, prior};
 use crate::weights;
@@ -70,7 +71,7 @@ pub struct RefineArguments {
     /// `trajectory` (least squares on simulated segments) or `cma-es` (evolutionary search on
     /// simulated segments, slow).
     #[arg(long, value_name = "NAME", value_parser = method)]
-    method: Option<Method>,
+    method: Option<EstimationMethod>,
     /// Prior of the coefficients: `source` (the default), `mixture` (between the source and the
     /// estimate from particulars) or `population` (published models of other ships).
     #[arg(long, value_name = "NAME", value_parser = prior)]
@@ -91,7 +92,7 @@ pub struct RefineArguments {
     difference_s: Option<f64>,
     /// Constraints on the refined model; bounds of single coefficients are given in the settings.
     #[arg(long, value_name = "WHAT", value_enum, num_args = 1..)]
-    constrain: Vec<Constrain>,
+    constrain: Vec<ConstraintFlag>,
     /// Largest distance of a coefficient from the source, in standard deviations of the prior.
     #[arg(long, value_name = "SD", value_parser = positive, allow_negative_numbers = true)]
     trust_sd: Option<f64>,
@@ -109,7 +110,7 @@ pub struct RefineArguments {
 /// Constraints that need no number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
-enum Constrain {
+enum ConstraintFlag {
     /// Damping in sway and yaw, and a rudder that turns the ship to its own side.
     PhysicalSigns,
     /// Resistance opposes surge.
@@ -120,7 +121,7 @@ enum Constrain {
     Unstable,
 }
 
-impl Constrain {
+impl ConstraintFlag {
     fn add_to(self, constraints: &mut Constraints) {
         match self {
             Self::PhysicalSigns => constraints.physical_signs = true,
@@ -139,7 +140,7 @@ struct RefineDocument<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     ranking: Option<&'a [RankedSource]>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    ladder: Option<&'a Ladder>,
+    ladder: Option<&'a SelectionReport>,
     #[serde(flatten)]
     files: WrittenFiles<'a>,
     /// Weights of the model's learned correction, if it has one.
@@ -155,27 +156,31 @@ struct RefineDocument<'a> {
 pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     // Everything that may be refused by the call alone is collected in `all` before any work.
     let named = arguments.source.as_deref().filter(|source| *source != "auto");
-    let given = named.map(|source| named::foundation(zoo, source)).transpose();
-    let law = arguments.law.as_deref().map(|name| law(zoo, name)).transpose();
+    let given = named.map(|source| named::resolve_foundation(zoo, source)).transpose();
+    let law = arguments.law.as_deref().map(|name| find_law(zoo, name)).transpose();
     let inputs = named_files(arguments);
-    let beside = arguments.out.as_deref().map(weights::beside);
+    let beside = arguments.out.as_deref().map(weights::weights_path);
     // Output files are checked before the work, and all faults of the call are reported together.
-    let files = both(
-        both(promised(arguments.out.as_deref(), &inputs), promised(beside.as_deref(), &inputs)),
-        promised(arguments.report.as_deref(), &inputs),
+    let files = combine_results(
+        combine_results(
+            output_file(arguments.out.as_deref(), &inputs),
+            output_file(beside.as_deref(), &inputs),
+        ),
+        output_file(arguments.report.as_deref(), &inputs),
     );
-    let target = both(named::ship(zoo, &arguments.ship), settings(arguments));
-    let read = both(files, trials::read(&arguments.trials));
-    let all = both(both(target, both(given, law)), read)?;
+    let target =
+        combine_results(named::resolve_ship(zoo, &arguments.ship), refinement_settings(arguments));
+    let read = combine_results(files, trials::read_trials(&arguments.trials));
+    let all = combine_results(combine_results(target, combine_results(given, law)), read)?;
     let (((target, mut settings), (given, law)), (((out, weights), report), read)) = all;
     let given = given.map(|(model, _)| model);
     trials::remark_other_ship(&read, target.name());
-    note(&format!("{}: {} read", target.name(), count(read.len(), "trial")));
+    print_note(&format!("{}: {} read", target.name(), format_count(read.len(), "trial")));
     let files = WrittenFiles { out: arguments.out.as_deref(), report: arguments.report.as_deref() };
-    guard(&files, &read)?;
-    settings.held_out = held_out(&settings.held_out, &read)?;
-    let started = start(zoo, arguments, (given, law), &target, &mut settings, &read)?;
-    let Start { source, law, similarity, ladder, made } = started;
+    check_outputs(&files, &read)?;
+    settings.held_out = resolve_held_out(&settings.held_out, &read)?;
+    let started = refinement_start(zoo, arguments, (given, law), &target, &mut settings, &read)?;
+    let SelectedStart { source, law, similarity, ladder, made } = started;
     let source_law = named::law_of(zoo, &source)?;
     // Without a named law the coefficients of the source are refined in its own law.
     let law = law.unwrap_or_else(|| source_law.clone());
@@ -183,15 +188,15 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     let refinement = match made {
         Some(made) => made,
         // A model selection has refined its best candidate already.
-        None => refined(zoo, (&target, &source), laws, &settings, &read)?,
+        None => run_refinement(zoo, (&target, &source), laws, &settings, &read)?,
     };
-    let refinement = calibrated(zoo, refinement, &law, &read);
+    let refinement = calibrate_uncertainty(zoo, refinement, &law, &read);
     // After the calibration: the correction is trained on residuals of the final coefficients.
-    let branch = TrainedBeside::new((zoo, &law), &refinement, ladder.as_ref(), &read)?;
+    let branch = RefinementCorrection::new((zoo, &law), &refinement, ladder.as_ref(), &read)?;
     if let Some(out) = out {
         let model = branch.as_ref().map_or(&refinement.model, |branch| &branch.model);
         // Weights first, so that a model that exists has its weights.
-        branch.iter().zip(weights).try_for_each(|(branch, file)| branch.write(file))?;
+        branch.iter().zip(weights).try_for_each(|(branch, file)| branch.write_weights(file))?;
         let how = format!("method {}", refinement.method);
         out.write(model_file(zoo, model, &how)?.as_bytes())?;
     }
@@ -211,46 +216,49 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
         files,
         weights,
     };
-    output::print(arguments.json, &document, || {
-        let tried = ladder.map_or(String::new(), refine_text::ladder);
-        let text = refine_text::text(&refinement, &source, ranking, &files);
-        let branch = weights.map_or(String::new(), refine_text::weights);
-        refine_text::warning(&refinement) + &tried + &text + &branch
+    output::print_result(arguments.json, &document, || {
+        let tried = ladder.map_or(String::new(), refine_text::format_selection_report);
+        let text = refine_text::format_refinement(&refinement, &source, ranking, &files);
+        let branch = weights.map_or(String::new(), refine_text::format_weights_file);
+        refine_text::wide_band_warning(&refinement) + &tried + &text + &branch
     })
 }
 
 /// Returns the start of the refinement; if nothing is named, the model selection also sets the
 /// settings.
-fn start(
+fn refinement_start(
     zoo: &Zoo,
     arguments: &RefineArguments,
     (given, law): (Option<Model>, Option<Arc<Law>>),
     target: &Vessel,
-    settings: &mut Settings,
+    settings: &mut RefinementSettings,
     read: &[ReadTrial],
-) -> Result<Start, Failure> {
+) -> Result<SelectedStart, Failure> {
     match (given, law) {
-        (Some(source), law) => Ok(Start::of(source, law)),
+        (Some(source), law) => Ok(SelectedStart::from_named(source, law)),
         // A default call: sources, laws and estimators are compared.
         (None, None) if is_plain(arguments, settings) => {
-            let (start, explicit) = searched(zoo, target, settings, read)?;
+            let (start, explicit) = select_start(zoo, target, settings, read)?;
             *settings = explicit;
             Ok(start)
         }
         // A law alone is identified from the trials, without a prior.
         (None, Some(law)) if arguments.source.is_none() => {
-            Ok(Start::of(of_law(&law, target, settings, read)?, Some(law)))
+            Ok(SelectedStart::from_named(blank_model(&law, target, settings, read)?, Some(law)))
         }
         (None, law) => {
-            let (source, similarity) = chosen(zoo, target, settings, read)?;
-            Ok(Start { similarity: Some(similarity), ..Start::of(source, law) })
+            let (source, similarity) = choose_source(zoo, target, settings, read)?;
+            Ok(SelectedStart {
+                similarity: Some(similarity),
+                ..SelectedStart::from_named(source, law)
+            })
         }
     }
 }
 
 /// True if neither source, law, method nor another prior is named, and no setting that only some
 /// methods support.
-fn is_plain(arguments: &RefineArguments, settings: &Settings) -> bool {
+fn is_plain(arguments: &RefineArguments, settings: &RefinementSettings) -> bool {
     // `--source auto` alone is the same as no source.
     let unnamed = arguments.source.as_deref().is_none_or(|source| source == "auto");
     unnamed
@@ -264,11 +272,11 @@ fn report_html(
     zoo: &Zoo,
     vessel: &Vessel,
     refinement: &Refinement,
-    (similarity, ladder): (Option<&Similarity>, Option<&Ladder>),
+    (similarity, ladder): (Option<&SimilarityRanking>, Option<&SelectionReport>),
     read: &[ReadTrial],
 ) -> Result<Vec<u8>, Failure> {
     let law = named::law_of(zoo, &refinement.model)?;
-    let trials = trials::trials(read);
+    let trials = trials::trial_refs(read);
     let input = RefinementInput {
         refinement,
         law: &law,
@@ -284,7 +292,7 @@ fn report_html(
 }
 
 /// Returns the settings of the file, if any, overridden by the flags.
-fn settings(arguments: &RefineArguments) -> Result<Settings, Failure> {
+fn refinement_settings(arguments: &RefineArguments) -> Result<RefinementSettings, Failure> {
     let mut settings =
         arguments.settings.as_deref().map(settings_file).transpose()?.unwrap_or_default();
     settings.method = arguments.method.unwrap_or(settings.method);
@@ -295,7 +303,7 @@ fn settings(arguments: &RefineArguments) -> Result<Settings, Failure> {
     settings.constraints.trust_sd = arguments.trust_sd.or(settings.constraints.trust_sd);
     // Held-out trials of file and flags add up; every other flag replaces the value of the file.
     settings.held_out.extend(arguments.held_out.iter().cloned());
-    Ok(settings.as_ordered())
+    Ok(settings.with_request_defaults())
 }
 
 fn named_files(arguments: &RefineArguments) -> Vec<PathBuf> {
@@ -303,7 +311,7 @@ fn named_files(arguments: &RefineArguments) -> Vec<PathBuf> {
     files.chain([PathBuf::from(&arguments.ship)]).collect()
 }
 
-fn law(zoo: &Zoo, name: &str) -> Result<Arc<Law>, Failure> {
+fn find_law(zoo: &Zoo, name: &str) -> Result<Arc<Law>, Failure> {
     let known = || zoo.laws().map(|law| law.name.as_str()).collect::<Vec<_>>().join(", ");
     let missing =
         || Failure::Refused(format!("--law {name}: the zoo has no such law; it has {}", known()));
@@ -311,48 +319,50 @@ fn law(zoo: &Zoo, name: &str) -> Result<Arc<Law>, Failure> {
 }
 
 /// Returns a model without coefficients, with the approach speed of the fitted trials.
-fn of_law(
+fn blank_model(
     law: &Law,
     target: &Vessel,
-    settings: &Settings,
+    settings: &RefinementSettings,
     read: &[ReadTrial],
 ) -> Result<Model, Failure> {
-    let fitted =
-        trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
-    let approach = approach_of(&fitted.collect::<Vec<_>>());
-    blank(law, target, approach).map_err(|error| Failure::Refused(error.to_string()))
+    let fitted = trials::trial_refs(read)
+        .into_iter()
+        .filter(|trial| !settings.held_out.contains(&trial.name));
+    let approach = trial_approach(&fitted.collect::<Vec<_>>());
+    blank_model(law, target, approach).map_err(|error| Failure::Refused(error.to_string()))
 }
 
 /// Selects the best eligible source; held-out trials do not influence it.
-fn chosen(
+fn choose_source(
     zoo: &Zoo,
     target: &Vessel,
-    settings: &Settings,
+    settings: &RefinementSettings,
     read: &[ReadTrial],
-) -> Result<(Model, Similarity), Failure> {
-    note("choosing the source: similarity, and the trend of the trials");
-    let fitted =
-        trials::trials(read).into_iter().filter(|trial| !settings.held_out.contains(&trial.name));
-    let similarity = similar(zoo, target, None, &fitted.collect::<Vec<_>>());
+) -> Result<(Model, SimilarityRanking), Failure> {
+    print_note("choosing the source: similarity, and the trend of the trials");
+    let fitted = trials::trial_refs(read)
+        .into_iter()
+        .filter(|trial| !settings.held_out.contains(&trial.name));
+    let similarity = rank_similar(zoo, target, None, &fitted.collect::<Vec<_>>());
     let source = best_source(zoo, &similarity)
         .map_err(|reasons| Failure::Refused(format!("{reasons}; name one with --source")))?;
-    note(&format!("source: {}", source.name));
+    print_note(&format!("source: {}", source.name));
     Ok((source, similarity))
 }
 
-fn refined(
+fn run_refinement(
     zoo: &Zoo,
     (target, source): (&Vessel, &Model),
     (source_law, law): (&Law, &Law),
-    settings: &Settings,
+    settings: &RefinementSettings,
     read: &[ReadTrial],
 ) -> Result<Refinement, Failure> {
-    let trials = trials::trials(read);
+    let trials = trials::trial_refs(read);
     let population = match settings.prior {
-        Prior::Population => population(zoo, target),
+        Prior::Population => similar_population(zoo, target),
         Prior::Source | Prior::Mixture => Vec::new(),
     };
-    let request = Request {
+    let request = RefinementSpec {
         target,
         source,
         source_law: Some(source_law),
@@ -362,14 +372,19 @@ fn refined(
         settings,
     };
     let told = |fraction: f64, what: &str| {
-        note(&format!("{:3.0} % {what}", 100.0 * fraction));
+        print_note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
     };
     refine(&request, &told).map_err(|error| Failure::Refused(error.to_string()))
 }
 
-fn calibrated(zoo: &Zoo, refinement: Refinement, law: &Law, read: &[ReadTrial]) -> Refinement {
-    note("learning what these trials leave open");
+fn calibrate_uncertainty(
+    zoo: &Zoo,
+    refinement: Refinement,
+    law: &Law,
+    read: &[ReadTrial],
+) -> Refinement {
+    print_note("learning what these trials leave open");
     let effects: Vec<_> = zoo.effects().cloned().collect();
-    with_uncertainty(refinement, law, &effects, &trials::trials(read))
+    with_uncertainty(refinement, law, &effects, &trials::trial_refs(read))
 }

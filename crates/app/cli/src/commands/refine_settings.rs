@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sistership_identification::refine::Settings;
+use sistership_identification::refine::RefinementSettings;
 use sistership_model::FileError;
 
 use crate::failure::Failure;
@@ -13,8 +13,8 @@ use crate::zoo;
 ///
 /// # Errors
 /// Returns an error that names line and field of each fault.
-pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
-    let text = zoo::text_of(path)?;
+pub fn settings_file(path: &Path) -> Result<RefinementSettings, Failure> {
+    let text = zoo::read_text_file(path)?;
     let refuse = |line: Option<usize>, field: String, message: String| FileError {
         file: path.display().to_string(),
         line,
@@ -22,15 +22,16 @@ pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
         message,
         further: Vec::new(),
     };
-    let read: Result<Settings, _> = sistership_model::yaml::read(&text);
-    let settings = read.map_err(|error| FileError::of_yaml(&path.display().to_string(), error))?;
+    let read: Result<RefinementSettings, _> = sistership_model::yaml::read_document(&text);
+    let settings =
+        read.map_err(|error| FileError::from_yaml(&path.display().to_string(), error))?;
     // The check knows only the field; its line is the first that begins with the name.
     let line_of = |field: &str| {
         text.lines().position(|line| line.trim_start().starts_with(field)).map(|index| index + 1)
     };
     let faults = settings.check().err().unwrap_or_default().into_iter();
     let refused = faults.map(|of| refuse(line_of(&of.field), of.field, of.message));
-    FileError::of_all(refused).map_or(Ok(settings), |refused| Err(refused.into()))
+    FileError::from_faults(refused).map_or(Ok(settings), |refused| Err(refused.into()))
 }
 
 /// Resolves the names of held-out trials: each may be given as the trial's name, as the file in the
@@ -38,7 +39,7 @@ pub fn settings_file(path: &Path) -> Result<Settings, Failure> {
 ///
 /// # Errors
 /// Returns an error that lists the known trials.
-pub fn held_out(names: &[String], read: &[ReadTrial]) -> Result<Vec<String>, Failure> {
+pub fn resolve_held_out(names: &[String], read: &[ReadTrial]) -> Result<Vec<String>, Failure> {
     let one = |name: &String| {
         let is_meant = |read: &&ReadTrial| {
             read.trial.name == *name || read.file == *name || read.path == Path::new(name)
@@ -89,7 +90,7 @@ mod tests {
             is_stretch: false,
             ship: None,
         }];
-        let found = |name: &str| held_out(&[name.to_owned()], &read);
+        let found = |name: &str| resolve_held_out(&[name.to_owned()], &read);
         assert_eq!(found("b.csv").unwrap(), ["b.csv"]);
         assert_eq!(found("a/b.csv").unwrap(), ["b.csv"]);
         assert!(found("c.csv").unwrap_err().message().unwrap().contains("there are b.csv"));

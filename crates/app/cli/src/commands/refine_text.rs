@@ -2,66 +2,72 @@
 
 use std::path::Path;
 
-use sistership_assessment::uncertainty::Band;
+use sistership_assessment::uncertainty::UncertaintyBand;
 use sistership_identification::refine::{
-    CoefficientChange, HeldOut, Manoeuvres, Refinement, StepOption,
+    CoefficientChange, HeldOut, Refinement, RefinementManoeuvres, StepOption,
 };
 use sistership_model::Model;
-use sistership_model_selection::{Ladder, Rung};
+use sistership_model_selection::{SelectionReport, SelectionStage};
 use sistership_priors::similarity::RankedSource;
-use sistership_simulation::manoeuvre::Figure;
+use sistership_simulation::manoeuvre::NamedFigure;
 
-use super::channels::CHANNELS;
+use super::channels::TABLE_CHANNELS;
 use super::written::WrittenFiles;
-use super::{similar, worth};
-use crate::table::{TextTable, number, optional};
+use super::{describe_status, similar};
+use crate::table::{TextTable, format_number, format_optional};
 
 /// Formats a refinement as text.
-pub fn text(
+pub fn format_refinement(
     refinement: &Refinement,
     source: &Model,
     ranking: Option<&[RankedSource]>,
     files: &WrittenFiles<'_>,
 ) -> String {
-    let ranked = ranking
-        .map_or(String::new(), |ranking| format!("Similar ships\n{}\n", similar::ranking(ranking)));
+    let ranked = ranking.map_or(String::new(), |ranking| {
+        format!("Similar ships\n{}\n", similar::ranking_table(ranking))
+    });
     // Another name than the source's: there is no single status to show.
     let from = match refinement.source == source.name {
-        true => format!("{} ({})", source.name, worth(source.status)),
+        true => format!("{} ({})", source.name, describe_status(source.status)),
         false => refinement.source.clone(),
     };
     let head = format!("{} refined from {from} by `{}`\n\n", refinement.ship, refinement.method);
-    let restart = refinement
-        .settings
-        .restart_s
-        .map_or(String::new(), |s| format!(";\nsimulations start anew every {} s", number(s)));
+    let restart = refinement.settings.restart_s.map_or(String::new(), |s| {
+        format!(";\nsimulations start anew every {} s", format_number(s))
+    });
     let smoothed = refinement.settings.compared_smoothing_s().map_or(String::new(), |s| {
-        format!(";\nmeasured motions are smoothed over {} s", number(s))
+        format!(";\nmeasured motions are smoothed over {} s", format_number(s))
     });
     let how = format!("Root mean square errors: {}{restart}{smoothed}", refinement.held_out.how);
-    let errors = format!("{how}\n{}\n", errors(&refinement.held_out, has_roll(&refinement.model)));
-    let options = format!("Options, from the source outwards\n{}\n", options(&refinement.options));
+    let errors =
+        format!("{how}\n{}\n", format_errors(&refinement.held_out, has_roll(&refinement.model)));
+    let options =
+        format!("Options, from the source outwards\n{}\n", format_options(&refinement.options));
     let coefficients = format!(
         "Coefficients (moved: in standard deviations of the prior)\n{}\n",
-        coefficients(&refinement.coefficients)
+        format_coefficients(&refinement.coefficients)
     );
-    let manoeuvres = format!("Standard manoeuvres\n{}\n", manoeuvres(&refinement.manoeuvres));
-    format!("{ranked}{head}{errors}{options}{coefficients}{manoeuvres}{}", end(refinement, files))
+    let manoeuvres =
+        format!("Standard manoeuvres\n{}\n", format_manoeuvres(&refinement.manoeuvres));
+    format!(
+        "{ranked}{head}{errors}{options}{coefficients}{manoeuvres}{}",
+        format_remarks(refinement, files)
+    )
 }
 
 /// Returns a warning for the first line if the trials leave a wide band.
-pub fn warning(refinement: &Refinement) -> String {
+pub fn wide_band_warning(refinement: &Refinement) -> String {
     let wide = refinement.manoeuvres.wide_band();
     wide.map_or_else(String::new, |wide| format!("WARNING: {wide}\n\n"))
 }
 
 /// Names the file with the weights of the model's learned correction.
-pub fn weights(file: &Path) -> String {
+pub fn format_weights_file(file: &Path) -> String {
     format!("with a learned branch, weights written to {}\n", file.display())
 }
 
 /// Formats the selection report.
-pub fn ladder(ladder: &Ladder) -> String {
+pub fn format_selection_report(ladder: &SelectionReport) -> String {
     let mut table = TextTable::new([
         "source",
         "law",
@@ -77,11 +83,11 @@ pub fn ladder(ladder: &Ladder) -> String {
     for line in &ladder.lines {
         let source = line.source.clone().unwrap_or_else(|| "none".to_owned());
         let rung = match line.rung {
-            Rung::CarriedOver => "carried over",
-            Rung::Weak => "weak",
-            Rung::Trajectory => "trajectory",
+            SelectionStage::CarriedOver => "carried over",
+            SelectionStage::Weak => "weak",
+            SelectionStage::Trajectory => "trajectory",
         };
-        let figures = [line.error, line.standard_error, line.variance].map(optional);
+        let figures = [line.error, line.standard_error, line.variance].map(format_optional);
         let taken = match (line.chosen, line.reference) {
             (true, _) => "yes",
             (false, true) => "reference",
@@ -89,12 +95,12 @@ pub fn ladder(ladder: &Ladder) -> String {
         };
         let names = [source, line.law.clone(), rung.to_owned(), line.coefficients.to_string()];
         let end = [format!("{:.1}", line.cost_s), taken.to_owned(), line.reason.clone()];
-        table.row(names.into_iter().chain(figures).chain(end));
+        table.add_row(names.into_iter().chain(figures).chain(end));
     }
     let what = "standardised squared errors on manoeuvres left out, and the variance elsewhere";
     // Empty if no learned correction was considered.
     let branch = ladder.branch.as_ref().map_or("", |choice| &choice.reason);
-    let reference = ladder.reference();
+    let reference = ladder.reference_summary();
     format!("Tried: {what}\n{table}\n{reference}\n\nLearned branch: {branch}\n\n")
 }
 
@@ -104,10 +110,10 @@ fn has_roll(model: &Model) -> bool {
 }
 
 /// Formats the errors on held-out manoeuvres, before and after.
-pub fn errors(held_out: &HeldOut, has_roll: bool) -> TextTable {
+pub fn format_errors(held_out: &HeldOut, has_roll: bool) -> TextTable {
     let mut table = TextTable::new(["channel", "unit", "source", "refined", "change"]);
     for (name, unit, factor) in
-        CHANNELS.into_iter().filter(|(name, ..)| has_roll || !matches!(*name, "phi" | "p"))
+        TABLE_CHANNELS.into_iter().filter(|(name, ..)| has_roll || !matches!(*name, "phi" | "p"))
     {
         let of = |errors: &std::collections::BTreeMap<String, f64>| {
             // `f64::MAX` marks the error of a simulation that left the physical range.
@@ -117,12 +123,12 @@ pub fn errors(held_out: &HeldOut, has_roll: bool) -> TextTable {
         if before.is_some() || after.is_some() {
             let change = before
                 .zip(after)
-                .map_or_else(|| "-".to_owned(), |(before, after)| percent(before, after));
-            table.row([
+                .map_or_else(|| "-".to_owned(), |(before, after)| format_change(before, after));
+            table.add_row([
                 name.to_owned(),
                 unit.to_owned(),
-                optional(before),
-                optional(after),
+                format_optional(before),
+                format_optional(after),
                 change,
             ]);
         }
@@ -130,28 +136,34 @@ pub fn errors(held_out: &HeldOut, has_roll: bool) -> TextTable {
     table
 }
 
-fn percent(before: f64, after: f64) -> String {
+fn format_change(before: f64, after: f64) -> String {
     if before > 0.0 { format!("{:+.0} %", 100.0 * (after / before - 1.0)) } else { "-".to_owned() }
 }
 
-fn options(options: &[StepOption]) -> TextTable {
+fn format_options(options: &[StepOption]) -> TextTable {
     let mut table = TextTable::new(["step", "least lambda", "error", "taken", "why not"]);
     for option in options {
         let least =
             option.lambda_min.map_or_else(|| "-".to_owned(), |lambda| format!("{lambda:.0e}"));
         let taken = if option.chosen { "yes" } else { "" };
         let reason = option.reason.clone().unwrap_or_default();
-        table.row([option.step.clone(), least, optional(option.error), taken.to_owned(), reason]);
+        table.add_row([
+            option.step.clone(),
+            least,
+            format_optional(option.error),
+            taken.to_owned(),
+            reason,
+        ]);
     }
     table
 }
 
-fn coefficients(coefficients: &[CoefficientChange]) -> TextTable {
+fn format_coefficients(coefficients: &[CoefficientChange]) -> TextTable {
     let mut table = TextTable::new(["name", "unit", "source", "refined", "std. error", "moved"]);
     for change in coefficients {
-        let figures = [change.source, change.refined, change.standard_error].map(number);
+        let figures = [change.source, change.refined, change.standard_error].map(format_number);
         let moved = format!("{:.2}", change.moved_sd);
-        table.row(
+        table.add_row(
             [change.name.clone(), change.unit.clone()].into_iter().chain(figures).chain([moved]),
         );
     }
@@ -159,23 +171,26 @@ fn coefficients(coefficients: &[CoefficientChange]) -> TextTable {
 }
 
 /// Figures of the standard manoeuvres in the table.
-const SHOWN: [&str; 3] = ["advance", "tactical diameter", "first overshoot"];
+const TABLE_FIGURES: [&str; 3] = ["advance", "tactical diameter", "first overshoot"];
 
-fn manoeuvres(manoeuvres: &Manoeuvres) -> TextTable {
+fn format_manoeuvres(manoeuvres: &RefinementManoeuvres) -> TextTable {
     let mut table = TextTable::new(["figure", "unit", "source", "refined", "from", "to (95 %)"]);
-    let (source, refined) = (manoeuvres.source.figures(), manoeuvres.refined.figures());
-    let shown =
-        |name: &str| !name.starts_with("IMO") && SHOWN.iter().any(|what| name.ends_with(what));
+    let (source, refined) = (manoeuvres.source.list_figures(), manoeuvres.refined.list_figures());
+    let shown = |name: &str| {
+        !name.starts_with("IMO") && TABLE_FIGURES.iter().any(|what| name.ends_with(what))
+    };
     // The longer list names every figure that one of the two models reaches.
     let all = if refined.len() < source.len() { &source } else { &refined };
-    for Figure { name, unit, .. } in all.iter().filter(|figure| shown(&figure.name)) {
-        let of = |figures: &[Figure]| {
-            optional(figures.iter().find(|other| other.name == *name).and_then(|other| other.value))
+    for NamedFigure { name, unit, .. } in all.iter().filter(|figure| shown(&figure.name)) {
+        let of = |figures: &[NamedFigure]| {
+            format_optional(
+                figures.iter().find(|other| other.name == *name).and_then(|other| other.value),
+            )
         };
         // Bands exist only with a posterior.
-        let band = manoeuvres.bands.as_ref().and_then(|bands| bands.of(name));
-        let edge = |of: fn(&Band) -> f64| optional(band.map(of));
-        table.row([
+        let band = manoeuvres.bands.as_ref().and_then(|bands| bands.figure_band(name));
+        let edge = |of: fn(&UncertaintyBand) -> f64| format_optional(band.map(of));
+        table.add_row([
             name.clone(),
             unit.clone(),
             of(&source),
@@ -187,9 +202,10 @@ fn manoeuvres(manoeuvres: &Manoeuvres) -> TextTable {
     table
 }
 
-fn end(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
-    let mut lines = vec![format!("condition number {}", number(refinement.condition_number))];
-    lines.extend(inseparable(&refinement.collinear_groups));
+fn format_remarks(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
+    let mut lines =
+        vec![format!("condition number {}", format_number(refinement.condition_number))];
+    lines.extend(format_collinear_groups(&refinement.collinear_groups));
     let failures = refinement.manoeuvres.refined.failures.iter();
     lines.extend(
         failures.map(|failure| {
@@ -197,9 +213,9 @@ fn end(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
         }),
     );
     let bands = refinement.manoeuvres.bands.as_ref();
-    lines.extend(bands.and_then(|bands| Some(bands.next_trial.as_ref()?.words())));
+    lines.extend(bands.and_then(|bands| Some(bands.next_trial.as_ref()?.as_sentence())));
     let outside = refinement.manoeuvres.refined.outside.iter();
-    lines.extend(outside.map(|(name, how)| format!("OUTSIDE: {name}: {}", how.words())));
+    lines.extend(outside.map(|(name, how)| format!("OUTSIDE: {name}: {}", how.describe())));
     lines.extend(refinement.remarks.iter().map(|remark| format!("remark: {remark}")));
     lines.push(match files.out {
         Some(path) => format!("model written to {}", path.display()),
@@ -210,14 +226,14 @@ fn end(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
 }
 
 /// Largest number of groups that are listed; more would hide the other remarks.
-const LISTED: usize = 5;
+const MAX_GROUPS: usize = 5;
 
 /// Formats the groups of coefficients that the trials cannot distinguish.
-fn inseparable(groups: &[Vec<String>]) -> Vec<String> {
+fn format_collinear_groups(groups: &[Vec<String>]) -> Vec<String> {
     let line =
         |group: &Vec<String>| format!("cannot be told apart by these trials: {}", group.join(", "));
-    let mut lines: Vec<String> = groups.iter().take(LISTED).map(line).collect();
-    let (all, more) = (groups.len(), groups.len().saturating_sub(LISTED));
+    let mut lines: Vec<String> = groups.iter().take(MAX_GROUPS).map(line).collect();
+    let (all, more) = (groups.len(), groups.len().saturating_sub(MAX_GROUPS));
     let rest =
         || format!("and {more} more such groups, of {all}; --json and --report have them all");
     lines.extend((more > 0).then(rest));
@@ -231,9 +247,10 @@ mod tests {
     #[test]
     fn many_groups_are_counted() {
         let group = |k: usize| vec![format!("X_{k}"), format!("Y_{k}")];
-        let lines = |count: usize| inseparable(&(0..count).map(group).collect::<Vec<_>>());
+        let lines =
+            |count: usize| format_collinear_groups(&(0..count).map(group).collect::<Vec<_>>());
         assert_eq!(lines(0), Vec::<String>::new());
-        assert_eq!(lines(LISTED).len(), LISTED);
-        assert!(lines(30)[LISTED].starts_with("and 25 more such groups, of 30"));
+        assert_eq!(lines(MAX_GROUPS).len(), MAX_GROUPS);
+        assert!(lines(30)[MAX_GROUPS].starts_with("and 25 more such groups, of 30"));
     }
 }

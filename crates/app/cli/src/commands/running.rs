@@ -4,11 +4,11 @@
 use std::time::Duration;
 
 use clap::Args;
-use sistership_api::Leases;
+use sistership_api::LeaseSettings;
 use tokio::sync::oneshot;
 
 use super::config_file::ConfigFile;
-use super::store::runtime;
+use super::store::new_runtime;
 use crate::failure::Failure;
 use crate::output;
 
@@ -38,19 +38,24 @@ impl LeaseArguments {
     ///
     /// # Errors
     /// Returns an error that names the setting out of range.
-    pub fn leases(&self, file: &ConfigFile) -> Result<Leases, Failure> {
-        let mut leases = Leases::default();
+    pub fn lease_settings(&self, file: &ConfigFile) -> Result<LeaseSettings, Failure> {
+        let mut leases = LeaseSettings::default();
         if let Some(lease_s) = self.lease_s.or(file.lease_s) {
-            leases = Leases::of(seconds("lease_s", lease_s, 0.5, Leases::MAX)?);
+            leases = LeaseSettings::with_lease(parse_seconds(
+                "lease_s",
+                lease_s,
+                0.5,
+                LeaseSettings::MAX,
+            )?);
         }
         if let Some(drain_s) = self.drain_s.or(file.drain_s) {
-            leases.drain = seconds("drain_s", drain_s, 0.0, Leases::MAX_DRAIN)?;
+            leases.drain = parse_seconds("drain_s", drain_s, 0.0, LeaseSettings::MAX_DRAIN)?;
         }
         Ok(leases)
     }
 }
 
-fn seconds(name: &str, value: f64, least: f64, most: Duration) -> Result<Duration, Failure> {
+fn parse_seconds(name: &str, value: f64, least: f64, most: Duration) -> Result<Duration, Failure> {
     match (least..=most.as_secs_f64()).contains(&value) {
         true => Ok(Duration::from_secs_f64(value)),
         false => Err(Failure::Call(format!(
@@ -64,7 +69,7 @@ fn seconds(name: &str, value: f64, least: f64, most: Duration) -> Result<Duratio
 ///
 /// # Errors
 /// Returns an error that names the setting out of range.
-pub fn memory(
+pub fn memory_bytes(
     name: &str,
     given: Option<u64>,
     file: Option<u64>,
@@ -83,7 +88,7 @@ pub fn memory(
 ///
 /// # Errors
 /// Returns an error if the number is out of range.
-pub fn workers(given: Option<u16>, file: &ConfigFile, least: u16) -> Result<usize, Failure> {
+pub fn worker_count(given: Option<u16>, file: &ConfigFile, least: u16) -> Result<usize, Failure> {
     let workers = given.or(file.workers).unwrap_or(WORKERS);
     match (least..=MOST_WORKERS).contains(&workers) {
         true => Ok(usize::from(workers)),
@@ -106,8 +111,8 @@ pub fn run_until_stopped<T>(
     start: impl Future<Output = Result<T, Failure>>,
     stop: impl AsyncFnOnce(T),
 ) -> Result<(), Failure> {
-    let runtime = runtime()?;
-    let told = watch(bound)?;
+    let runtime = new_runtime()?;
+    let told = watch_signals(bound)?;
     let ended = runtime.block_on(async {
         let unheard = || Failure::Refused("signals cannot be heard".into());
         let mut told = told;
@@ -126,26 +131,26 @@ pub fn run_until_stopped<T>(
 }
 
 /// Starts to receive signals on a separate thread; the receiver gets the first one.
-fn watch(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
+fn watch_signals(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
     let (tell, told) = oneshot::channel();
     let none = |error| Failure::Refused(format!("no threads: {error}"));
     let runtime =
         // A runtime of its own: the main one may have no free thread when a signal arrives.
         tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(none)?;
-    let mut signals = runtime.block_on(async { StopSignals::hear() })?;
+    let mut signals = runtime.block_on(async { StopSignals::install_handler() })?;
     let heard = move || {
         runtime.block_on(async {
             signals.next().await;
             // The receiver is gone if the start has failed meanwhile; the process is ending then.
             tell.send(()).ok();
-            output::note("stopping; once more to stop at once");
+            output::print_note("stopping; once more to stop at once");
             if tokio::time::timeout(bound, signals.next()).await.is_err() {
-                output::note(&format!(
+                output::print_note(&format!(
                     "not everything under way has ended within {} s",
                     bound.as_secs()
                 ));
             }
-            std::process::exit(i32::from(Failure::Told.status()));
+            std::process::exit(i32::from(Failure::Told.exit_status()));
         });
     };
     std::thread::Builder::new().name("signals".into()).spawn(heard).map_err(none)?;
@@ -162,7 +167,7 @@ struct StopSignals {
 
 impl StopSignals {
     #[cfg(unix)]
-    fn hear() -> Result<Self, Failure> {
+    fn install_handler() -> Result<Self, Failure> {
         use tokio::signal::unix::{SignalKind, signal};
         let unheard = |error| Failure::Refused(format!("signals cannot be heard: {error}"));
         let interrupt = signal(SignalKind::interrupt()).map_err(unheard)?;
@@ -198,27 +203,29 @@ mod tests {
             workers: Some(3),
             ..ConfigFile::default()
         };
-        let leases = LeaseArguments { lease_s: Some(2.0), drain_s: None }.leases(&file).unwrap();
+        let leases =
+            LeaseArguments { lease_s: Some(2.0), drain_s: None }.lease_settings(&file).unwrap();
         assert_eq!((leases.lease.as_secs(), leases.drain.as_secs()), (2, 1));
         let none = LeaseArguments { lease_s: None, drain_s: None };
-        assert_eq!(none.leases(&ConfigFile::default()).unwrap(), Leases::default());
-        assert_eq!((workers(Some(5), &file, 1), workers(None, &file, 1)), (Ok(5), Ok(3)));
-        assert_eq!(workers(None, &ConfigFile::default(), 1), Ok(1));
+        assert_eq!(none.lease_settings(&ConfigFile::default()).unwrap(), LeaseSettings::default());
+        assert_eq!((worker_count(Some(5), &file, 1), worker_count(None, &file, 1)), (Ok(5), Ok(3)));
+        assert_eq!(worker_count(None, &ConfigFile::default(), 1), Ok(1));
     }
 
     #[test]
     fn memory_is_given_in_megabytes() {
-        assert_eq!(memory("job_memory_mb", None, Some(64), 7), Ok(64 << 20));
-        assert_eq!(memory("job_memory_mb", Some(32), Some(64), 7), Ok(32 << 20));
-        assert_eq!(memory("job_memory_mb", None, None, 7), Ok(7));
-        let wrong = memory("job_memory_mb", Some(8), None, 7).unwrap_err();
+        assert_eq!(memory_bytes("job_memory_mb", None, Some(64), 7), Ok(64 << 20));
+        assert_eq!(memory_bytes("job_memory_mb", Some(32), Some(64), 7), Ok(32 << 20));
+        assert_eq!(memory_bytes("job_memory_mb", None, None, 7), Ok(7));
+        let wrong = memory_bytes("job_memory_mb", Some(8), None, 7).unwrap_err();
         assert!(wrong.message().unwrap().contains("job_memory_mb must be from 32"));
     }
 
     #[test]
     fn what_is_out_of_bounds_is_named() {
         let lease = |lease_s| {
-            LeaseArguments { lease_s: Some(lease_s), drain_s: None }.leases(&ConfigFile::default())
+            LeaseArguments { lease_s: Some(lease_s), drain_s: None }
+                .lease_settings(&ConfigFile::default())
         };
         for wrong in [0.1, 3601.0, f64::NAN] {
             assert!(lease(wrong).is_err_and(|why| {
@@ -228,13 +235,13 @@ mod tests {
         let file = ConfigFile { drain_s: Some(-1.0), workers: Some(65), ..ConfigFile::default() };
         assert!(
             LeaseArguments { lease_s: None, drain_s: None }
-                .leases(&file)
+                .lease_settings(&file)
                 .unwrap_err()
                 .message()
                 .unwrap()
                 .contains("drain_s")
         );
-        assert!(workers(None, &file, 0).is_err() && workers(Some(0), &file, 1).is_err());
+        assert!(worker_count(None, &file, 0).is_err() && worker_count(Some(0), &file, 1).is_err());
     }
 
     /// This test's program as another process, which runs one test in earnest.

@@ -1,13 +1,14 @@
 //! Simulation of the requested manoeuvres.
 
 use sistership_simulation::manoeuvre::{
-    ManoeuvreSettings, StandardManoeuvres, standard, turn, zigzag,
+    ManoeuvreSettings, StandardManoeuvres, simulate_standard_manoeuvres, simulate_turn,
+    simulate_zigzag,
 };
 use sistership_simulation::{Ship, Trajectory};
 
 /// Simulates the requested turns and zigzags, or the standard set if `usual`; a manoeuvre that
 /// diverges is a failure in the result.
-pub fn sail(
+pub fn simulate_requested(
     ship: &Ship,
     turns: &[f64],
     zigzags: &[(f64, f64)],
@@ -16,14 +17,14 @@ pub fn sail(
 ) -> (StandardManoeuvres, Vec<Trajectory>) {
     if usual {
         // Tracks are written for a single requested manoeuvre only.
-        return (standard(ship, settings), Vec::new());
+        return (simulate_standard_manoeuvres(ship, settings), Vec::new());
     }
     let (mut sailed, mut tracks) = (StandardManoeuvres::default(), Vec::new());
     for rudder in turns {
         let name = format!("turn {rudder} deg");
-        match turn(ship, *rudder, settings) {
+        match simulate_turn(ship, *rudder, settings) {
             Ok(turn) => {
-                sailed.note_outside(&name, ship, &turn.track);
+                sailed.record_excursion(&name, ship, &turn.track);
                 sailed.turns.push(turn.metrics);
                 tracks.push(turn.track);
             }
@@ -32,9 +33,9 @@ pub fn sail(
     }
     for (rudder, switch) in zigzags {
         let name = format!("zigzag {rudder}/{switch}");
-        match zigzag(ship, *rudder, *switch, settings) {
+        match simulate_zigzag(ship, *rudder, *switch, settings) {
             Ok(zigzag) => {
-                sailed.note_outside(&name, ship, &zigzag.track);
+                sailed.record_excursion(&name, ship, &zigzag.track);
                 sailed.zigzags.push(zigzag.metrics);
                 tracks.push(zigzag.track);
             }
@@ -52,15 +53,17 @@ mod tests {
 
     #[test]
     fn what_is_asked_for_is_sailed_and_nothing_else() {
-        let zoo = Zoo::embedded().unwrap();
-        let ship = Ship::new(&zoo.model("mariner").unwrap(), zoo.law("abkowitz").unwrap()).unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let ship =
+            Ship::new(&zoo.find_model("mariner").unwrap(), zoo.law("abkowitz").unwrap()).unwrap();
         let (sailed, tracks) =
-            sail(&ship, &[35.0, -35.0], &[], false, &ManoeuvreSettings::default());
+            simulate_requested(&ship, &[35.0, -35.0], &[], false, &ManoeuvreSettings::default());
         assert_eq!(
             (sailed.turns.len(), sailed.zigzags.len(), sailed.imo.len(), tracks.len()),
             (2, 0, 0, 2)
         );
-        let (all, tracks) = sail(&ship, &[], &[], true, &ManoeuvreSettings::default());
+        let (all, tracks) =
+            simulate_requested(&ship, &[], &[], true, &ManoeuvreSettings::default());
         assert!(!all.imo.is_empty() && tracks.is_empty());
     }
 }

@@ -5,21 +5,22 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use sistership_api::{
-    Config, DEFAULT_LISTEN, ForwardedHeader, Limits, Running, Server, StartError, TrustedProxies,
+    Config, DEFAULT_LISTEN, ForwardedHeader, Limits, RunningServer, Server, StartError,
+    TrustedProxies,
 };
 use sistership_auth::openid::OpenIdArguments;
 
 use super::config_file::ConfigFile;
 use super::log::LogArguments;
-use super::running::{LeaseArguments, memory, run_until_stopped, workers};
+use super::running::{LeaseArguments, memory_bytes, run_until_stopped, worker_count};
 use super::store::StoreArguments;
 use crate::failure::{Failure, about_file};
 use crate::output;
 use crate::values::address;
-use crate::zoo::text_of;
+use crate::zoo::read_text_file;
 
 /// Environment variable with the API key.
-const KEY: &str = "SISTERSHIP_API_KEY";
+const API_KEY_VARIABLE: &str = "SISTERSHIP_API_KEY";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -101,50 +102,52 @@ pub fn run(serve: &ServeArguments, zoo: &[PathBuf]) -> Result<(), Failure> {
                 .into(),
         ));
     }
-    let file = serve.store.file()?;
-    let config = config(serve, &file)?;
+    let file = serve.store.read_config()?;
+    let config = server_config(serve, &file)?;
     // After the configuration: its faults are printed as errors of the call, not logged.
-    serve.log.begin(&file)?;
+    serve.log.start_log(&file)?;
     let start = async {
-        let running = Server::start(config.clone()).await.map_err(refused)?;
+        let running = Server::start(config.clone()).await.map_err(start_failure)?;
         let url = running.url();
-        output::print(false, &(), || format!("sistership listens on {url}"))?;
+        output::print_result(false, &(), || format!("sistership listens on {url}"))?;
         Ok(running)
     };
-    run_until_stopped(config.stop_bound(), start, Running::stop)
+    run_until_stopped(config.stop_deadline(), start, RunningServer::stop)
 }
 
-fn config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Failure> {
-    let place = serve.store.place(file)?;
+fn server_config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Failure> {
+    let place = serve.store.resolve_place(file)?;
     let mut config = Config::new(place.data_dir);
     config.objects = place.objects;
     config.listen = serve.listen.or(file.listen).unwrap_or(DEFAULT_LISTEN);
     config.database_url = place.database_url;
     // Flags and environment variables come before the file.
-    config.workers = if serve.no_worker { 0 } else { workers(serve.workers, file, 0)? };
-    config.leases = serve.lease.leases(file)?;
-    config.limits = limits(serve, file)?;
+    config.workers = if serve.no_worker { 0 } else { worker_count(serve.workers, file, 0)? };
+    config.leases = serve.lease.lease_settings(file)?;
+    config.limits = connection_limits(serve, file)?;
     let limits = &mut config.limits;
-    limits.request_memory = memory(
+    limits.request_memory = memory_bytes(
         "request_memory_mb",
         serve.request_memory_mb,
         file.request_memory_mb,
         limits.request_memory,
     )?;
     limits.job_memory =
-        memory("job_memory_mb", serve.job_memory_mb, file.job_memory_mb, limits.job_memory)?;
+        memory_bytes("job_memory_mb", serve.job_memory_mb, file.job_memory_mb, limits.job_memory)?;
     config.api_key = api_key(serve, file)?;
-    config.proxies = proxies(serve, file)?;
+    config.proxies = trusted_proxies(serve, file)?;
     config.accounts = serve.accounts || file.accounts.unwrap_or(false);
-    config.openid =
-        serve.openid.settings(&file.oidc).map_err(|error| Failure::Call(error.to_string()))?;
+    config.openid = serve
+        .openid
+        .resolve_settings(&file.oidc)
+        .map_err(|error| Failure::Call(error.to_string()))?;
     // Without a key or accounts only a loopback address is allowed.
-    config.check().map_err(refused)?;
+    config.check().map_err(start_failure)?;
     Ok(config)
 }
 
 /// Returns the trusted proxies of the flags, else of the file.
-fn proxies(serve: &ServeArguments, file: &ConfigFile) -> Result<TrustedProxies, Failure> {
+fn trusted_proxies(serve: &ServeArguments, file: &ConfigFile) -> Result<TrustedProxies, Failure> {
     let named = match serve.trusted_proxy.is_empty() {
         true => file.trusted_proxies.as_deref().unwrap_or_default(),
         false => &serve.trusted_proxy,
@@ -161,7 +164,7 @@ fn proxies(serve: &ServeArguments, file: &ConfigFile) -> Result<TrustedProxies, 
 }
 
 /// Returns the limits of connections.
-fn limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> {
+fn connection_limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> {
     // Checked here, with the name of the setting; the server takes the numbers as they are.
     let within = |name: &str, value: u32, least: u32, most: u32| match (least..=most)
         .contains(&value)
@@ -186,24 +189,24 @@ fn limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> 
 fn api_key(serve: &ServeArguments, file: &ConfigFile) -> Result<Option<String>, Failure> {
     if let Some(path) = &serve.api_key_file {
         // A flag comes before the environment, the environment before the configuration file.
-        return key_of(path).map(Some);
+        return read_key(path).map(Some);
     }
-    match std::env::var(KEY).ok().filter(|key| !key.is_empty()) {
+    match std::env::var(API_KEY_VARIABLE).ok().filter(|key| !key.is_empty()) {
         Some(key) => Ok(Some(key)),
-        None => file.api_key_file.as_deref().map(key_of).transpose(),
+        None => file.api_key_file.as_deref().map(read_key).transpose(),
     }
 }
 
-fn key_of(file: &Path) -> Result<String, Failure> {
-    let key = text_of(file)?.trim().to_owned();
+fn read_key(file: &Path) -> Result<String, Failure> {
+    let key = read_text_file(file)?.trim().to_owned();
     if key.is_empty() { Err(about_file(file, "holds no API key")) } else { Ok(key) }
 }
 
 /// Converts an error; one that concerns only the call gives the exit status of a wrong call.
-fn refused(error: StartError) -> Failure {
+fn start_failure(error: StartError) -> Failure {
     match error {
         StartError::OpenWithoutKey(listen) => Failure::Call(format!(
-            "refusing to listen on {listen} without an API key: set {KEY} or --api-key-file, let \
+            "refusing to listen on {listen} without an API key: set {API_KEY_VARIABLE} or --api-key-file, let \
              people sign in with --accounts, or listen on 127.0.0.1"
         )),
         // Errors of the call, which the user can correct without looking at the data.
@@ -224,8 +227,8 @@ mod tests {
 
     #[test]
     fn an_open_server_is_a_call_that_is_wrong() {
-        let failure = refused(StartError::OpenWithoutKey(([0, 0, 0, 0], 80).into()));
-        assert_eq!(failure.status(), 2);
+        let failure = start_failure(StartError::OpenWithoutKey(([0, 0, 0, 0], 80).into()));
+        assert_eq!(failure.exit_status(), 2);
         assert!(failure.message().is_some_and(|message| message.contains("--api-key-file")));
     }
 }

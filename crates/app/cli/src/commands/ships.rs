@@ -4,14 +4,14 @@ use clap::Args;
 use serde_json::{Value, json};
 use sistership_jobs::Archive;
 use sistership_jobs::search::{
-    self, FactRange, FoundShip, KnownVectors, MAX_RANGES, Page, Search, ShipSearch,
+    self, FactRange, FoundShip, MAX_RANGES, PageRequest, SearchCriteria, ShipSearch, VectorCache,
 };
-use sistership_priors::similarity::Definition;
+use sistership_priors::similarity::VectorDefinition;
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
 use crate::output;
-use crate::table::{TextTable, number};
+use crate::table::{TextTable, format_number};
 use crate::values::definition;
 
 const EXAMPLES: &str = "\
@@ -48,7 +48,7 @@ pub struct ShipsArguments {
     /// Definition of the characteristic vector; by default mei-2019 if the ship has all of its
     /// components.
     #[arg(long, value_name = "NAME", value_parser = definition, requires = "similar_to")]
-    vector: Option<Definition>,
+    vector: Option<VectorDefinition>,
     /// Largest number of ships to print.
     #[arg(long, value_name = "N", default_value = "100", value_parser = clap::value_parser!(u32).range(1..=1000))]
     limit: u32,
@@ -69,19 +69,21 @@ pub fn run(ships: &ShipsArguments) -> Result<(), Failure> {
     }
     let known = ShipSearch { category: ships.category.clone(), tag: ships.tag.clone(), ranges };
     let search =
-        Search { ships: known, similar_to: ships.similar_to.clone(), vector: ships.vector };
+        SearchCriteria { ships: known, similar_to: ships.similar_to.clone(), vector: ships.vector };
     let found = with_archive(&ships.store, async |archive: &Archive| {
         // Without a server nothing else updates the index.
-        search::catch_up(archive).await?;
-        let page = Page::first(i64::from(ships.limit));
-        search::ships(archive, &KnownVectors::default(), &search, &page).await
+        search::update_index(archive).await?;
+        let page = PageRequest::first_page(i64::from(ships.limit));
+        search::search_ships(archive, &VectorCache::default(), &search, &page).await
     })?;
     // No paging on the command line: --limit is raised instead.
     let more = found.next.is_some();
-    output::print(ships.json, &document(&found.items, more), || text(&found.items, more))
+    output::print_result(ships.json, &search_document(&found.items, more), || {
+        format_ships(&found.items, more)
+    })
 }
 
-fn document(ships: &[FoundShip], more: bool) -> Value {
+fn search_document(ships: &[FoundShip], more: bool) -> Value {
     let one = |ship: &FoundShip| {
         let FoundShip { name, title, category, revision, value, .. } = ship;
         json!({ "ship": name, "title": title, "category": category, "revision": revision,
@@ -90,11 +92,11 @@ fn document(ships: &[FoundShip], more: bool) -> Value {
     json!({ "ships": ships.iter().map(one).collect::<Vec<_>>(), "more": more })
 }
 
-fn text(ships: &[FoundShip], more: bool) -> String {
+fn format_ships(ships: &[FoundShip], more: bool) -> String {
     let mut table = TextTable::new(["ship", "category", "value", "title"]);
     for ship in ships {
-        let value = ship.value.map_or_else(|| "-".to_owned(), number);
-        table.row([ship.name.clone(), ship.category.clone(), value, ship.title.clone()]);
+        let value = ship.value.map_or_else(|| "-".to_owned(), format_number);
+        table.add_row([ship.name.clone(), ship.category.clone(), value, ship.title.clone()]);
     }
     let rest = if more { "and more; see --limit\n" } else { "" };
     format!("{table}{rest}")

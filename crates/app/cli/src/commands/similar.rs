@@ -4,17 +4,17 @@ use std::path::PathBuf;
 
 use clap::Args;
 use sistership_jobs::Archive;
-use sistership_jobs::archive::vessel;
-use sistership_jobs::catalogue::{Catalogue, MOST};
+use sistership_jobs::archive::parse_vessel;
+use sistership_jobs::catalogue::{MAX_COMPARED_SHIPS, ZooCache};
 use sistership_jobs::champions::SourceModels;
 use sistership_model::{Vessel, Zoo};
-use sistership_priors::similarity::{Definition, RankedSource};
-use sistership_priors::source::{Similarity, similar};
+use sistership_priors::similarity::{RankedSource, VectorDefinition};
+use sistership_priors::source::{SimilarityRanking, rank_similar};
 use sistership_store::StoreError;
 
 use super::store::{StoreArguments, with_archive};
-use crate::failure::{Failure, both};
-use crate::table::{TextTable, number};
+use crate::failure::{Failure, combine_results};
+use crate::table::{TextTable, format_number};
 use crate::values::definition;
 use crate::{named, output, trials};
 
@@ -38,7 +38,7 @@ pub struct SimilarArguments {
     /// Definition of the characteristic vector; by default mei-2019 if the ship has all of its
     /// components.
     #[arg(long, value_name = "NAME", value_parser = definition)]
-    vector: Option<Definition>,
+    vector: Option<VectorDefinition>,
     /// Trials of the ship, with which source models are compared as well.
     #[arg(long, value_name = "TRIALS", num_args = 1..)]
     trials: Vec<PathBuf>,
@@ -55,52 +55,58 @@ pub struct SimilarArguments {
 /// Returns an error if the ship or a trial is refused.
 pub fn run(zoo: &Zoo, similar_to: &SimilarArguments) -> Result<(), Failure> {
     if similar_to.store.is_named() {
-        return of_store(zoo, similar_to);
+        return rank_store(zoo, similar_to);
     }
-    let asked = both(named::ship(zoo, &similar_to.ship), trials::read(&similar_to.trials));
+    let asked = combine_results(
+        named::resolve_ship(zoo, &similar_to.ship),
+        trials::read_trials(&similar_to.trials),
+    );
     let (target, read) = asked?;
     trials::remark_other_ship(&read, target.name());
-    let similarity = similar(zoo, &target, similar_to.vector, &trials::trials(&read));
-    output::print(similar_to.json, &similarity, || text(&target, &similarity))
+    let similarity = rank_similar(zoo, &target, similar_to.vector, &trials::trial_refs(&read));
+    output::print_result(similar_to.json, &similarity, || format_similarity(&target, &similarity))
 }
 
 /// Ranks the ships of a store.
-fn of_store(zoo: &Zoo, similar_to: &SimilarArguments) -> Result<(), Failure> {
-    let read = trials::read(&similar_to.trials)?;
-    let fitted = trials::trials(&read);
+fn rank_store(zoo: &Zoo, similar_to: &SimilarArguments) -> Result<(), Failure> {
+    let read = trials::read_trials(&similar_to.trials)?;
+    let fitted = trials::trial_refs(&read);
     let (target, similarity) = with_archive(&similar_to.store, async |archive| {
         let target = stored_ship(zoo, archive, &similar_to.ship).await?;
         // A limited number of ships: a store may have thousands.
-        let near = Catalogue::default().around(archive, &target, MOST).await.map_err(in_words)?;
-        let models = SourceModels::read(archive, &near).await.map_err(in_words)?;
-        let similarity = models.rank(&near, &target, similar_to.vector, &fitted);
+        let near = ZooCache::default()
+            .zoo_for_target(archive, &target, MAX_COMPARED_SHIPS)
+            .await
+            .map_err(error_text)?;
+        let models = SourceModels::for_zoo(archive, &near).await.map_err(error_text)?;
+        let similarity = models.rank_sources(&near, &target, similar_to.vector, &fitted);
         Ok::<_, String>((target, similarity))
     })?;
     trials::remark_other_ship(&read, target.name());
-    output::print(similar_to.json, &similarity, || text(&target, &similarity))
+    output::print_result(similar_to.json, &similarity, || format_similarity(&target, &similarity))
 }
 
 /// Returns the ship of a store, else of the zoo or a file.
 async fn stored_ship(zoo: &Zoo, archive: &Archive, name: &str) -> Result<Vessel, String> {
     match archive.store.ships().get(name).await {
-        Ok(ship) => vessel(&ship.name, &ship.document).map_err(in_words),
+        Ok(ship) => parse_vessel(&ship.name, &ship.document).map_err(error_text),
         // A ship that is not in the store may be compared with those that are.
-        Err(StoreError::NotFound { .. }) => named::ship(zoo, name)
+        Err(StoreError::NotFound { .. }) => named::resolve_ship(zoo, name)
             .map(|vessel| Vessel::clone(&vessel))
             .map_err(|failure| failure.message().unwrap_or_default().to_owned()),
-        Err(error) => Err(in_words(error)),
+        Err(error) => Err(error_text(error)),
     }
 }
 
-fn in_words(error: impl std::fmt::Display) -> String {
+fn error_text(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
-fn text(target: &Vessel, similarity: &Similarity) -> String {
+fn format_similarity(target: &Vessel, similarity: &SimilarityRanking) -> String {
     let vector: Vec<String> = similarity
         .vector
         .iter()
-        .map(|(name, value)| format!("{name} {}", number(*value)))
+        .map(|(name, value)| format!("{name} {}", format_number(*value)))
         .collect();
     let Vessel { file, .. } = target;
     let head = format!("{} ({}), category {}\n", file.name, file.title, file.category);
@@ -109,11 +115,11 @@ fn text(target: &Vessel, similarity: &Similarity) -> String {
         similarity.definition.name(),
         vector.join(", ")
     );
-    format!("{head}{vector}{}", ranking(&similarity.ranking))
+    format!("{head}{vector}{}", ranking_table(&similarity.ranking))
 }
 
 /// Formats the ranking as a table; each reason of eligibility has its own line.
-pub fn ranking(ranking: &[RankedSource]) -> TextTable {
+pub fn ranking_table(ranking: &[RankedSource]) -> TextTable {
     let mut table = TextTable::new(["ship", "model", "correlation", "eligible", "why"]);
     for ranked in ranking {
         let correlation =
@@ -126,7 +132,7 @@ pub fn ranking(ranking: &[RankedSource]) -> TextTable {
         let mut cells = [ranked.ship.as_str(), model, &correlation, eligible].map(str::to_owned);
         // `take` leaves empty cells: only the first line of a ship names it.
         for reason in &ranked.reasons {
-            table.row(std::mem::take(&mut cells).into_iter().chain([reason.clone()]));
+            table.add_row(std::mem::take(&mut cells).into_iter().chain([reason.clone()]));
         }
     }
     table
@@ -139,9 +145,9 @@ mod tests {
 
     #[test]
     fn the_published_correlations_are_printed() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let target = zoo.vessel("kvlcc2").unwrap();
-        let text = text(target, &similar(&zoo, target, None, &[]));
+        let text = format_similarity(target, &rank_similar(&zoo, target, None, &[]));
         for figures in [
             ["mariner", "-0.576"],
             ["esso-tanker", "0.851"],

@@ -7,15 +7,15 @@ use serde::Serialize;
 use sistership_model::trial::Channel;
 use sistership_model::{Law, Model, Zoo};
 use sistership_simulation::error::standard_deviations;
-use sistership_simulation::recorded::{Replay, ReplaySettings};
+use sistership_simulation::recorded::{ReplaySettings, TrialReplay};
 
-use crate::commands::simulated::{SimulatedTrial, TrialSimulator, total};
-use crate::failure::{Failure, both};
-use crate::output::{self, count, note};
-use crate::table::{TextTable, number};
+use crate::commands::simulated::{SimulatedTrial, TrialSimulator, total_errors};
+use crate::failure::{Failure, combine_results};
+use crate::output::{self, format_count, print_note};
+use crate::table::{TextTable, format_number};
 use crate::trials::{self, ReadTrial};
-use crate::values::{Integration, positive};
-use crate::weights::BranchWords;
+use crate::values::{IntegrationMethod, positive};
+use crate::weights::CorrectionSummary;
 use crate::{commands::model_line, folder, named, track};
 
 const EXAMPLES: &str = "\
@@ -44,7 +44,7 @@ pub struct SimulateArguments {
     restart_s: Option<f64>,
     /// Integration method.
     #[arg(long, value_enum, default_value_t)]
-    method: Integration,
+    method: IntegrationMethod,
     /// Longest integration step; sampling intervals are divided into equal steps no longer than
     /// this.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true, default_value_t = 0.5)]
@@ -62,7 +62,7 @@ struct SimulateDocument<'a> {
     model: &'a str,
     law: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
-    branch: Option<BranchWords<'a>>,
+    branch: Option<CorrectionSummary<'a>>,
     trials: &'a [SimulatedTrial],
     all: Option<SimulatedTrial>,
 }
@@ -73,31 +73,36 @@ struct SimulateDocument<'a> {
 /// Returns an error if the model or a trial is refused, if a channel is missing, or if a simulation
 /// leaves the physical range.
 pub fn run(zoo: &Zoo, simulate: &SimulateArguments) -> Result<(), Failure> {
-    let asked = both(named::model(zoo, &simulate.model), trials::read(&simulate.trials));
+    let asked = combine_results(
+        named::resolve_model(zoo, &simulate.model),
+        trials::read_trials(&simulate.trials),
+    );
     let ((model, law), read) = asked?;
     trials::remark_other_ship(&read, &model.ship);
     // Output files are checked before the simulations.
-    let files = promised(simulate, &read)?;
+    let files = track_files(simulate, &read)?;
     let runs = simulate_all(simulate, &model, &law, &read)?;
-    let simulated = written(runs, files, &law, &read)?;
+    let simulated = write_tracks(runs, files, &law, &read)?;
     let document = SimulateDocument {
         model: &model.name,
         law: &model.law,
-        branch: model.branch.as_ref().map(BranchWords::of),
+        branch: model.branch.as_ref().map(CorrectionSummary::from_branch),
         trials: &simulated,
-        all: total(&simulated),
+        all: total_errors(&simulated),
     };
-    output::print(simulate.json, &document, || text(simulate, &model, &law, &document))?;
+    output::print_result(simulate.json, &document, || {
+        format_simulation(simulate, &model, &law, &document)
+    })?;
     if simulated.iter().any(|trial| trial.diverged) { Err(Failure::Told) } else { Ok(()) }
 }
 
-fn promised(
+fn track_files(
     simulate: &SimulateArguments,
     read: &[ReadTrial],
-) -> Result<Vec<folder::PromisedTrack>, Failure> {
+) -> Result<Vec<folder::TrackFile>, Failure> {
     let Some(out) = &simulate.out else { return Ok(Vec::new()) };
     let names: Vec<&str> = read.iter().map(|read| read.trial.name.as_str()).collect();
-    folder::promise(out, &names, &trials::inputs(read, &simulate.trials))
+    folder::prepare_files(out, &names, &trials::input_paths(read, &simulate.trials))
 }
 
 fn simulate_all(
@@ -105,31 +110,31 @@ fn simulate_all(
     model: &Model,
     law: &Law,
     read: &[ReadTrial],
-) -> Result<Vec<(SimulatedTrial, Replay)>, Failure> {
+) -> Result<Vec<(SimulatedTrial, TrialReplay)>, Failure> {
     let settings = ReplaySettings {
         restart_s: simulate.restart_s,
         method: simulate.method.into(),
         step_s: simulate.step_s,
     };
     // One scale for each channel over all trials, so that errors are comparable.
-    let deviations = standard_deviations(&trials::trials(read));
+    let deviations = standard_deviations(&trials::trial_refs(read));
     let simulator = TrialSimulator { model, law, settings, deviations };
-    note(&format!("simulating {} with {}", count(read.len(), "trial"), model.name));
-    read.iter().map(|read| simulator.run(read)).collect()
+    print_note(&format!("simulating {} with {}", format_count(read.len(), "trial"), model.name));
+    read.iter().map(|read| simulator.simulate_trial(read)).collect()
 }
 
 /// Writes the states of each trial, if an output folder is given.
-fn written(
-    runs: Vec<(SimulatedTrial, Replay)>,
-    files: Vec<folder::PromisedTrack>,
+fn write_tracks(
+    runs: Vec<(SimulatedTrial, TrialReplay)>,
+    files: Vec<folder::TrackFile>,
     law: &Law,
     read: &[ReadTrial],
 ) -> Result<Vec<SimulatedTrial>, Failure> {
     let mut files = files.into_iter();
     // There is either one file for each trial or none.
-    let one = |((mut simulated, run), read): ((SimulatedTrial, Replay), &ReadTrial)| {
+    let one = |((mut simulated, run), read): ((SimulatedTrial, TrialReplay), &ReadTrial)| {
         if let Some(promised) = files.next() {
-            promised.file.write(&track::csv(
+            promised.file.write(&track::track_csv(
                 &run.track,
                 law,
                 read.trial.channel(Channel::N).is_some(),
@@ -141,15 +146,15 @@ fn written(
     runs.into_iter().zip(read).map(one).collect()
 }
 
-fn text(
+fn format_simulation(
     simulate: &SimulateArguments,
     model: &Model,
     law: &Law,
     document: &SimulateDocument<'_>,
 ) -> String {
-    let restart = simulate
-        .restart_s
-        .map_or("once from the first sample".to_owned(), |s| format!("anew every {} s", number(s)));
+    let restart = simulate.restart_s.map_or("once from the first sample".to_owned(), |s| {
+        format!("anew every {} s", format_number(s))
+    });
     let head =
         format!("{}\nstarted {restart}; root mean square errors\n\n", model_line(model, law));
     let mut table = TextTable::new([
@@ -160,12 +165,12 @@ fn text(
         .iter()
         // For a single trial the total would repeat its row.
         .chain(document.all.as_ref().filter(|_| document.trials.len() > 1))
-        .for_each(|trial| table.row(trial.cells()));
+        .for_each(|trial| table.add_row(trial.table_cells()));
     let diverged = document.trials.iter().filter_map(|trial| {
         Some(format!("DIVERGED: {}: {}\n", trial.file, trial.reason.as_ref()?))
     });
     let outside = |trial: &SimulatedTrial| {
-        Some(format!("OUTSIDE: {}: {}\n", trial.file, trial.outside.as_ref()?.words()))
+        Some(format!("OUTSIDE: {}: {}\n", trial.file, trial.outside.as_ref()?.describe()))
     };
     let outside: String = document.trials.iter().filter_map(outside).collect();
     let written = simulate
@@ -173,6 +178,6 @@ fn text(
         .as_ref()
         .map_or(String::new(), |out| format!("simulated states written to {}\n", out.display()));
     let share = document.all.as_ref().and_then(|all| all.branch_share);
-    let branch = document.branch.as_ref().map_or(String::new(), |branch| branch.line(share));
+    let branch = document.branch.as_ref().map_or(String::new(), |branch| branch.to_line(share));
     format!("{head}{table}{}{outside}{branch}{written}", diverged.collect::<String>())
 }

@@ -8,12 +8,12 @@ use sistership_model::validity::Excursion;
 use sistership_model::{Law, Model};
 use sistership_simulation::Ship;
 use sistership_simulation::error::{SquaredError, standardised_mse};
-use sistership_simulation::recorded::{Replay, ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, TrialReplay, replay_trial};
 
 use crate::commands;
 use crate::failure::Failure;
-use crate::output::note;
-use crate::table::{number, optional};
+use crate::output::print_note;
+use crate::table::{format_number, format_optional};
 use crate::trials::ReadTrial;
 
 /// Channels whose errors are in every document, null if unknown.
@@ -67,30 +67,33 @@ impl TrialSimulator<'_> {
     ///
     /// # Errors
     /// Returns an error if the model cannot be simulated, or if the trial lacks a channel.
-    pub fn run(&self, read: &ReadTrial) -> Result<(SimulatedTrial, Replay), Failure> {
-        let ship = self.ship(&read.trial)?;
-        let run = replay(&ship, &read.trial, &self.settings);
+    pub fn simulate_trial(
+        &self,
+        read: &ReadTrial,
+    ) -> Result<(SimulatedTrial, TrialReplay), Failure> {
+        let ship = self.prepare_ship(&read.trial)?;
+        let run = replay_trial(&ship, &read.trial, &self.settings);
         let run = run.map_err(|error| {
             Failure::Refused(format!("{error} of {} by law `{}`", self.model.name, self.law.name))
         })?;
-        let errors = self.errors(&read.file, &read.trial, &run);
-        Ok((SimulatedTrial { branch_share: ship.branch_share(&run.track), ..errors }, run))
+        let errors = self.trial_errors(&read.file, &read.trial, &run);
+        Ok((SimulatedTrial { branch_share: ship.mean_correction_share(&run.track), ..errors }, run))
     }
 
     /// Returns the ship with a physical range that covers the speeds of a trial; its water depth is
     /// an input that the replay reads.
-    fn ship(&self, trial: &Trial) -> Result<Ship, Failure> {
-        let mut ship = commands::ready(self.model, self.law)?;
+    fn prepare_ship(&self, trial: &Trial) -> Result<Ship, Failure> {
+        let mut ship = commands::build_ship(self.model, self.law)?;
         let speeds = trial.channel(Channel::U).into_iter().flatten();
         ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
-        match trial.depth_m.or_else(|| mean(trial.channel(Channel::Depth)?)) {
+        match trial.depth_m.or_else(|| mean_value(trial.channel(Channel::Depth)?)) {
             // The mean of a recorded depth is enough to see whether the ship floats.
-            Some(depth_m) if commands::knows_depth(self.law) => {
+            Some(depth_m) if commands::has_depth_input(self.law) => {
                 commands::check_floats(self.model, depth_m)?
             }
             Some(depth_m) => {
                 let law = &self.law.name;
-                note(&format!(
+                print_note(&format!(
                     "warning: {}: sailed in {depth_m} m of water; law `{law}` knows deep water \
                      only",
                     trial.name
@@ -101,8 +104,8 @@ impl TrialSimulator<'_> {
         Ok(ship)
     }
 
-    fn errors(&self, file: &str, trial: &Trial, run: &Replay) -> SimulatedTrial {
-        let error = SquaredError::of(trial, run);
+    fn trial_errors(&self, file: &str, trial: &Trial, run: &TrialReplay) -> SimulatedTrial {
+        let error = SquaredError::from_trial(trial, run);
         let reason = run.stopped.as_ref().map(ToString::to_string);
         // Errors until a divergence would look better than those of a complete simulation.
         let known = |value: Option<f64>| value.filter(|_| reason.is_none());
@@ -124,22 +127,24 @@ impl TrialSimulator<'_> {
 
 impl SimulatedTrial {
     /// Formats the errors as cells of the table.
-    pub fn cells(&self) -> Vec<String> {
+    pub fn table_cells(&self) -> Vec<String> {
         let value = |channel: Channel| {
             let scale =
                 // Angles are printed in degrees, JSON has SI.
                 if matches!(channel, Channel::R | Channel::Psi) { 1_f64.to_degrees() } else { 1.0 };
-            optional(self.rmse.get(channel.name()).copied().flatten().map(|value| value * scale))
+            format_optional(
+                self.rmse.get(channel.name()).copied().flatten().map(|value| value * scale),
+            )
         };
-        let mut cells = vec![self.file.clone(), number(self.duration_s)];
+        let mut cells = vec![self.file.clone(), format_number(self.duration_s)];
         cells.extend(CHANNELS.map(value));
-        cells.push(optional(self.standardised_mse));
+        cells.push(format_optional(self.standardised_mse));
         cells
     }
 }
 
 /// Returns the errors over all samples of all trials; `None` if one diverged.
-pub fn total(trials: &[SimulatedTrial]) -> Option<SimulatedTrial> {
+pub fn total_errors(trials: &[SimulatedTrial]) -> Option<SimulatedTrial> {
     if trials.iter().any(|trial| trial.diverged) {
         return None;
     }
@@ -171,6 +176,6 @@ pub fn total(trials: &[SimulatedTrial]) -> Option<SimulatedTrial> {
     })
 }
 
-fn mean(values: &[f64]) -> Option<f64> {
+fn mean_value(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }

@@ -61,15 +61,15 @@ impl StoreArguments {
     ///
     /// # Errors
     /// Returns an error if the file cannot be parsed.
-    pub fn file(&self) -> Result<ConfigFile, Failure> {
-        config_file::read(self.config.as_deref())
+    pub fn read_config(&self) -> Result<ConfigFile, Failure> {
+        config_file::read_config(self.config.as_deref())
     }
 
     /// Returns the location of the store by the flags and the file.
     ///
     /// # Errors
     /// Returns an error if the place of the samples is not valid.
-    pub fn place(&self, file: &ConfigFile) -> Result<StorePlace, Failure> {
+    pub fn resolve_place(&self, file: &ConfigFile) -> Result<StorePlace, Failure> {
         let data_dir = self
             .data_dir
             .as_ref()
@@ -79,16 +79,16 @@ impl StoreArguments {
         let database_url = url.cloned().unwrap_or_else(|| sistership_api::sqlite_url(data_dir));
         Ok(StorePlace {
             database_url,
-            objects: self.objects(file, data_dir)?,
+            objects: self.objects_place(file, data_dir)?,
             data_dir: data_dir.to_path_buf(),
         })
     }
 
-    fn objects(&self, file: &ConfigFile, data_dir: &Path) -> Result<ObjectsPlace, Failure> {
+    fn objects_place(&self, file: &ConfigFile, data_dir: &Path) -> Result<ObjectsPlace, Failure> {
         let endpoint = self.objects_endpoint.clone().or_else(|| file.objects_endpoint.clone());
         let region = self.objects_region.clone().or_else(|| file.objects_region.clone());
         match self.objects_url.as_ref().or(file.objects_url.as_ref()) {
-            Some(url) => ObjectsPlace::s3(url, endpoint, region)
+            Some(url) => ObjectsPlace::parse_s3(url, endpoint, region)
                 .map_err(|error| Failure::Call(error.to_string())),
             None if endpoint.is_some() => {
                 Err(Failure::Call("objects_endpoint: say where on it, with objects_url".into()))
@@ -100,9 +100,9 @@ impl StoreArguments {
 
 impl StoreArguments {
     /// True if a store is named, or if one exists at the default place.
-    pub fn is_there(&self) -> bool {
-        let place = self.file().and_then(|file| self.place(&file));
-        self.is_named() || place.is_ok_and(|place| place.must_exist().is_ok())
+    pub fn exists(&self) -> bool {
+        let place = self.read_config().and_then(|file| self.resolve_place(&file));
+        self.is_named() || place.is_ok_and(|place| place.check_exists().is_ok())
     }
 
     /// True if a store is named.
@@ -116,14 +116,14 @@ impl StorePlace {
     ///
     /// # Errors
     /// Returns an error that names the missing file or folder.
-    pub fn must_exist(&self) -> Result<(), Failure> {
+    pub fn check_exists(&self) -> Result<(), Failure> {
         if let Some(file) = sqlite_file(&self.database_url).filter(|file| !file.is_file()) {
             return Err(Failure::Refused(format!(
                 "there is no database {}; name it with --database-url or --data-dir",
                 file.display()
             )));
         }
-        match self.objects.folder().filter(|folder| !folder.is_dir()) {
+        match self.objects.folder_path().filter(|folder| !folder.is_dir()) {
             Some(folder) => Err(Failure::Refused(format!(
                 "there is no data folder {}; name it with --data-dir",
                 folder.display()
@@ -148,14 +148,14 @@ pub fn with_archive<T, E: std::fmt::Display>(
     store: &StoreArguments,
     work: impl AsyncFnOnce(&Archive) -> Result<T, E>,
 ) -> Result<T, Failure> {
-    let place = store.place(&store.file()?)?;
-    place.must_exist()?;
+    let place = store.resolve_place(&store.read_config()?)?;
+    place.check_exists()?;
     block_on(async {
         let archive = Archive::open_at(&place.database_url, &place.objects).await;
         let archive =
             archive.map_err(|error| Failure::Refused(format!("cannot open the store: {error}")))?;
         // Every change is entered into the audit in the name of the command line.
-        let done = Actor::command_line().acting(work(&archive)).await;
+        let done = Actor::command_line().run_scoped(work(&archive)).await;
         // Also after an error, so that the store is left closed.
         archive.store.close().await;
         done.map_err(|error| Failure::Refused(error.to_string()))
@@ -167,14 +167,14 @@ pub fn with_archive<T, E: std::fmt::Display>(
 /// # Errors
 /// Returns the error of the work, or an error if no threads can be started.
 pub fn block_on<T>(work: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
-    runtime()?.block_on(work)
+    new_runtime()?.block_on(work)
 }
 
 /// Creates the threads of asynchronous work.
 ///
 /// # Errors
 /// Returns an error if no threads can be started.
-pub fn runtime() -> Result<tokio::runtime::Runtime, Failure> {
+pub fn new_runtime() -> Result<tokio::runtime::Runtime, Failure> {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
     runtime.map_err(|error| Failure::Refused(format!("no threads: {error}")))
 }
@@ -197,8 +197,8 @@ mod tests {
             data_dir: Some("/nowhere/at/all".into()),
             ..StoreArguments::default()
         };
-        let Ok(place) = arguments.place(&ConfigFile::default()) else { panic!("a place") };
-        assert!(place.must_exist().is_err_and(|failure| {
+        let Ok(place) = arguments.resolve_place(&ConfigFile::default()) else { panic!("a place") };
+        assert!(place.check_exists().is_err_and(|failure| {
             failure.message().is_some_and(|m| m.contains("there is no database"))
         }));
         assert!(!Path::new("/nowhere").exists());
@@ -212,7 +212,7 @@ mod tests {
                 objects_endpoint: endpoint.map(str::to_owned),
                 ..StoreArguments::default()
             };
-            arguments.place(&file).map(|place| place.objects.to_string())
+            arguments.resolve_place(&file).map(|place| place.objects.to_string())
         };
         assert_eq!(place(None, None), Ok("sistership-data".to_owned()));
         assert_eq!(

@@ -4,15 +4,17 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
 use serde_json::{Value, json};
-use sistership_auth::{Grant, PasswordError, check_name, check_password, hash_password, secret};
+use sistership_auth::{
+    Grant, PasswordError, check_name, check_password, hash_password, random_secret,
+};
 use sistership_jobs::Archive;
-use sistership_store::{GrantRow, MAX_LIMIT, Page, StoreError, User};
+use sistership_store::{GrantRow, MAX_LIMIT, PageRequest, StoreError, User};
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
 use crate::output;
 use crate::table::TextTable;
-use crate::zoo::text_of;
+use crate::zoo::read_text_file;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -95,12 +97,12 @@ enum UsersAction {
     /// Require that champions are approved by a person other than their author.
     SecondPerson {
         /// New value; by default the present value is shown.
-        set: Option<Switch>,
+        set: Option<OnOff>,
     },
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Switch {
+enum OnOff {
     On,
     Off,
 }
@@ -117,7 +119,7 @@ enum UsersError {
 type UsersResult = Result<(Value, String), UsersError>;
 
 /// New password, given or generated; a generated one is printed.
-struct Chosen {
+struct NewPassword {
     text: String,
     drawn: bool,
 }
@@ -132,62 +134,76 @@ pub fn run(users: &UsersArguments) -> Result<(), Failure> {
         UsersAction::Add { name, password_file, .. } => {
             // Checked before the store is opened: a wrong name is a wrong call.
             check_name(name).map_err(|message| Failure::Call(format!("name: {message}")))?;
-            Some(chosen(password_file.as_deref())?)
+            Some(new_password(password_file.as_deref())?)
         }
-        UsersAction::Password { password_file, .. } => Some(chosen(password_file.as_deref())?),
+        UsersAction::Password { password_file, .. } => {
+            Some(new_password(password_file.as_deref())?)
+        }
         _ => None,
     };
-    let work = async |archive: &Archive| done(&users.what, chosen.as_ref(), archive).await;
+    let work = async |archive: &Archive| run_action(&users.what, chosen.as_ref(), archive).await;
     let (document, text) = with_archive(&users.store, work)?;
-    output::print(users.json, &document, || text)
+    output::print_result(users.json, &document, || text)
 }
 
-fn chosen(file: Option<&Path>) -> Result<Chosen, Failure> {
+fn new_password(file: Option<&Path>) -> Result<NewPassword, Failure> {
     let Some(path) = file else {
-        let text = secret().map_err(|error| Failure::Refused(error.to_string()))?;
-        return Ok(Chosen { text, drawn: true });
+        let text = random_secret().map_err(|error| Failure::Refused(error.to_string()))?;
+        return Ok(NewPassword { text, drawn: true });
     };
     // Editors end a file with a newline, which is no part of the password.
-    let text = text_of(path)?.trim_end_matches(['\r', '\n']).to_owned();
+    let text = read_text_file(path)?.trim_end_matches(['\r', '\n']).to_owned();
     check_password(&text).map_err(|message| crate::failure::about_file(path, message))?;
-    Ok(Chosen { text, drawn: false })
+    Ok(NewPassword { text, drawn: false })
 }
 
-async fn done(what: &UsersAction, chosen: Option<&Chosen>, archive: &Archive) -> UsersResult {
+async fn run_action(
+    what: &UsersAction,
+    chosen: Option<&NewPassword>,
+    archive: &Archive,
+) -> UsersResult {
     let users = archive.store.users();
     match what {
         UsersAction::Add { name, title, roles, .. } => {
             // Hashed before the row is written: the store never sees the password itself.
             let hash = chosen.map(|chosen| hash_password(&chosen.text)).transpose()?;
             let title = title.as_deref().unwrap_or(name);
-            users.create(name, title, hash.as_deref(), &rows(roles)).await?;
-            told(name, "created", chosen)
+            users.create(name, title, hash.as_deref(), &grant_rows(roles)).await?;
+            user_result(name, "created", chosen)
         }
-        UsersAction::List => list(archive).await,
+        UsersAction::List => list_users(archive).await,
         UsersAction::Roles { name, roles } => {
-            archive.store.grants().replace(&User::principal(name), &rows(roles)).await?;
-            told(name, "has these roles now", None)
+            archive
+                .store
+                .grants()
+                .replace_roles(&User::principal_name(name), &grant_rows(roles))
+                .await?;
+            user_result(name, "has these roles now", None)
         }
         UsersAction::Identity { name, identity } => {
             let pair = |pair: &[String]| (pair[0].clone(), pair[1].clone());
             // An empty list removes the link to a provider.
             let those: Vec<_> = identity.chunks_exact(2).map(pair).collect();
-            archive.store.identities().replace(name, &those).await?;
-            told(name, "is known so by providers now", None)
+            archive.store.identities().replace_identities(name, &those).await?;
+            user_result(name, "is known so by providers now", None)
         }
         UsersAction::Password { name, .. } => {
             let hash = chosen.map(|chosen| hash_password(&chosen.text)).transpose()?;
             users.set_password(name, hash.as_deref().unwrap_or_default()).await?;
-            told(name, "has another password", chosen)
+            user_result(name, "has another password", chosen)
         }
-        UsersAction::Disable { name } => told(&users.disable(name).await?.name, "disabled", None),
-        UsersAction::Enable { name } => told(&users.enable(name).await?.name, "enabled", None),
+        UsersAction::Disable { name } => {
+            user_result(&users.disable(name).await?.name, "disabled", None)
+        }
+        UsersAction::Enable { name } => {
+            user_result(&users.enable(name).await?.name, "enabled", None)
+        }
         UsersAction::SecondPerson { set } => second_person(archive, *set).await,
     }
 }
 
 /// Describes what was done to a user, with the password if it was generated.
-fn told(name: &str, what: &str, chosen: Option<&Chosen>) -> UsersResult {
+fn user_result(name: &str, what: &str, chosen: Option<&NewPassword>) -> UsersResult {
     // A given password is never printed.
     let drawn = chosen.filter(|chosen| chosen.drawn).map(|chosen| &chosen.text);
     let secret = drawn.map_or_else(String::new, |text| format!("; the password is {text}"));
@@ -197,20 +213,20 @@ fn told(name: &str, what: &str, chosen: Option<&Chosen>) -> UsersResult {
     ))
 }
 
-async fn second_person(archive: &Archive, set: Option<Switch>) -> UsersResult {
+async fn second_person(archive: &Archive, set: Option<OnOff>) -> UsersResult {
     let settings = archive.store.settings();
     if let Some(set) = set {
-        settings.set_second_person(set == Switch::On).await?;
+        settings.set_second_person(set == OnOff::On).await?;
     }
-    let on = settings.second_person().await?;
+    let on = settings.requires_second_person().await?;
     let text = if on { "a second person is asked for" } else { "no second person is asked for" };
     Ok((json!({ "second_person": on }), text.to_owned()))
 }
 
 /// Converts roles to rows of the store.
-pub(super) fn rows(roles: &[Grant]) -> Vec<GrantRow> {
+pub(super) fn grant_rows(roles: &[Grant]) -> Vec<GrantRow> {
     let row = |grant: &Grant| {
-        let (kind, name) = grant.scope.parts();
+        let (kind, name) = grant.scope.to_parts();
         let (scope_kind, scope_name) = (kind.to_owned(), name.to_owned());
         GrantRow { scope_kind, scope_name, role: grant.role.as_str().to_owned() }
     };
@@ -218,7 +234,7 @@ pub(super) fn rows(roles: &[Grant]) -> Vec<GrantRow> {
 }
 
 /// Converts rows of the store to the text form of roles.
-pub(super) fn words(rows: &[GrantRow]) -> Vec<String> {
+pub(super) fn grant_texts(rows: &[GrantRow]) -> Vec<String> {
     let word = |row: &GrantRow| match row.scope_kind.as_str() {
         "server" => row.role.clone(),
         kind => format!("{}@{kind}:{}", row.role, row.scope_name),
@@ -226,21 +242,32 @@ pub(super) fn words(rows: &[GrantRow]) -> Vec<String> {
     rows.iter().map(word).collect()
 }
 
-async fn list(archive: &Archive) -> UsersResult {
+async fn list_users(archive: &Archive) -> UsersResult {
     let mut table = TextTable::new(["name", "title", "roles", "state"]);
-    let (mut all, mut page) = (Vec::new(), Page::first(MAX_LIMIT));
+    let (mut all, mut page) = (Vec::new(), PageRequest::first_page(MAX_LIMIT));
     loop {
         let users = archive.store.users().list(&page).await?;
         for user in users.items {
             // One query for each user: a store has few users.
-            let roles = words(&archive.store.grants().of(&User::principal(&user.name)).await?);
+            let roles = grant_texts(
+                &archive
+                    .store
+                    .grants()
+                    .list_by_principal(&User::principal_name(&user.name))
+                    .await?,
+            );
             let state = if user.is_enabled() { "enabled" } else { "disabled" };
-            table.row([user.name.clone(), user.title.clone(), roles.join(" "), state.to_owned()]);
+            table.add_row([
+                user.name.clone(),
+                user.title.clone(),
+                roles.join(" "),
+                state.to_owned(),
+            ]);
             all.push(json!({ "name": user.name, "title": user.title, "roles": roles,
                 "enabled": user.is_enabled() }));
         }
         let Some(next) = users.next else { break };
-        page = Page::after(next, MAX_LIMIT);
+        page = PageRequest::after_key(next, MAX_LIMIT);
     }
     Ok((json!({ "users": all }), table.to_string()))
 }

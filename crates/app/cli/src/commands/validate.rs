@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sistership_assessment::uncertainty::{Sampling, draws};
+use sistership_assessment::uncertainty::{Sampling, draw_from_posterior};
 use sistership_assessment::validation::{TrialOfShip, Validation, validate};
 use sistership_model::Zoo;
 use sistership_report::render_validation;
 
-use crate::failure::{Failure, both};
-use crate::files::PromisedFile;
-use crate::table::{TextTable, number, optional};
+use crate::failure::{Failure, combine_results};
+use crate::files::OutputFile;
+use crate::table::{TextTable, format_number, format_optional};
 use crate::{named, output, trials};
 
 const EXAMPLES: &str = "\
@@ -53,50 +53,56 @@ pub struct ValidateArguments {
 pub fn run(zoo: &Zoo, asked: &ValidateArguments) -> Result<(), Failure> {
     let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
     let inputs: Vec<PathBuf> = [&asked.model, &asked.ship].map(PathBuf::from).to_vec();
-    let page = asked.report.as_ref().map(|path| PromisedFile::new(path, &inputs)).transpose();
+    let page = asked.report.as_ref().map(|path| OutputFile::new(path, &inputs)).transpose();
     let sampling = Sampling { samples: asked.draws, ..Sampling::default() };
     let checked = sampling.check().map_err(|message| Failure::Call(format!("--draws: {message}")));
-    let model = both(named::model(zoo, &asked.model), named::ship(zoo, &asked.ship));
-    let given = both(both(page, checked), trials::read(&asked.trials));
-    let (((model, law), vessel), ((page, ()), read)) = both(model, given)?;
+    let model = combine_results(
+        named::resolve_model(zoo, &asked.model),
+        named::resolve_ship(zoo, &asked.ship),
+    );
+    let given = combine_results(combine_results(page, checked), trials::read_trials(&asked.trials));
+    let (((model, law), vessel), ((page, ()), read)) = combine_results(model, given)?;
     let of_ship: Vec<TrialOfShip<'_>> = read
         .iter()
         // The call asserts that the model was not fitted on these trials, as the help text says.
         .map(|read| TrialOfShip { name: &read.trial.name, trial: &read.trial, fitted: false })
         .collect();
     // A model without posterior is validated without the uncertainty of its parameters.
-    let drawn = draws(&model, sampling).unwrap_or_default();
+    let drawn = draw_from_posterior(&model, sampling).unwrap_or_default();
     let done = validate(&vessel, &model, &law, &drawn, &of_ship).map_err(|e| refused(&e))?;
     if let Some(file) = page {
         file.write(render_validation(&done).map_err(|e| refused(&e))?.html.as_bytes())?;
     }
-    output::print(asked.json, &done, || text(&done))
+    output::print_result(asked.json, &done, || format_validation(&done))
 }
 
-fn text(done: &Validation) -> String {
+fn format_validation(done: &Validation) -> String {
     let head = format!("{}, law {}: validation after {}\n", done.model, done.law, done.procedure);
-    let table =
-        if done.quantities.is_empty() { String::new() } else { format!("\n{}", table(done)) };
+    let table = if done.quantities.is_empty() {
+        String::new()
+    } else {
+        format!("\n{}", quantity_table(done))
+    };
     let remarks: String = done.remarks.iter().map(|remark| format!("remark: {remark}\n")).collect();
     format!("{head}{table}{}{remarks}", if remarks.is_empty() { "" } else { "\n" })
 }
 
-fn table(done: &Validation) -> TextTable {
+fn quantity_table(done: &Validation) -> TextTable {
     let mut table = TextTable::new([
         "quantity", "unit", "D", "S", "E % D", "U_V % D", "U_D", "U_SN", "U_input", "verdict",
     ]);
     for one in &done.quantities {
-        table.row([
+        table.add_row([
             one.quantity.clone(),
             one.unit.clone(),
-            number(one.data),
-            optional(one.simulated),
-            optional(one.comparison_error_percent),
-            optional(one.validation_uncertainty_percent),
-            optional(one.data_uncertainty),
-            optional(one.step_uncertainty),
-            optional(one.input_uncertainty),
-            one.verdict.words().to_owned(),
+            format_number(one.data),
+            format_optional(one.simulated),
+            format_optional(one.comparison_error_percent),
+            format_optional(one.validation_uncertainty_percent),
+            format_optional(one.data_uncertainty),
+            format_optional(one.step_uncertainty),
+            format_optional(one.input_uncertainty),
+            one.verdict.as_words().to_owned(),
         ]);
     }
     table

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use clap::Args;
 use sistership_jobs::Archive;
 use sistership_jobs::derive::DeriveError;
-use sistership_jobs::verify::{Verification, verify_with};
+use sistership_jobs::verify::{Verification, verify_with_progress};
 
 use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
-use crate::output::{self, note};
+use crate::output::{self, print_note};
 use crate::values::version;
 
 const EXAMPLES: &str = "\
@@ -40,8 +40,8 @@ pub struct VerifyArguments {
 /// its recipe gives.
 pub fn run(verify: &VerifyArguments) -> Result<(), Failure> {
     let verification =
-        with_archive(&verify.store, async |archive| verification(verify, archive).await)?;
-    output::print(verify.json, &verification, || text(&verification))?;
+        with_archive(&verify.store, async |archive| run_verification(verify, archive).await)?;
+    output::print_result(verify.json, &verification, || format_verification(&verification))?;
     // The differences are in the output already; only the exit status is left.
     if verification.identical { Ok(()) } else { Err(Failure::Told) }
 }
@@ -55,20 +55,20 @@ struct VerifyError {
     error: DeriveError,
 }
 
-async fn verification(
+async fn run_verification(
     verify: &VerifyArguments,
     archive: &Archive,
 ) -> Result<Verification, VerifyError> {
     let (ship, number) = &verify.version;
     let told = |fraction: f64, what: &str| {
-        note(&format!("{:3.0} % {what}", 100.0 * fraction));
+        print_note(&format!("{:3.0} % {what}", 100.0 * fraction));
         true
     };
-    let verification = verify_with(archive, ship, *number, Arc::new(told)).await;
+    let verification = verify_with_progress(archive, ship, *number, Arc::new(told)).await;
     verification.map_err(|error| VerifyError { ship: ship.clone(), number: *number, error })
 }
 
-fn text(verification: &Verification) -> String {
+fn format_verification(verification: &Verification) -> String {
     let Verification { model, number, sha256, derived_sha256, identical, remarks, .. } =
         verification;
     let head = if *identical {

@@ -5,7 +5,7 @@ use sistership_api::{Config, Workers};
 
 use super::config_file::ConfigFile;
 use super::log::LogArguments;
-use super::running::{LeaseArguments, memory, run_until_stopped, workers};
+use super::running::{LeaseArguments, memory_bytes, run_until_stopped, worker_count};
 use super::store::StoreArguments;
 use crate::failure::Failure;
 use crate::output;
@@ -43,30 +43,34 @@ pub struct WorkArguments {
 /// # Errors
 /// Returns an error if the configuration is refused, or if the store cannot be used.
 pub fn run(work: &WorkArguments) -> Result<(), Failure> {
-    let file = work.store.file()?;
-    let config = config(work, &file)?;
-    work.log.begin(&file)?;
+    let file = work.store.read_config()?;
+    let config = worker_config(work, &file)?;
+    work.log.start_log(&file)?;
     let start = async {
         let workers = Workers::start(config.clone())
             .await
             .map_err(|error| Failure::Refused(error.to_string()))?;
-        output::print(false, &(), || {
+        output::print_result(false, &(), || {
             format!("sistership works as process {}", std::process::id())
         })?;
         Ok(workers)
     };
-    run_until_stopped(config.stop_bound(), start, Workers::stop)
+    run_until_stopped(config.stop_deadline(), start, Workers::stop)
 }
 
-fn config(work: &WorkArguments, file: &ConfigFile) -> Result<Config, Failure> {
-    let place = work.store.place(file)?;
+fn worker_config(work: &WorkArguments, file: &ConfigFile) -> Result<Config, Failure> {
+    let place = work.store.resolve_place(file)?;
     let mut config = Config::new(place.data_dir);
     config.objects = place.objects;
     config.database_url = place.database_url;
     // At least one: a process without workers would do nothing.
-    config.workers = workers(work.workers, file, 1)?;
-    config.limits.job_memory =
-        memory("job_memory_mb", work.job_memory_mb, file.job_memory_mb, config.limits.job_memory)?;
-    config.leases = work.lease.leases(file)?;
+    config.workers = worker_count(work.workers, file, 1)?;
+    config.limits.job_memory = memory_bytes(
+        "job_memory_mb",
+        work.job_memory_mb,
+        file.job_memory_mb,
+        config.limits.job_memory,
+    )?;
+    config.leases = work.lease.lease_settings(file)?;
     Ok(config)
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 use sistership_model::{Model, Zoo};
 
 use crate::failure::Failure;
-use crate::files::PromisedFile;
+use crate::files::OutputFile;
 use crate::trials::{self, ReadTrial};
 
 /// Files that were written.
@@ -24,18 +24,18 @@ pub struct WrittenFiles<'a> {
 ///
 /// # Errors
 /// Returns an error if it cannot be written, or is one of `inputs`.
-pub fn promised(path: Option<&Path>, inputs: &[PathBuf]) -> Result<Option<PromisedFile>, Failure> {
-    path.map(|path| PromisedFile::new(path, inputs)).transpose()
+pub fn output_file(path: Option<&Path>, inputs: &[PathBuf]) -> Result<Option<OutputFile>, Failure> {
+    path.map(|path| OutputFile::new(path, inputs)).transpose()
 }
 
 /// Checks that no output is an input: the files of a manifest are known only after it was read.
 ///
 /// # Errors
 /// Returns an error that names the file.
-pub fn guard(files: &WrittenFiles<'_>, read: &[ReadTrial]) -> Result<(), Failure> {
-    let inputs = trials::inputs(read, &[]);
+pub fn check_outputs(files: &WrittenFiles<'_>, read: &[ReadTrial]) -> Result<(), Failure> {
+    let inputs = trials::input_paths(read, &[]);
     let mut files = files.out.into_iter().chain(files.report);
-    files.try_for_each(|path| PromisedFile::new(path, &inputs).map(|_| ()))
+    files.try_for_each(|path| OutputFile::new(path, &inputs).map(|_| ()))
 }
 
 /// Returns the model as YAML, which is parsed once as a check; `how` describes its method.

@@ -6,14 +6,14 @@ use std::sync::Arc;
 use clap::{Args, Subcommand};
 use serde::Serialize;
 use sistership_assessment::validation::{
-    Appraisal, Dataset, Review, Severity, appraise_vessel, review,
+    CatalogueEntry, ModelAppraisal, Severity, ShipReview, appraise_vessel, review_ship,
 };
 use sistership_model::{Vessel, Zoo};
 
 use super::zoo_text;
 use crate::failure::{Failure, about_file};
-use crate::files::PromisedFile;
-use crate::zoo::text_of;
+use crate::files::OutputFile;
+use crate::zoo::read_text_file;
 use crate::{named, output};
 
 const EXAMPLES: &str = "\
@@ -72,57 +72,60 @@ enum ZooAction {
 /// Returns an error if a file is refused, by its format or by physics.
 pub fn run(zoo: &Zoo, asked: &ZooArguments) -> Result<(), Failure> {
     match &asked.what {
-        ZooAction::List { ships } => list(zoo, ships, asked.json),
+        ZooAction::List { ships } => list_models(zoo, ships, asked.json),
         ZooAction::Add { file, into, page } => {
-            add(zoo, file, into.as_deref(), page.as_deref(), asked.json)
+            add_ship(zoo, file, into.as_deref(), page.as_deref(), asked.json)
         }
-        ZooAction::Cite { ships } => cite(zoo, ships, asked.json),
+        ZooAction::Cite { ships } => cite_sources(zoo, ships, asked.json),
     }
 }
 
 #[derive(Serialize)]
 struct CiteDocument {
     #[serde(rename = "@graph")]
-    graph: Vec<Dataset>,
+    graph: Vec<CatalogueEntry>,
 }
 
-fn cite(zoo: &Zoo, ships: &[String], json: bool) -> Result<(), Failure> {
-    let graph = vessels(zoo, ships)?.iter().map(|vessel| Dataset::of(vessel)).collect();
+fn cite_sources(zoo: &Zoo, ships: &[String], json: bool) -> Result<(), Failure> {
+    let graph = select_vessels(zoo, ships)?
+        .iter()
+        .map(|vessel| CatalogueEntry::from_vessel(vessel))
+        .collect();
     let document = CiteDocument { graph };
-    output::print(json, &document, || zoo_text::cited(&document.graph))
+    output::print_result(json, &document, || zoo_text::format_citations(&document.graph))
 }
 
-fn vessels(zoo: &Zoo, ships: &[String]) -> Result<Vec<Arc<Vessel>>, Failure> {
+fn select_vessels(zoo: &Zoo, ships: &[String]) -> Result<Vec<Arc<Vessel>>, Failure> {
     match ships {
         [] => Ok(zoo.vessels().cloned().collect()),
-        names => names.iter().map(|name| named::ship(zoo, name)).collect(),
+        names => names.iter().map(|name| named::resolve_ship(zoo, name)).collect(),
     }
 }
 
 #[derive(Serialize)]
 struct ListDocument {
-    models: Vec<Appraisal>,
+    models: Vec<ModelAppraisal>,
 }
 
-fn list(zoo: &Zoo, ships: &[String], json: bool) -> Result<(), Failure> {
+fn list_models(zoo: &Zoo, ships: &[String], json: bool) -> Result<(), Failure> {
     let mut models = Vec::new();
-    for vessel in vessels(zoo, ships)? {
+    for vessel in select_vessels(zoo, ships)? {
         models.extend(appraise_vessel(zoo, &vessel)?);
     }
     let document = ListDocument { models };
-    output::print(json, &document, || zoo_text::listed(&document.models))
+    output::print_result(json, &document, || zoo_text::format_models(&document.models))
 }
 
 #[derive(Serialize)]
 struct AddDocument<'a> {
     #[serde(flatten)]
-    review: &'a Review,
+    review: &'a ShipReview,
     taken: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     written: Option<PathBuf>,
 }
 
-fn add(
+fn add_ship(
     zoo: &Zoo,
     file: &std::path::Path,
     into: Option<&std::path::Path>,
@@ -130,21 +133,23 @@ fn add(
     json: bool,
 ) -> Result<(), Failure> {
     // The page is written also for a refused ship: it says what to change.
-    let page = page.map(|path| PromisedFile::new(path, &[file.to_owned()])).transpose()?;
+    let page = page.map(|path| OutputFile::new(path, &[file.to_owned()])).transpose()?;
     let vessel = named::vessel_file(zoo, file)?;
     // A file that cannot be parsed never gets here; the review is about its content.
-    let review = review(zoo, &vessel)?;
+    let review = review_ship(zoo, &vessel)?;
     if let Some(page) = page {
-        page.write(sistership_report::contributed_ship(&vessel, &review).as_bytes())?;
+        page.write(sistership_report::contributed_ship_page(&vessel, &review).as_bytes())?;
     }
-    let taken = review.is_taken();
+    let taken = review.is_acceptable();
     let written = match into.filter(|_| taken) {
-        Some(zoo_folder) => Some(copied(file, zoo_folder, vessel.name())?),
+        Some(zoo_folder) => Some(copy_vessel(file, zoo_folder, vessel.name())?),
         None => None,
     };
     let document = AddDocument { review: &review, taken, written };
-    output::print(json, &document, || zoo_text::reviewed(&review, document.written.as_deref()))?;
-    let refused = |finding: &&sistership_assessment::validation::Finding| {
+    output::print_result(json, &document, || {
+        zoo_text::format_review(&review, document.written.as_deref())
+    })?;
+    let refused = |finding: &&sistership_assessment::validation::ReviewFinding| {
         finding.severity == Severity::Refused
     };
     match review.findings.iter().filter(refused).count() {
@@ -154,7 +159,7 @@ fn add(
 }
 
 /// Copies the file into a zoo folder; an existing file is not replaced.
-fn copied(
+fn copy_vessel(
     file: &std::path::Path,
     zoo_folder: &std::path::Path,
     name: &str,
@@ -167,8 +172,8 @@ fn copied(
     if path.exists() {
         return Err(about_file(&path, "is there already; move it away first"));
     }
-    let text = text_of(file)?;
-    PromisedFile::new(&path, &[])?.write(text.as_bytes())?;
+    let text = read_text_file(file)?;
+    OutputFile::new(&path, &[])?.write(text.as_bytes())?;
     Ok(path)
 }
 
@@ -183,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_ship_joins_by_a_file_and_one_that_turns_the_wrong_way_does_not() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("ship.yaml");
         let into = Some(folder.path().join("own"));
@@ -214,7 +219,7 @@ mod tests {
 
     #[test]
     fn the_list_names_unknown_ships() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let refused =
             run(&zoo, &asked(ZooAction::List { ships: vec!["marinr".into()] })).unwrap_err();
         assert!(refused.message().unwrap().contains("did you mean `mariner`"));

@@ -2,18 +2,20 @@
 
 use std::path::Path;
 
-use sistership_assessment::validation::{Appraisal, Comparison, Dataset, Review, Severity, Work};
-use sistership_report::numbers::hundredths;
+use sistership_assessment::validation::{
+    CatalogueEntry, CitedWork, FigureComparison, ModelAppraisal, Severity, ShipReview,
+};
+use sistership_report::numbers::format_hundredths;
 
 use crate::table::TextTable;
 
 /// Formats models with their status and manoeuvres, and the published trials they are compared
 /// with.
-pub fn listed(models: &[Appraisal]) -> String {
-    format!("{}{}", table(models), trials(models))
+pub fn format_models(models: &[ModelAppraisal]) -> String {
+    format!("{}{}", model_table(models), trial_table(models))
 }
 
-fn table(models: &[Appraisal]) -> String {
+fn model_table(models: &[ModelAppraisal]) -> String {
     let mut table = TextTable::new([
         "model",
         "law",
@@ -24,20 +26,20 @@ fn table(models: &[Appraisal]) -> String {
         "20/20 deg",
     ]);
     for model in models {
-        table.row([
+        table.add_row([
             model.model.clone(),
             model.law.clone(),
-            model.standing.word().to_owned(),
-            hundredths(model.turn_lengths(|turn| turn.advance_m)),
-            hundredths(model.turn_lengths(|turn| turn.tactical_diameter_m)),
-            hundredths(model.first_overshoot_deg(10.0)),
-            hundredths(model.first_overshoot_deg(20.0)),
+            model.standing.as_word().to_owned(),
+            format_hundredths(model.turn_lengths(|turn| turn.advance_m)),
+            format_hundredths(model.turn_lengths(|turn| turn.tactical_diameter_m)),
+            format_hundredths(model.first_overshoot_deg(10.0)),
+            format_hundredths(model.first_overshoot_deg(20.0)),
         ]);
     }
     table.to_string()
 }
 
-fn trials(models: &[Appraisal]) -> String {
+fn trial_table(models: &[ModelAppraisal]) -> String {
     let mut table =
         TextTable::new(["model", "published trial", "unit", "published", "sailed", "allowed", ""]);
     // The table is omitted without published trials.
@@ -45,27 +47,28 @@ fn trials(models: &[Appraisal]) -> String {
     for model in models {
         for one in &model.comparisons {
             any = true;
-            table.row(trial(model, one));
+            table.add_row(trial_cells(model, one));
         }
     }
     if any { format!("\n{table}") } else { String::new() }
 }
 
-fn trial(model: &Appraisal, one: &Comparison) -> [String; 7] {
+fn trial_cells(model: &ModelAppraisal, one: &FigureComparison) -> [String; 7] {
     [
         model.model.clone(),
         one.figure.clone(),
         one.unit.to_owned(),
-        hundredths(Some(one.published)),
-        hundredths(one.sailed),
-        hundredths(Some(one.limit)),
+        format_hundredths(Some(one.published)),
+        format_hundredths(one.sailed),
+        format_hundredths(Some(one.limit)),
         if one.is_within() { "met" } else { "missed" }.to_owned(),
     ]
 }
 
 /// Formats the findings on a contributed ship.
-pub fn reviewed(review: &Review, written: Option<&Path>) -> String {
-    let mut text = format!("{}: {}\n\n{}", review.ship, review.title, listed(&review.models));
+pub fn format_review(review: &ShipReview, written: Option<&Path>) -> String {
+    let mut text =
+        format!("{}: {}\n\n{}", review.ship, review.title, format_models(&review.models));
     for (severity, head) in
         [(Severity::Refused, "Refused"), (Severity::Look, "A reviewer should look at")]
     {
@@ -86,15 +89,15 @@ pub fn reviewed(review: &Review, written: Option<&Path>) -> String {
 }
 
 /// Formats ships with the sources of their data.
-pub fn cited(graph: &[Dataset]) -> String {
-    let one = |ship: &Dataset| {
-        let works: String = ship.sources.iter().map(work).collect();
+pub fn format_citations(graph: &[CatalogueEntry]) -> String {
+    let one = |ship: &CatalogueEntry| {
+        let works: String = ship.sources.iter().map(format_source).collect();
         format!("{}: {}\n{works}", ship.identifier, ship.name)
     };
     graph.iter().map(one).collect::<Vec<String>>().join("\n")
 }
 
-fn work(work: &Work) -> String {
+fn format_source(work: &CitedWork) -> String {
     let url = work.url.as_ref().map_or(String::new(), |url| format!("\n    {url}"));
     // A licence, else the terms of use, if one of them is known.
     let terms = work.license.as_deref().or(work.usage).unwrap_or("not known");

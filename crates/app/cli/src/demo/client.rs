@@ -23,16 +23,17 @@ impl ApiClient {
     /// # Errors
     /// Returns the server's message if it refuses the request.
     pub async fn get(&self, path: &str) -> Result<Value, Failure> {
-        json(self.client.get(self.at(path))).await
+        send_for_json(self.client.get(self.full_url(path))).await
     }
 
     /// Returns the text of a path in a media type.
     ///
     /// # Errors
     /// Same as [`ApiClient::get`].
-    pub async fn text(&self, path: &str, accept: &str) -> Result<String, Failure> {
-        let response = answered(self.client.get(self.at(path)).header("accept", accept)).await?;
-        response.text().await.map_err(broken)
+    pub async fn get_text(&self, path: &str, accept: &str) -> Result<String, Failure> {
+        let response =
+            send_request(self.client.get(self.full_url(path)).header("accept", accept)).await?;
+        response.text().await.map_err(connection_failure)
     }
 
     /// Sends YAML.
@@ -40,8 +41,13 @@ impl ApiClient {
     /// # Errors
     /// Same as [`ApiClient::get`].
     pub async fn post_yaml(&self, path: &str, body: String) -> Result<Value, Failure> {
-        json(self.client.post(self.at(path)).header("content-type", "application/yaml").body(body))
-            .await
+        send_for_json(
+            self.client
+                .post(self.full_url(path))
+                .header("content-type", "application/yaml")
+                .body(body),
+        )
+        .await
     }
 
     /// Sends JSON.
@@ -49,14 +55,14 @@ impl ApiClient {
     /// # Errors
     /// Same as [`ApiClient::get`].
     pub async fn post_json(&self, path: &str, body: &Value) -> Result<Value, Failure> {
-        json(self.client.post(self.at(path)).json(body)).await
+        send_for_json(self.client.post(self.full_url(path)).json(body)).await
     }
 
     /// Uploads files with their manifest.
     ///
     /// # Errors
     /// Same as [`ApiClient::get`].
-    pub async fn upload(
+    pub async fn upload_trials(
         &self,
         manifest: String,
         files: Vec<(String, Vec<u8>)>,
@@ -65,7 +71,7 @@ impl ApiClient {
         let form = files.into_iter().fold(form, |form, (name, bytes)| {
             form.part("file", Part::bytes(bytes).file_name(name))
         });
-        json(self.client.post(self.at("/v1/trials")).multipart(form)).await
+        send_for_json(self.client.post(self.full_url("/v1/trials")).multipart(form)).await
     }
 
     /// Deletes the resource of a path; this can be undone.
@@ -73,32 +79,32 @@ impl ApiClient {
     /// # Errors
     /// Same as [`ApiClient::get`].
     pub async fn delete(&self, path: &str) -> Result<(), Failure> {
-        answered(self.client.delete(self.at(path))).await.map(drop)
+        send_request(self.client.delete(self.full_url(path))).await.map(drop)
     }
 
-    fn at(&self, path: &str) -> String {
+    fn full_url(&self, path: &str) -> String {
         format!("{}{path}", self.url)
     }
 }
 
-async fn json(request: RequestBuilder) -> Result<Value, Failure> {
-    answered(request).await?.json().await.map_err(broken)
+async fn send_for_json(request: RequestBuilder) -> Result<Value, Failure> {
+    send_request(request).await?.json().await.map_err(connection_failure)
 }
 
 /// Sends a request; returns the answer, or the problem reported by the server.
-async fn answered(request: RequestBuilder) -> Result<Response, Failure> {
-    let response = request.send().await.map_err(broken)?;
+async fn send_request(request: RequestBuilder) -> Result<Response, Failure> {
+    let response = request.send().await.map_err(connection_failure)?;
     if response.status().is_success() {
         return Ok(response);
     }
     // A refusal of the server is a problem document with a `detail`.
-    let problem: Value = response.json().await.map_err(broken)?;
+    let problem: Value = response.json().await.map_err(connection_failure)?;
     Err(Failure::Refused(format!(
         "the server says: {}",
         problem["detail"].as_str().unwrap_or("no reason given")
     )))
 }
 
-fn broken(error: reqwest::Error) -> Failure {
+fn connection_failure(error: reqwest::Error) -> Failure {
     Failure::Refused(format!("the server did not answer: {error}"))
 }

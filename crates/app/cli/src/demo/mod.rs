@@ -9,25 +9,25 @@ use std::time::Duration;
 
 use clap::Args;
 use serde_json::{Value, json};
-use sistership_api::{Config, Running, Server};
+use sistership_api::{Config, RunningServer, Server};
 use sistership_identification::refine::HeldOut;
 use sistership_model::{Trial, Zoo};
 use sistership_simulation::Ship;
 use sistership_trials::samples::to_csv;
 
 use self::client::ApiClient;
-use self::sea_trials::{TrialManoeuvre, record};
+use self::sea_trials::{TrialManoeuvre, record_programme};
 use crate::commands::refine_text;
 use crate::commands::store::block_on;
 use crate::failure::{Failure, about_file};
 use crate::output;
 
 /// Ship of the demonstration: particulars only, without a model.
-const SHIP: &str = include_str!("ship.yaml");
-const NAME: &str = "northern-star";
+const SHIP_YAML: &str = include_str!("ship.yaml");
+const SHIP_NAME: &str = "northern-star";
 /// Ship that provides the trials: with roll, propeller and rudder, and a law that no other ship of
 /// the zoo has.
-const TRUTH: &str = "sr108";
+const TRIAL_SHIP: &str = "sr108";
 const SPEED_M_S: f64 = 10.47;
 const SEED: u64 = 1;
 /// Manoeuvres of the trials; the last two are held out from fit and selection, to judge the model.
@@ -41,7 +41,7 @@ const PROGRAMME: [TrialManoeuvre; 8] = [
     TrialManoeuvre::Turn(-20.0),
     TrialManoeuvre::Zigzag(15.0, 15.0),
 ];
-const JUDGED: usize = 2;
+const HELD_OUT_TRIALS: usize = 2;
 
 const ABOUT: &str = "\
 Starts the server on a database in FOLDER, creates a ship, uploads trials, selects a source,
@@ -64,15 +64,15 @@ pub struct DemoArguments {
 /// Returns an error if the server refuses a request, or if a file cannot be written.
 pub fn run(demo: &DemoArguments, zoo: &Zoo) -> Result<(), Failure> {
     // Before the folder is emptied: a failure leaves an old demonstration as it is.
-    let trials = sail(zoo)?;
-    empty(&demo.out)?;
+    let trials = record_trials(zoo)?;
+    empty_folder(&demo.out)?;
     block_on(async {
         let mut config = Config::new(demo.out.join("data"));
         // A free port: another server may run on the default one.
         config.listen.set_port(0);
         let running =
             Server::start(config).await.map_err(|error| Failure::Refused(error.to_string()))?;
-        let told = tell(&running, &trials, &demo.out).await;
+        let told = run_steps(&running, &trials, &demo.out).await;
         // Also after an error, so that the database is closed.
         running.stop().await;
         told
@@ -80,21 +80,21 @@ pub fn run(demo: &DemoArguments, zoo: &Zoo) -> Result<(), Failure> {
 }
 
 /// Simulates and records the trials of the unknown ship.
-fn sail(zoo: &Zoo) -> Result<Vec<Trial>, Failure> {
-    output::note(
+fn record_trials(zoo: &Zoo) -> Result<Vec<Trial>, Failure> {
+    output::print_note(
         "1/8  sailing the trials: SR108 with roll, by Son and Nomoto's law, and noisy instruments",
     );
-    let model = zoo.model(TRUTH).map_err(|error| Failure::Refused(error.to_string()))?;
+    let model = zoo.find_model(TRIAL_SHIP).map_err(|error| Failure::Refused(error.to_string()))?;
     let law = zoo
         .law(&model.law)
         .ok_or_else(|| Failure::Refused(format!("there is no law `{}`", model.law)))?;
     let ship = Ship::new(&model, law).map_err(|error| Failure::Refused(error.to_string()))?;
-    record(&ship, SPEED_M_S, &PROGRAMME, SEED)
+    record_programme(&ship, SPEED_M_S, &PROGRAMME, SEED)
         .map_err(|stopped| Failure::Refused(stopped.to_string()))
 }
 
 /// Removes an old demonstration; a folder with any other file is refused.
-fn empty(folder: &Path) -> Result<(), Failure> {
+fn empty_folder(folder: &Path) -> Result<(), Failure> {
     // Checked for every entry before anything is removed.
     let ours = |name: &std::ffi::OsStr| name == "data" || name == "report.html";
     let failed = |error: std::io::Error| about_file(folder, error.to_string());
@@ -115,42 +115,42 @@ fn empty(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-async fn tell(running: &Running, trials: &[Trial], out: &Path) -> Result<(), Failure> {
+async fn run_steps(running: &RunningServer, trials: &[Trial], out: &Path) -> Result<(), Failure> {
     let api = ApiClient::new(running.url());
-    output::note(&format!(
+    output::print_note(&format!(
         "2/8  server on {} with an embedded database in {}",
         running.url(),
         out.display()
     ));
     // The ship of the trials must not be available as a source.
-    api.delete(&format!("/v1/ships/{TRUTH}")).await?;
-    output::note(
+    api.delete(&format!("/v1/ships/{TRIAL_SHIP}")).await?;
+    output::print_note(
         "3/8  creating the ship northern-star; SR108 is taken out of the zoo, as it made the \
          trials",
     );
-    api.post_yaml("/v1/ships", SHIP.to_owned()).await?;
-    upload(&api, trials).await?;
-    let job = refine(&api, trials).await?;
-    let champion = api.get(&format!("/v1/ships/{NAME}/model")).await?;
-    output::note(&format!("7/8  champion: {}", described(&champion)));
+    api.post_yaml("/v1/ships", SHIP_YAML.to_owned()).await?;
+    upload_trials(&api, trials).await?;
+    let job = refine_model(&api, trials).await?;
+    let champion = api.get(&format!("/v1/ships/{SHIP_NAME}/model")).await?;
+    output::print_note(&format!("7/8  champion: {}", describe_champion(&champion)));
     let report =
         job["report"].as_str().ok_or_else(|| Failure::Refused("the job names no report".into()))?;
     let path = out.join("report.html");
-    let html = api.text(&format!("/v1/reports/{report}"), "text/html").await?;
+    let html = api.get_text(&format!("/v1/reports/{report}"), "text/html").await?;
     std::fs::write(&path, html).map_err(|error| about_file(&path, error.to_string()))?;
     let held_out: HeldOut = serde_json::from_value(job["held_out"].clone())
         .map_err(|error| Failure::Refused(error.to_string()))?;
-    output::note(&format!("8/8  report written to {}\n", path.display()));
-    output::print(false, &job, || {
+    output::print_note(&format!("8/8  report written to {}\n", path.display()));
+    output::print_result(false, &job, || {
         format!(
             "Root mean square errors, {}\n{}",
             held_out.how,
-            refine_text::errors(&held_out, false)
+            refine_text::format_errors(&held_out, false)
         )
     })
 }
 
-async fn upload(api: &ApiClient, trials: &[Trial]) -> Result<(), Failure> {
+async fn upload_trials(api: &ApiClient, trials: &[Trial]) -> Result<(), Failure> {
     let mut files = Vec::new();
     let mut entries = Vec::new();
     for trial in trials {
@@ -160,15 +160,15 @@ async fn upload(api: &ApiClient, trials: &[Trial]) -> Result<(), Failure> {
         files.push((trial.name.clone(), bytes));
     }
     // JSON is YAML.
-    let manifest = json!({ "kind": "trials", "ship": NAME, "trials": entries }).to_string();
-    let uploaded = api.upload(manifest, files).await?;
+    let manifest = json!({ "kind": "trials", "ship": SHIP_NAME, "trials": entries }).to_string();
+    let uploaded = api.upload_trials(manifest, files).await?;
     let rows: i64 = uploaded["trials"]
         .as_array()
         .into_iter()
         .flatten()
         .filter_map(|trial| trial["rows"].as_i64())
         .sum();
-    output::note(&format!(
+    output::print_note(&format!(
         "4/8  uploaded {} trials, {rows} samples, every check passed",
         trials.len()
     ));
@@ -176,14 +176,15 @@ async fn upload(api: &ApiClient, trials: &[Trial]) -> Result<(), Failure> {
 }
 
 /// Requests a refinement and follows its job.
-async fn refine(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
+async fn refine_model(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
     let held_out: Vec<&str> =
         // The last trials of the programme.
-        trials[trials.len() - JUDGED..].iter().map(|trial| trial.name.as_str()).collect();
-    let request = json!({ "ship": NAME, "source": "auto", "settings": { "held_out": held_out } });
+        trials[trials.len() - HELD_OUT_TRIALS..].iter().map(|trial| trial.name.as_str()).collect();
+    let request =
+        json!({ "ship": SHIP_NAME, "source": "auto", "settings": { "held_out": held_out } });
     let queued = api.post_json("/v1/refinements", &request).await?;
     let id = queued["id"].as_str().unwrap_or_default().to_owned();
-    output::note(&format!(
+    output::print_note(&format!(
         "5/8  refinement job {id}; kept out to judge on: {}",
         held_out.join(", ")
     ));
@@ -193,14 +194,14 @@ async fn refine(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
         let job = api.get(&format!("/v1/jobs/{id}")).await?;
         let message = job["message"].as_str().unwrap_or_default();
         if message != last {
-            output::note(&format!(
+            output::print_note(&format!(
                 "     {:3.0} % {message}",
                 100.0 * job["progress"].as_f64().unwrap_or(0.0)
             ));
             message.clone_into(&mut last);
         }
         match job["state"].as_str() {
-            Some("succeeded") => return chosen(&job["result"]),
+            Some("succeeded") => return print_selection(&job["result"]),
             Some("failed" | "cancelled") => {
                 return Err(Failure::Refused(format!("the job ended: {}", job["error"])));
             }
@@ -210,9 +211,9 @@ async fn refine(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failure> {
 }
 
 /// Prints the selected source, and the reasons against the others.
-fn chosen(result: &Value) -> Result<Value, Failure> {
+fn print_selection(result: &Value) -> Result<Value, Failure> {
     let from = result["from"].as_str().unwrap_or_default();
-    output::note(&format!("6/8  refined from {from}"));
+    output::print_note(&format!("6/8  refined from {from}"));
     for ranked in result["ranking"]
         .as_array()
         .into_iter()
@@ -224,7 +225,7 @@ fn chosen(result: &Value) -> Result<Value, Failure> {
         let reasons: Vec<&str> =
             ranked["reasons"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
         let verdict = if ranked["eligible"] == true { "eligible" } else { "not eligible" };
-        output::note(&format!(
+        output::print_note(&format!(
             "     {:<12} {correlation} {verdict}: {}",
             ranked["ship"].as_str().unwrap_or("?"),
             reasons.join("; ")
@@ -233,7 +234,7 @@ fn chosen(result: &Value) -> Result<Value, Failure> {
     Ok(result.clone())
 }
 
-fn described(champion: &Value) -> String {
+fn describe_champion(champion: &Value) -> String {
     let version = &champion["version"];
     let text = |value: &Value| value.as_str().unwrap_or("?").to_owned();
     let coefficients =

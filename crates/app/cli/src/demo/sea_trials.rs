@@ -8,9 +8,9 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, Normal};
 use sistership_model::Trial;
 use sistership_model::trial::Channel;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
 use sistership_simulation::state::at;
-use sistership_simulation::{Ship, Stopped, Trajectory};
+use sistership_simulation::{Ship, SimulationStop, Trajectory};
 
 /// A manoeuvre of the programme.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,7 +46,7 @@ impl TrialManoeuvre {
 const DURATION_S: f64 = 650.0;
 const EXECUTE_S: f64 = 60.0;
 /// Number of steps of 0.1 s for each sample: 2 Hz.
-const STRIDE: usize = 5;
+const STEPS_PER_SAMPLE: usize = 5;
 
 /// Recorded channels, with the index in the state and the standard deviation of the instrument, SI:
 /// differential GNSS, Doppler log, gyros, feedback units.
@@ -67,12 +67,12 @@ const REVOLUTIONS_NOISE_RPS: f64 = 1e-3;
 ///
 /// # Errors
 /// Returns time and reason if the ship left the physical range.
-pub fn record(
+pub fn record_programme(
     ship: &Ship,
     speed_m_s: f64,
     programme: &[TrialManoeuvre],
     seed: u64,
-) -> Result<Vec<Trial>, Stopped> {
+) -> Result<Vec<Trial>, SimulationStop> {
     // One generator for all trials, in their order.
     let mut noise = ChaCha12Rng::seed_from_u64(seed);
     let settings = ManoeuvreSettings {
@@ -84,21 +84,21 @@ pub fn record(
     };
     let sail = |manoeuvre: &TrialManoeuvre| match *manoeuvre {
         TrialManoeuvre::Turn(rudder_deg) => {
-            turn(ship, rudder_deg, &settings).map(|turn| turn.track)
+            simulate_turn(ship, rudder_deg, &settings).map(|turn| turn.track)
         }
         TrialManoeuvre::Zigzag(rudder_deg, switch_deg) => {
-            zigzag(ship, rudder_deg, switch_deg, &settings).map(|zigzag| zigzag.track)
+            simulate_zigzag(ship, rudder_deg, switch_deg, &settings).map(|zigzag| zigzag.track)
         }
     };
     programme
         .iter()
-        .map(|manoeuvre| Ok(recorded(*manoeuvre, &sail(manoeuvre)?, &mut noise)))
+        .map(|manoeuvre| Ok(add_noise(*manoeuvre, &sail(manoeuvre)?, &mut noise)))
         .collect()
 }
 
-fn recorded(manoeuvre: TrialManoeuvre, track: &Trajectory, noise: &mut ChaCha12Rng) -> Trial {
+fn add_noise(manoeuvre: TrialManoeuvre, track: &Trajectory, noise: &mut ChaCha12Rng) -> Trial {
     let sampled = |values: Vec<f64>, deviation: f64, noise: &mut ChaCha12Rng| -> Vec<f64> {
-        let values = values.into_iter().step_by(STRIDE);
+        let values = values.into_iter().step_by(STEPS_PER_SAMPLE);
         values
             .map(|value| {
                 value + Normal::new(0.0, deviation).map_or(0.0, |normal| normal.sample(noise))
@@ -108,13 +108,13 @@ fn recorded(manoeuvre: TrialManoeuvre, track: &Trajectory, noise: &mut ChaCha12R
     let mut channels: BTreeMap<Channel, Vec<f64>> = INSTRUMENTS
         .iter()
         .map(|&(channel, index, deviation)| {
-            (channel, sampled(track.column(index), deviation, noise))
+            (channel, sampled(track.state_column(index), deviation, noise))
         })
         .collect();
     channels.insert(Channel::N, sampled(track.n_rps.clone(), REVOLUTIONS_NOISE_RPS, noise));
     Trial {
         name: manoeuvre.file_name(),
-        t_s: track.t_s.iter().copied().step_by(STRIDE).collect(),
+        t_s: track.t_s.iter().copied().step_by(STEPS_PER_SAMPLE).collect(),
         channels,
         manoeuvre: Some(manoeuvre.name()),
         ..Trial::default()

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::file::{ActsOn, FormFile};
-use super::form::Form;
+use super::form::EffectForm;
 use crate::quantity::Quantity;
 
 /// Effect of a model: its definition and the values of its parameters.
@@ -29,8 +29,8 @@ impl AppliedEffect {
     ///
     /// # Errors
     /// Returns the field at fault and the reason.
-    pub fn checked(&self) -> Result<Form, (String, String)> {
-        let form = Form::read(self.acts_on, &self.form)?;
+    pub fn checked_form(&self) -> Result<EffectForm, (String, String)> {
+        let form = EffectForm::from_file(self.acts_on, &self.form)?;
         // Every parameter of the form must have a finite value, and there must be no other.
         for name in form.parameters.keys() {
             if !self.parameters.get(name).is_some_and(|quantity| quantity.value.is_finite()) {

@@ -7,17 +7,17 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use indexmap::IndexMap;
 
 use super::applied::AppliedEffect;
-use super::dress::qualified;
-use super::probe::{Probe, SEEDS};
+use super::dress::qualified_name;
+use super::probe::{FormulaProbe, SEEDS};
 use crate::Model;
 use crate::coefficient::Axis;
-use crate::law::{Dressing, Law};
+use crate::law::{Law, LawAdditions};
 use crate::quantity::Quantity;
 use sistership_formula::Expr;
 
 /// Model and law with the parameters of all its effects among the coefficients.
 #[derive(Debug, Clone)]
-pub struct AsTerms {
+pub struct EffectsAsTerms {
     /// The law.
     pub law: Law,
     /// The model, without effects.
@@ -28,7 +28,7 @@ pub struct AsTerms {
     terms: Vec<(String, usize, String)>,
 }
 
-impl AsTerms {
+impl EffectsAsTerms {
     /// Converts a model whose effects only add forces, affine in parameters that each act on one
     /// axis; `None` if an effect does otherwise, or if there is no effect. Each parameter has the
     /// mean of its prior, which is also its source.
@@ -37,7 +37,7 @@ impl AsTerms {
     /// The errors of [`Law::with_effects`].
     pub fn new(model: &Model, law: &Law) -> Result<Option<Self>, (String, String)> {
         let dressed = law.with_effects(model)?;
-        let Dressing { accelerations, lags, bands, measures, .. } = &dressed.dressing;
+        let LawAdditions { accelerations, lags, bands, measures, .. } = &dressed.dressing;
         if !(accelerations.is_empty() && lags.is_empty() && bands.is_empty() && measures.is_empty())
         {
             return Ok(None);
@@ -47,21 +47,29 @@ impl AsTerms {
         let mut as_terms =
             Self { law: dressed.clone(), model: bare, of: model.clone(), terms: Vec::new() };
         for (place, effect) in model.effects.iter().enumerate() {
-            let Some(by_axis) = Affine::new(&dressed, effect).by_axis() else { return Ok(None) };
-            by_axis
-                .iter()
-                .for_each(|(axis, parameters)| as_terms.add(place, effect, *axis, parameters));
+            let Some(by_axis) = AffineEffect::new(&dressed, effect).parameters_by_axis() else {
+                return Ok(None);
+            };
+            by_axis.iter().for_each(|(axis, parameters)| {
+                as_terms.add_effect(place, effect, *axis, parameters)
+            });
         }
         Ok((!as_terms.terms.is_empty()).then_some(as_terms))
     }
 
-    fn add(&mut self, place: usize, effect: &AppliedEffect, axis: Axis, parameters: &[String]) {
-        let (still, terms) = Affine::new(&self.law, effect).taken_apart(axis, parameters);
+    fn add_effect(
+        &mut self,
+        place: usize,
+        effect: &AppliedEffect,
+        axis: Axis,
+        parameters: &[String],
+    ) {
+        let (still, terms) = AffineEffect::new(&self.law, effect).split_terms(axis, parameters);
         let Some(of_axis) = self.law.axes.get_mut(&axis) else { return };
         // The force at zero parameters stays in the rest of the axis.
         of_axis.rest = still;
         for (parameter, term) in parameters.iter().zip(terms) {
-            let factor = qualified(&effect.name, &effect.form.name, parameter);
+            let factor = qualified_name(&effect.name, &effect.form.name, parameter);
             let name = format!("{axis}_{factor}");
             of_axis.terms.insert(name.clone(), term.clone());
             self.law.dressing.parameters.remove(&factor);
@@ -76,7 +84,7 @@ impl AsTerms {
 
     /// Returns the original model with fitted values of coefficients and of the parameters of
     /// effects.
-    pub fn fitted(&self, coefficients: &BTreeMap<String, Quantity>) -> Model {
+    pub fn with_fitted_values(&self, coefficients: &BTreeMap<String, Quantity>) -> Model {
         let mut model = self.of.clone();
         for (name, fitted) in coefficients {
             let of_effect = self.terms.iter().find(|(term, ..)| term == name);
@@ -94,17 +102,17 @@ impl AsTerms {
 
 /// Largest number of numbers, names and operators of what is added to an axis, with the values that
 /// mention the effect substituted.
-const MAX_SIZE: usize = 20_000;
+const MAX_EXPANDED_SIZE: usize = 20_000;
 
 /// Effect in a law that includes it.
-struct Affine<'a> {
+struct AffineEffect<'a> {
     law: &'a Law,
     effect: &'a AppliedEffect,
     /// Values that mention a parameter of the effect, directly or through other values.
     acting: BTreeSet<&'a str>,
 }
 
-impl<'a> Affine<'a> {
+impl<'a> AffineEffect<'a> {
     fn new(law: &'a Law, effect: &'a AppliedEffect) -> Self {
         let mut affine = Self { law, effect, acting: BTreeSet::new() };
         let mut known = HashMap::new();
@@ -112,7 +120,7 @@ impl<'a> Affine<'a> {
         for parameter in effect.parameters.keys() {
             known.clear();
             for (name, value) in &law.values {
-                if affine.depends_given(value, &affine.name(parameter), &mut known) {
+                if affine.depends_on(value, &affine.qualified_name(parameter), &mut known) {
                     affine.acting.insert(name);
                 }
             }
@@ -121,9 +129,9 @@ impl<'a> Affine<'a> {
     }
 
     /// Returns the size of a formula with the values that mention the effect substituted.
-    fn written_out(&self, expr: &Expr, known: &mut HashMap<&'a str, usize>) -> usize {
+    fn expanded_size(&self, expr: &Expr, known: &mut HashMap<&'a str, usize>) -> usize {
         let Expr::Name(name) = expr else {
-            let below = expr.children().into_iter().map(|child| self.written_out(child, known));
+            let below = expr.children().into_iter().map(|child| self.expanded_size(child, known));
             return below.fold(1, usize::saturating_add);
         };
         let Some((name, value)) = self
@@ -137,26 +145,31 @@ impl<'a> Affine<'a> {
         if let Some(size) = known.get(name.as_str()) {
             return *size;
         }
-        let size = self.written_out(value, known);
+        let size = self.expanded_size(value, known);
         known.insert(name, size);
         size
     }
 
     /// Returns the parameters that act on each axis; `None` if one acts on several axes, elsewhere,
     /// or not in proportion.
-    fn by_axis(&self) -> Option<Vec<(Axis, Vec<String>)>> {
+    fn parameters_by_axis(&self) -> Option<Vec<(Axis, Vec<String>)>> {
         // Substitution may grow exponentially, so that the size is measured before it is done.
         let mut sizes = HashMap::new();
-        if self.law.axes.values().any(|axis| self.written_out(&axis.rest, &mut sizes) > MAX_SIZE) {
+        if self
+            .law
+            .axes
+            .values()
+            .any(|axis| self.expanded_size(&axis.rest, &mut sizes) > MAX_EXPANDED_SIZE)
+        {
             return None;
         }
         let acts = |parameter: &String| {
-            let (wanted, mut known) = (self.name(parameter), HashMap::new());
+            let (wanted, mut known) = (self.qualified_name(parameter), HashMap::new());
             let on: Vec<Axis> = self
                 .law
                 .axes
                 .iter()
-                .filter(|(_, axis)| self.depends_given(&axis.rest, &wanted, &mut known))
+                .filter(|(_, axis)| self.depends_on(&axis.rest, &wanted, &mut known))
                 .map(|(axis, _)| *axis)
                 .collect();
             // A parameter on several axes would need one coefficient for all of them.
@@ -177,18 +190,15 @@ impl<'a> Affine<'a> {
             .then_some(by_axis)
     }
 
-    fn name(&self, parameter: &str) -> String {
-        qualified(&self.effect.name, &self.effect.form.name, parameter)
+    fn qualified_name(&self, parameter: &str) -> String {
+        qualified_name(&self.effect.name, &self.effect.form.name, parameter)
     }
 
     /// Returns true if a formula mentions a parameter by its whole name, directly or through
     /// values, each of which is examined once.
-    fn depends_given(&self, expr: &Expr, wanted: &str, known: &mut HashMap<&'a str, bool>) -> bool {
+    fn depends_on(&self, expr: &Expr, wanted: &str, known: &mut HashMap<&'a str, bool>) -> bool {
         let Expr::Name(name) = expr else {
-            return expr
-                .children()
-                .into_iter()
-                .any(|child| self.depends_given(child, wanted, known));
+            return expr.children().into_iter().any(|child| self.depends_on(child, wanted, known));
         };
         if name == wanted {
             return true;
@@ -199,7 +209,7 @@ impl<'a> Affine<'a> {
         if let Some(depends) = known.get(name.as_str()) {
             return *depends;
         }
-        let depends = self.depends_given(value, wanted, known);
+        let depends = self.depends_on(value, wanted, known);
         known.insert(name, depends);
         depends
     }
@@ -211,15 +221,15 @@ impl<'a> Affine<'a> {
         let of_coefficients = law.dressing.coefficients.iter().map(|(_, expr)| expr);
         let all =
             of_axes.chain(of_coefficients).chain(law.factors.values()).chain(law.mass.values());
-        all.chain(law.kinematics.values()).any(|expr| self.depends_given(expr, wanted, known))
+        all.chain(law.kinematics.values()).any(|expr| self.depends_on(expr, wanted, known))
     }
 
     /// Returns what is added to an axis without the effect, and the term of each parameter.
-    fn taken_apart(&self, axis: Axis, parameters: &[String]) -> (Expr, Vec<Expr>) {
-        let still = self.rest(axis, &|_| 0.0);
+    fn split_terms(&self, axis: Axis, parameters: &[String]) -> (Expr, Vec<Expr>) {
+        let still = self.rest_with_values(axis, &|_| 0.0);
         let term = |own: &String| {
             // An affine force: its slope is its value at one less that at zero.
-            let unit = self.rest(axis, &|name| f64::from(u8::from(name == own)));
+            let unit = self.rest_with_values(axis, &|name| f64::from(u8::from(name == own)));
             let force = Expr::Subtract(Box::new(unit), Box::new(still.clone()));
             Expr::Divide(Box::new(force), Box::new(self.law.axes[&axis].scale.clone()))
         };
@@ -228,18 +238,18 @@ impl<'a> Affine<'a> {
     }
 
     /// Returns what is added to an axis, with numbers for the effect's parameters.
-    fn rest(&self, axis: Axis, number: &dyn Fn(&str) -> f64) -> Expr {
-        self.with(&self.law.axes[&axis].rest, number)
+    fn rest_with_values(&self, axis: Axis, number: &dyn Fn(&str) -> f64) -> Expr {
+        self.substitute_parameters(&self.law.axes[&axis].rest, number)
     }
 
-    fn with(&self, expr: &Expr, number: &dyn Fn(&str) -> f64) -> Expr {
+    fn substitute_parameters(&self, expr: &Expr, number: &dyn Fn(&str) -> f64) -> Expr {
         let parameters: Vec<&String> = self.effect.parameters.keys().collect();
-        expr.renamed(&|name| {
-            if let Some(own) = parameters.iter().find(|own| self.name(own) == name) {
+        expr.replace_names(&|name| {
+            if let Some(own) = parameters.iter().find(|own| self.qualified_name(own) == name) {
                 return Some(Expr::Number(number(own)));
             }
             let value = self.law.values.get(name)?;
-            self.acting.contains(name).then(|| self.with(value, number))
+            self.acting.contains(name).then(|| self.substitute_parameters(value, number))
         })
     }
 
@@ -248,7 +258,7 @@ impl<'a> Affine<'a> {
     fn is_affine(&self, axis: Axis, parameters: &[String]) -> bool {
         let none = IndexMap::new();
         SEEDS.iter().all(|&seed| {
-            let probe = Probe {
+            let probe = FormulaProbe {
                 parameters: &none,
                 values: &self.law.values,
                 seed,
@@ -256,8 +266,12 @@ impl<'a> Affine<'a> {
                 absent: false,
                 known: RefCell::default(),
             };
-            let of = |number: &dyn Fn(&str) -> f64| probe.of(&self.rest(axis, number));
-            let size = |own: &str| probe.of(&Expr::Name(self.name(own))).unwrap_or(1.0);
+            let of = |number: &dyn Fn(&str) -> f64| {
+                probe.evaluate_formula(&self.rest_with_values(axis, number))
+            };
+            let size = |own: &str| {
+                probe.evaluate_formula(&Expr::Name(self.qualified_name(own))).unwrap_or(1.0)
+            };
             let Some((together, still)) = of(&size).zip(of(&|_| 0.0)) else { return false };
             let one = |own: &String| {
                 Some(size(own) * (of(&|name| f64::from(u8::from(name == own)))? - still))

@@ -1,18 +1,18 @@
 //! Application of effects to a law. The result is a law, so that every consumer of laws accepts it.
 
-use super::form::Form;
-use crate::law::{Input, Law, Parameter, STATES};
+use super::form::EffectForm;
+use crate::law::{Law, LawInput, LawParameter, STATES};
 use crate::particulars::{self, Particulars};
 use crate::trial::Channel;
 use sistership_formula::Expr;
 
 /// Name of an effect's parameter (or value) in a law that includes the effect.
-pub fn qualified(effect: &str, form: &str, name: &str) -> String {
+pub fn qualified_name(effect: &str, form: &str, name: &str) -> String {
     format!("{effect}/{form}.{name}")
 }
 
 /// Name of the input for a recorded channel that is a state of some laws.
-fn recorded(channel: &str) -> String {
+fn recorded_input(channel: &str) -> String {
     format!("recorded.{channel}")
 }
 
@@ -23,15 +23,15 @@ pub fn input_channel(input: &str) -> Option<Channel> {
 
 /// The input for the time since the start of the trial, s; effects call it `t`, which laws may use
 /// for the thrust deduction.
-pub const TIME: &str = "recorded.t";
+pub const TIME_INPUT: &str = "recorded.t";
 
 /// Returns a law with forms of effects, each at its absence, for a ship of these particulars; the
 /// speed is the approach speed of the model's trials.
-pub fn dress(
+pub fn apply_effects(
     law: &Law,
     particulars: &Particulars,
     speed_m_s: Option<f64>,
-    forms: &[(&str, &Form)],
+    forms: &[(&str, &EffectForm)],
 ) -> Law {
     let mut dressed = law.clone();
     // Effects on the inflow are applied before forces are added: an added force depends on the
@@ -39,88 +39,88 @@ pub fn dress(
     let (inflow, others): (Vec<_>, Vec<_>) =
         forms.iter().partition(|(_, form)| !form.sees.is_empty());
     for (effect, form) in inflow.into_iter().chain(others) {
-        Dresser { effect, form, particulars, speed_m_s, has_roll: law.has_roll() }
-            .dress(&mut dressed);
+        EffectApplier { effect, form, particulars, speed_m_s, has_roll: law.has_roll() }
+            .apply_effect(&mut dressed);
     }
     dressed
 }
 
-struct Dresser<'a> {
+struct EffectApplier<'a> {
     effect: &'a str,
-    form: &'a Form,
+    form: &'a EffectForm,
     particulars: &'a Particulars,
     /// Approach speed; the service speed is the default.
     speed_m_s: Option<f64>,
     has_roll: bool,
 }
 
-impl Dresser<'_> {
-    fn dress(&self, law: &mut Law) {
-        self.inputs(law);
-        self.parameters(law);
+impl EffectApplier<'_> {
+    fn apply_effect(&self, law: &mut Law) {
+        self.add_inputs(law);
+        self.add_parameters(law);
         for (name, expr) in &self.form.values {
-            law.add_value(self.name(name), self.expr(expr));
+            law.add_value(self.qualified_name(name), self.qualify_expr(expr));
         }
         // The law uses the replacement, whose own formula uses the original name.
         for (name, expr) in &self.form.sees {
             let seen = format!("{}/{}.seen.{name}", self.effect, self.form.file.name);
             law.rename_in_forces(name, &seen);
-            law.add_value(seen, self.expr(expr));
+            law.add_value(seen, self.qualify_expr(expr));
         }
         for (axis, expr) in &self.form.forces {
             if let Some(axis) = law.axes.get_mut(axis) {
-                axis.rest = Expr::Add(Box::new(axis.rest.clone()), Box::new(self.expr(expr)));
+                axis.rest =
+                    Expr::Add(Box::new(axis.rest.clone()), Box::new(self.qualify_expr(expr)));
             }
         }
         law.dressing
             .accelerations
-            .extend(self.form.accelerates.iter().map(|(axis, e)| (*axis, self.expr(e))));
-        law.dressing
-            .coefficients
-            .extend(self.form.coefficients.iter().map(|(name, e)| (name.clone(), self.expr(e))));
+            .extend(self.form.accelerates.iter().map(|(axis, e)| (*axis, self.qualify_expr(e))));
+        law.dressing.coefficients.extend(
+            self.form.coefficients.iter().map(|(name, e)| (name.clone(), self.qualify_expr(e))),
+        );
         law.dressing
             .lags
-            .extend(self.form.lags.iter().map(|(name, e)| (name.clone(), self.expr(e))));
+            .extend(self.form.lags.iter().map(|(name, e)| (name.clone(), self.qualify_expr(e))));
         law.dressing
             .bands
-            .extend(self.form.bands.iter().map(|(name, e)| (name.clone(), self.expr(e))));
+            .extend(self.form.bands.iter().map(|(name, e)| (name.clone(), self.qualify_expr(e))));
         law.dressing
             .measures
-            .extend(self.form.measures.iter().map(|(channel, e)| (*channel, self.expr(e))));
+            .extend(self.form.measures.iter().map(|(channel, e)| (*channel, self.qualify_expr(e))));
     }
 
-    fn parameters(&self, law: &mut Law) {
+    fn add_parameters(&self, law: &mut Law) {
         for (name, parameter) in &self.form.parameters {
             let unit =
                 self.form.file.parameters.get(name).map(|p| p.unit.clone()).unwrap_or_default();
             let meaning = format!("{name} of {}", self.effect);
-            let known = Parameter {
+            let known = LawParameter {
                 dimension: parameter.dimension,
                 unit,
                 meaning,
                 from: None,
                 is_approach_speed: false,
             };
-            law.parameters.insert(self.name(name), known);
+            law.parameters.insert(self.qualified_name(name), known);
             // The effect is absent until the values of a model are set.
-            law.dressing.parameters.insert(self.name(name), parameter.absent);
+            law.dressing.parameters.insert(self.qualified_name(name), parameter.absent);
         }
         for (name, expr) in &self.form.particulars {
-            law.add_value(self.name(name), self.expr(expr));
+            law.add_value(self.qualified_name(name), self.qualify_expr(expr));
         }
     }
 
     /// Adds channels that the law does not use yet as inputs; their defaults mean no wind, no roll,
     /// deep water.
-    fn inputs(&self, law: &mut Law) {
-        let mentioned = self
-            .form
-            .formulas()
-            .flat_map(|expr| expr.names().into_iter().map(str::to_owned).collect::<Vec<_>>());
+    fn add_inputs(&self, law: &mut Law) {
+        let mentioned = self.form.acting_formulas().flat_map(|expr| {
+            expr.mentioned_names().into_iter().map(str::to_owned).collect::<Vec<_>>()
+        });
         for name in mentioned.collect::<Vec<_>>() {
-            let input = self.input(&name);
+            let input = self.input_name(&name);
             let channel = input_channel(&input);
-            let dimension = if input == TIME {
+            let dimension = if input == TIME_INPUT {
                 Some(sistership_formula::units::Dimension::TIME)
             } else {
                 channel.map(Channel::dimension)
@@ -134,34 +134,34 @@ impl Dresser<'_> {
             };
             // Infinite depth means deep water.
             let still = if channel == Some(Channel::Depth) { f64::INFINITY } else { 0.0 };
-            law.inputs.insert(input, Input { dimension, default: Some(still) });
+            law.inputs.insert(input, LawInput { dimension, default: Some(still) });
         }
     }
 
     /// Name of an input; roll is a recorded input where the law does not simulate it.
-    fn input(&self, name: &str) -> String {
+    fn input_name(&self, name: &str) -> String {
         let is_recorded = name == "t" || !self.has_roll && (name == "phi" || name == "p");
-        if is_recorded { recorded(name) } else { name.to_owned() }
+        if is_recorded { recorded_input(name) } else { name.to_owned() }
     }
 
-    fn name(&self, name: &str) -> String {
-        qualified(self.effect, &self.form.file.name, name)
+    fn qualified_name(&self, name: &str) -> String {
+        qualified_name(self.effect, &self.form.file.name, name)
     }
 
-    fn expr(&self, expr: &Expr) -> Expr {
-        expr.renamed(&|name| self.renamed(name))
+    fn qualify_expr(&self, expr: &Expr) -> Expr {
+        expr.replace_names(&|name| self.replacement_for(name))
     }
 
-    fn renamed(&self, name: &str) -> Option<Expr> {
+    fn replacement_for(&self, name: &str) -> Option<Expr> {
         let form = self.form;
         // The formula of a particular is used only if the ship does not state it.
         let stands_in = form.particulars.contains_key(name) && !self.particulars.contains_key(name);
         if name == "approach_speed_m_s" {
-            let service = particulars::value(self.particulars, "service_speed_m_s");
+            let service = particulars::particular_value(self.particulars, "service_speed_m_s");
             return Some(Expr::Number(self.speed_m_s.or(service).unwrap_or(1.0)));
         }
         let own = form.parameters.contains_key(name) || form.values.contains_key(name) || stands_in;
-        let renamed = if own { self.name(name) } else { self.input(name) };
+        let renamed = if own { self.qualified_name(name) } else { self.input_name(name) };
         (renamed != name).then_some(Expr::Name(renamed))
     }
 }
@@ -171,7 +171,7 @@ impl Law {
     /// original name.
     pub(crate) fn rename_in_forces(&mut self, name: &str, by: &str) {
         let rename = |expr: &mut Expr| {
-            *expr = expr.renamed(&|found| (found == name).then(|| Expr::Name(by.to_owned())))
+            *expr = expr.replace_names(&|found| (found == name).then(|| Expr::Name(by.to_owned())))
         };
         self.values.values_mut().for_each(rename);
         self.factors.values_mut().for_each(rename);
@@ -181,6 +181,6 @@ impl Law {
             rename(&mut axis.scale);
             rename(&mut axis.rest);
         }
-        self.dressing.straight.iter_mut().for_each(|straight| straight.follow(name, by));
+        self.dressing.straight.iter_mut().for_each(|straight| straight.follow_rename(name, by));
     }
 }

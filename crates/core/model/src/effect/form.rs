@@ -13,7 +13,7 @@ use sistership_formula::units::Dimension;
 /// One form of an effect, read and checked. Formulas use the plain names of states, inputs,
 /// particulars, and of the form's parameters and values.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Form {
+pub struct EffectForm {
     /// The form as its file writes it, which a model with the effect keeps.
     pub file: FormFile,
     /// Formulas that replace particulars which the ship does not state.
@@ -21,7 +21,7 @@ pub struct Form {
     /// Parameters that are fitted.
     pub parameters: IndexMap<String, EffectParameter>,
     /// Figures that are reported besides the parameters.
-    pub reports: IndexMap<String, Report>,
+    pub reports: IndexMap<String, ReportedFigure>,
     /// Intermediate values.
     pub values: IndexMap<String, Expr>,
     /// Formulas that replace a state or an input in the law.
@@ -63,16 +63,16 @@ pub struct EffectParameter {
 
 /// Figure that follows from the parameters. A name that ends in `_deg` is converted from radians.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Report {
+pub struct ReportedFigure {
     /// Formula, in SI and radians.
     pub formula: Expr,
     /// Factor that converts the value to the unit of the figure's name.
     pub factor: f64,
 }
 
-impl Form {
+impl EffectForm {
     /// Every formula that acts on the law or the instruments.
-    pub(crate) fn formulas(&self) -> impl Iterator<Item = &Expr> {
+    pub(crate) fn acting_formulas(&self) -> impl Iterator<Item = &Expr> {
         let named = self
             .values
             .values()
@@ -87,7 +87,7 @@ impl Form {
     }
 
     /// Value of a reported figure, in the unit of its name; `None` without a finite value.
-    pub fn report(&self, name: &str, lookup: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
+    pub fn report_value(&self, name: &str, lookup: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
         let report = self.reports.get(name)?;
         report
             .formula

@@ -3,11 +3,11 @@
 use indexmap::IndexMap;
 
 use super::file::{ActsOn, EffectParameterFile, FormFile};
-use super::form::{EffectParameter, Form, Report};
-use super::scope::{Refusal, Scope};
+use super::form::{EffectForm, EffectParameter, ReportedFigure};
+use super::scope::{FieldFault, FormScope};
 use super::{names, symmetry};
 use crate::coefficient::Axis;
-use crate::law::limits::{Depths, most};
+use crate::law::limits::{FormulaDepths, check_count};
 use crate::law::{acceleration_dimension, axis_dimension};
 use crate::particulars;
 use crate::trial::Channel;
@@ -16,7 +16,7 @@ use sistership_formula::units::{Dimension, Unit};
 
 /// Endings of reported names: dimension of the formula, and the factor that converts its value from
 /// SI and radians.
-const REPORTED: [(&str, Dimension, f64); 8] = [
+const REPORT_ENDINGS: [(&str, Dimension, f64); 8] = [
     ("_deg_s", Dimension::RATE, 180.0 / std::f64::consts::PI),
     ("_deg", Dimension::NONE, 180.0 / std::f64::consts::PI),
     ("_percent", Dimension::NONE, 100.0),
@@ -27,50 +27,55 @@ const REPORTED: [(&str, Dimension, f64); 8] = [
     ("_s", Dimension::TIME, 1.0),
 ];
 
-impl Form {
+impl EffectForm {
     /// Reads and checks a form.
     ///
     /// # Errors
     /// Returns the dotted field at fault below the form, and the reason: syntax, an unknown name, a
     /// unit, a channel missing in `needs`, a symmetry, or an effect that does not vanish at its
     /// absence.
-    pub fn read(acts_on: ActsOn, file: &FormFile) -> Result<Self, (String, String)> {
+    pub fn from_file(acts_on: ActsOn, file: &FormFile) -> Result<Self, (String, String)> {
         check_actions(acts_on, file)?;
         check_counts(file)?;
         // Order matters: values may use parameters, all other sections both.
-        let mut scope = Scope::new(acts_on == ActsOn::Measurement);
-        let parameters = parameters(&mut scope, file)?;
-        let values = scope.values(&file.values)?;
+        let mut scope = FormScope::new(acts_on == ActsOn::Measurement);
+        let parameters = read_parameters(&mut scope, file)?;
+        let values = scope.read_values(&file.values)?;
         let form = Self {
-            particulars: scope.formulas(
+            particulars: scope.read_section(
                 "particulars",
                 &file.particulars,
-                &|name| stand_in(name),
+                &|name| particular_dimension(name),
                 true,
             )?,
-            reports: reports(&scope, file)?,
-            sees: scope.formulas("sees", &file.sees, &|name| seen(name), false)?,
-            accelerates: scope.formulas(
+            reports: read_reports(&scope, file)?,
+            sees: scope.read_section(
+                "sees",
+                &file.sees,
+                &|name| replaced_dimension(name),
+                false,
+            )?,
+            accelerates: scope.read_section(
                 "accelerates",
                 &file.accelerates,
                 &|axis| Ok(acceleration_dimension(*axis)),
                 false,
             )?,
-            coefficients: scope.formulas(
+            coefficients: scope.read_section(
                 "coefficients",
                 &file.coefficients,
-                &|name| factor(name),
+                &|name| factor_dimension(name),
                 false,
             )?,
-            lags: scope.formulas("lags", &file.lags, &|name| lagged(name), false)?,
-            bands: scope.formulas("bands", &file.bands, &|name| banded(name), false)?,
-            forces: scope.formulas(
+            lags: scope.read_section("lags", &file.lags, &|name| lag_dimension(name), false)?,
+            bands: scope.read_section("bands", &file.bands, &|name| band_dimension(name), false)?,
+            forces: scope.read_section(
                 "forces",
                 &file.forces,
                 &|axis| Ok(axis_dimension(*axis)),
                 false,
             )?,
-            measures: scope.formulas(
+            measures: scope.read_section(
                 "measures",
                 &file.measures,
                 &|channel| Ok(Channel::dimension(*channel)),
@@ -82,7 +87,7 @@ impl Form {
         };
         scope.check_needs(&file.needs)?;
         form.check_size()?;
-        symmetry::check(&form)?;
+        symmetry::check_form(&form)?;
         Ok(form)
     }
 }
@@ -96,7 +101,7 @@ const MAX_DEPTH: usize = 128;
 /// Largest number of numbers, names and operators of all formulas of a form.
 const MAX_SIZE: usize = 5000;
 
-fn check_counts(file: &FormFile) -> Result<(), Refusal> {
+fn check_counts(file: &FormFile) -> Result<(), FieldFault> {
     let sections = [
         ("parameters", file.parameters.len()),
         ("values", file.values.len()),
@@ -109,17 +114,17 @@ fn check_counts(file: &FormFile) -> Result<(), Refusal> {
         ("bands", file.bands.len()),
     ];
     let all = sections.into_iter().chain(acting).chain([("reports", file.reports.len())]);
-    all.into_iter().try_for_each(|(section, count)| most(section, count, MAX_NAMES))
+    all.into_iter().try_for_each(|(section, count)| check_count(section, count, MAX_NAMES))
 }
 
-impl Form {
+impl EffectForm {
     /// Refuses formulas that are too many, or too deep through the values that they mention.
-    fn check_size(&self) -> Result<(), Refusal> {
-        let depths = Depths::of(&self.values);
+    fn check_size(&self) -> Result<(), FieldFault> {
+        let depths = FormulaDepths::new(&self.values);
         let reports = self.reports.values().map(|report| &report.formula);
-        let all = || self.formulas().chain(self.particulars.values()).chain(reports.clone());
-        let size = all().map(Expr::size).sum();
-        most("", size, MAX_SIZE).map_err(|(_, e)| {
+        let all = || self.acting_formulas().chain(self.particulars.values()).chain(reports.clone());
+        let size = all().map(Expr::node_count).sum();
+        check_count("", size, MAX_SIZE).map_err(|(_, e)| {
             (String::new(), format!("numbers, names and operators of all formulas: {e}"))
         })?;
         all().try_for_each(|expr| depths.check("values", expr, MAX_DEPTH))
@@ -128,7 +133,7 @@ impl Form {
 
 /// Checks that each way of acting belongs to the part on which the effect acts; an effect on the
 /// flow about the hull may be given as the forces that it adds.
-fn check_actions(acts_on: ActsOn, file: &FormFile) -> Result<(), Refusal> {
+fn check_actions(acts_on: ActsOn, file: &FormFile) -> Result<(), FieldFault> {
     let counts = [
         ("sees", ActsOn::Inflow, file.sees.len()),
         ("accelerates", ActsOn::Inflow, file.accelerates.len()),
@@ -141,12 +146,15 @@ fn check_actions(acts_on: ActsOn, file: &FormFile) -> Result<(), Refusal> {
     let may = |of: ActsOn| of == acts_on || (acts_on, of) == (ActsOn::Inflow, ActsOn::Force);
     let stray = counts.iter().find(|(_, of, count)| !may(*of) && *count > 0);
     if let Some((section, of, _)) = stray {
-        return Err(((*section).into(), format!("belongs to effects that act on {}", word(*of))));
+        return Err((
+            (*section).into(),
+            format!("belongs to effects that act on {}", section_names(*of)),
+        ));
     }
     if counts.iter().all(|(.., count)| *count == 0) {
         return Err((
             String::new(),
-            format!("does nothing: an effect that acts on {} says how", word(acts_on)),
+            format!("does nothing: an effect that acts on {} says how", section_names(acts_on)),
         ));
     }
     if file.parameters.is_empty() {
@@ -156,7 +164,7 @@ fn check_actions(acts_on: ActsOn, file: &FormFile) -> Result<(), Refusal> {
     }
 }
 
-fn word(acts_on: ActsOn) -> &'static str {
+fn section_names(acts_on: ActsOn) -> &'static str {
     match acts_on {
         ActsOn::Force => "`force` (`forces`)",
         ActsOn::Inflow => "`inflow` (`sees`, `accelerates`, `coefficients`, `lags`, `bands`)",
@@ -164,21 +172,21 @@ fn word(acts_on: ActsOn) -> &'static str {
     }
 }
 
-fn parameters(
-    scope: &mut Scope,
+fn read_parameters(
+    scope: &mut FormScope,
     file: &FormFile,
-) -> Result<IndexMap<String, EffectParameter>, Refusal> {
+) -> Result<IndexMap<String, EffectParameter>, FieldFault> {
     let mut parameters = IndexMap::new();
     for (name, raw) in &file.parameters {
         let field = format!("parameters.{name}");
-        let read = parameter(raw).map_err(|e| (field.clone(), e))?;
+        let read = read_parameter(raw).map_err(|e| (field.clone(), e))?;
         scope.add_parameter(&field, name, read.dimension)?;
         parameters.insert(name.clone(), read);
     }
     Ok(parameters)
 }
 
-fn parameter(raw: &EffectParameterFile) -> Result<EffectParameter, String> {
+fn read_parameter(raw: &EffectParameterFile) -> Result<EffectParameter, String> {
     let unit = Unit::parse(&raw.unit).map_err(|e| e.to_string())?;
     if unit.to_si != 1.0 {
         return Err(format!("effects use SI and radians; `{}` is not of them", raw.unit));
@@ -214,42 +222,46 @@ fn parameter(raw: &EffectParameterFile) -> Result<EffectParameter, String> {
     })
 }
 
-fn reports(scope: &Scope, file: &FormFile) -> Result<IndexMap<String, Report>, Refusal> {
+fn read_reports(
+    scope: &FormScope,
+    file: &FormFile,
+) -> Result<IndexMap<String, ReportedFigure>, FieldFault> {
     let mut reports = IndexMap::new();
     for (name, formula) in &file.reports {
         let field = format!("reports.{name}");
-        let ending = REPORTED.iter().find(|(ending, ..)| name.ends_with(ending));
+        let ending = REPORT_ENDINGS.iter().find(|(ending, ..)| name.ends_with(ending));
         let formula =
-            scope.constant(&field, formula, ending.map(|(_, dimension, _)| *dimension))?;
+            scope.read_constant(&field, formula, ending.map(|(_, dimension, _)| *dimension))?;
         reports.insert(
             name.clone(),
-            Report { formula, factor: ending.map_or(1.0, |(.., factor)| *factor) },
+            ReportedFigure { formula, factor: ending.map_or(1.0, |(.., factor)| *factor) },
         );
     }
     Ok(reports)
 }
 
-fn stand_in(name: &str) -> Result<Dimension, String> {
-    particulars::dimension(name).ok_or_else(|| "unknown particular".into())
+fn particular_dimension(name: &str) -> Result<Dimension, String> {
+    particulars::particular_dimension(name).ok_or_else(|| "unknown particular".into())
 }
 
-fn seen(name: &str) -> Result<Dimension, String> {
-    names::seen(name).ok_or_else(|| {
+fn replaced_dimension(name: &str) -> Result<Dimension, String> {
+    names::replaceable_dimension(name).ok_or_else(|| {
         "a law sees u, v, r, p, phi, psi and channels such as delta, n and depth".into()
     })
 }
 
-fn lagged(name: &str) -> Result<Dimension, String> {
-    names::input(name)
+fn lag_dimension(name: &str) -> Result<Dimension, String> {
+    names::input_dimension(name)
         .map(|_| Dimension::TIME)
         .ok_or_else(|| "only an input such as delta or n can lag".into())
 }
 
-fn banded(name: &str) -> Result<Dimension, String> {
-    names::input(name).ok_or_else(|| "only an input such as delta or n can have a dead band".into())
+fn band_dimension(name: &str) -> Result<Dimension, String> {
+    names::input_dimension(name)
+        .ok_or_else(|| "only an input such as delta or n can have a dead band".into())
 }
 
-fn factor(name: &str) -> Result<Dimension, String> {
+fn factor_dimension(name: &str) -> Result<Dimension, String> {
     let axis = name.split_once('_').map(|(axis, _)| axis);
     let known = Axis::ALL.iter().any(|known| axis == Some(known.to_string().as_str()));
     if known {

@@ -6,47 +6,53 @@ use std::sync::Arc;
 use indexmap::IndexMap;
 
 use super::file::{ActsOn, GrammarFile};
-use super::form::Form;
-use super::scope::{Refusal, Scope};
+use super::form::EffectForm;
+use super::scope::{FieldFault, FormScope};
 use super::symmetry;
-use super::term::{Factor, Term};
+use super::term::{GrammarFactor, GrammarTerm};
 use crate::coefficient::{Axis, STANDARD_FACTORS};
 use crate::law::axis_dimension;
-use crate::law::limits::most;
+use crate::law::limits::check_count;
 use crate::trial::Channel;
 use sistership_formula::Expr;
 use sistership_formula::units::Dimension;
 
 /// Largest number of factors of a grammar: to the fourth order they make some 5000 terms.
-const MOST_FACTORS: usize = 16;
+const MAX_FACTORS: usize = 16;
 
 /// Grammar, read and checked.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Grammar {
+pub struct TermGrammar {
     file: GrammarFile,
     /// Factors in canonical order.
-    factors: Vec<Factor>,
+    factors: Vec<GrammarFactor>,
     /// Forces and moments per unit of a term.
     scales: BTreeMap<Axis, Expr>,
 }
 
-impl Grammar {
+impl TermGrammar {
     /// Reads and checks a grammar; errors name the field below it.
-    pub fn read(file: &GrammarFile) -> Result<Self, Refusal> {
-        let scope = Scope::new(false);
+    pub fn from_file(file: &GrammarFile) -> Result<Self, FieldFault> {
+        let scope = FormScope::new(false);
         let dimension = |axis: &Axis| Ok(axis_dimension(*axis));
-        let factors =
-            scope.formulas("factors", &file.factors, &|_: &String| Ok(Dimension::NONE), false)?;
+        let factors = scope.read_section(
+            "factors",
+            &file.factors,
+            &|_: &String| Ok(Dimension::NONE),
+            false,
+        )?;
         let scales: BTreeMap<Axis, Expr> =
-            scope.formulas("scales", &file.scales, &dimension, false)?;
-        check(file, &scales)?;
-        let grammar = Self { factors: ordered(file, &factors)?, scales, file: file.clone() };
+            scope.read_section("scales", &file.scales, &dimension, false)?;
+        check_grammar(file, &scales)?;
+        let grammar =
+            Self { factors: ordered_factors(file, &factors)?, scales, file: file.clone() };
         // Each term is read once, so that none that is searched for later can be refused.
-        grammar.terms().iter().try_for_each(|term| {
+        grammar.list_terms().iter().try_for_each(|term| {
             let readable = |axis: &Axis| {
-                Form::read(ActsOn::Force, &term.form(&grammar.file, *axis)).map(|_| ())
+                EffectForm::from_file(ActsOn::Force, &term.to_form(&grammar.file, *axis))
+                    .map(|_| ())
             };
-            grammar.scales.keys().filter(|axis| term.fits(**axis)).try_for_each(readable)
+            grammar.scales.keys().filter(|axis| term.fits_axis(**axis)).try_for_each(readable)
         })?;
         Ok(grammar)
     }
@@ -54,37 +60,47 @@ impl Grammar {
     /// Returns every term that fits one of the axes: products of factors with the parity of the
     /// axis, named like coefficients, without those whose name is `known` and those that need a
     /// channel for which `has` returns false.
-    pub fn forms(
+    pub fn list_forms(
         &self,
         axes: &[Axis],
         known: &dyn Fn(&str) -> bool,
         has: &dyn Fn(Channel) -> bool,
-    ) -> Vec<Arc<Form>> {
-        let terms = self.terms();
+    ) -> Vec<Arc<EffectForm>> {
+        let terms = self.list_terms();
         let spelled = |axis: Axis| {
             terms
                 .iter()
-                .filter(move |term| term.fits(axis))
-                .map(move |term| term.form(&self.file, axis))
+                .filter(move |term| term.fits_axis(axis))
+                .map(move |term| term.to_form(&self.file, axis))
         };
         let axes = axes.iter().copied().filter(|axis| self.scales.contains_key(axis));
         let wanted = axes
             .flat_map(spelled)
             .filter(|form| !known(&form.name) && form.needs.iter().all(|&channel| has(channel)));
-        wanted.filter_map(|form| Form::read(ActsOn::Force, &form).ok()).map(Arc::new).collect()
+        wanted
+            .filter_map(|form| EffectForm::from_file(ActsOn::Force, &form).ok())
+            .map(Arc::new)
+            .collect()
     }
 
     /// Returns the constant of each axis, such as `Y_0`, for a ship that is not exactly symmetric;
     /// none of those that are `known`.
-    pub fn constants(&self, axes: &[Axis], known: &dyn Fn(&str) -> bool) -> Vec<Arc<Form>> {
-        let constant = Term { factors: Vec::new(), bars: false };
+    pub fn constant_forms(
+        &self,
+        axes: &[Axis],
+        known: &dyn Fn(&str) -> bool,
+    ) -> Vec<Arc<EffectForm>> {
+        let constant = GrammarTerm { factors: Vec::new(), bars: false };
         let axes = axes.iter().copied().filter(|axis| self.scales.contains_key(axis));
         let wanted =
-            axes.map(|axis| constant.form(&self.file, axis)).filter(|form| !known(&form.name));
-        wanted.filter_map(|form| Form::read(ActsOn::Force, &form).ok()).map(Arc::new).collect()
+            axes.map(|axis| constant.to_form(&self.file, axis)).filter(|form| !known(&form.name));
+        wanted
+            .filter_map(|form| EffectForm::from_file(ActsOn::Force, &form).ok())
+            .map(Arc::new)
+            .collect()
     }
 
-    fn terms(&self) -> Vec<Term<'_>> {
+    fn list_terms(&self) -> Vec<GrammarTerm<'_>> {
         let mut terms = Vec::new();
         for order in 1..=self.file.order {
             self.add_products(order, 0, &mut Vec::new(), &mut terms);
@@ -98,14 +114,14 @@ impl Grammar {
         &'a self,
         left: usize,
         from: usize,
-        taken: &mut Vec<&'a Factor>,
-        terms: &mut Vec<Term<'a>>,
+        taken: &mut Vec<&'a GrammarFactor>,
+        terms: &mut Vec<GrammarTerm<'a>>,
     ) {
         if left == 0 {
-            terms.push(Term { factors: taken.clone(), bars: false });
+            terms.push(GrammarTerm { factors: taken.clone(), bars: false });
             // Only products of two factors have such a variant, as in `v|v|`.
             if taken.len() == 2 && taken[1].absolute {
-                terms.push(Term { factors: taken.clone(), bars: true });
+                terms.push(GrammarTerm { factors: taken.clone(), bars: true });
             }
             return;
         }
@@ -118,11 +134,11 @@ impl Grammar {
     }
 }
 
-fn check(file: &GrammarFile, scales: &BTreeMap<Axis, Expr>) -> Result<(), Refusal> {
+fn check_grammar(file: &GrammarFile, scales: &BTreeMap<Axis, Expr>) -> Result<(), FieldFault> {
     if !(1..=4).contains(&file.order) {
         return Err(("order".into(), format!("{} is not from 1 to 4", file.order)));
     }
-    most("factors", file.factors.len(), MOST_FACTORS)?;
+    check_count("factors", file.factors.len(), MAX_FACTORS)?;
     if let Some(symbol) = file.absolute.iter().find(|symbol| !file.factors.contains_key(*symbol)) {
         return Err((format!("absolute.{symbol}"), "is not one of the factors".into()));
     }
@@ -135,13 +151,16 @@ fn check(file: &GrammarFile, scales: &BTreeMap<Axis, Expr>) -> Result<(), Refusa
             ));
         }
         if !symmetry::has_parity(&IndexMap::new(), &IndexMap::new(), scale, false) {
-            return Err((format!("scales.{axis}"), symmetry::broken(false)));
+            return Err((format!("scales.{axis}"), symmetry::symmetry_message(false)));
         }
     }
     Ok(())
 }
 
-fn ordered(file: &GrammarFile, formulas: &IndexMap<String, Expr>) -> Result<Vec<Factor>, Refusal> {
+fn ordered_factors(
+    file: &GrammarFile,
+    formulas: &IndexMap<String, Expr>,
+) -> Result<Vec<GrammarFactor>, FieldFault> {
     let mut factors = Vec::new();
     for (symbol, formula) in formulas {
         let is = |odd| symmetry::has_parity(&IndexMap::new(), &IndexMap::new(), formula, odd);
@@ -152,7 +171,7 @@ fn ordered(file: &GrammarFile, formulas: &IndexMap<String, Expr>) -> Result<Vec<
             return Err((format!("factors.{symbol}"), message.into()));
         }
         let (text, absolute) = (file.factors[symbol].clone(), file.absolute.contains(symbol));
-        factors.push(Factor { symbol: symbol.clone(), text, odd: is(true), absolute });
+        factors.push(GrammarFactor { symbol: symbol.clone(), text, odd: is(true), absolute });
     }
     // A stable sort: factors without a standard rank stay in the order of the file, at the end.
     let rank = |symbol: &str| {
@@ -183,14 +202,14 @@ grammar:
   deviations: { X: 0.003, Y: 0.01, N: 0.003 }
 ";
 
-    fn grammar() -> Grammar {
+    fn grammar() -> TermGrammar {
         Effect::parse("terms.yaml", TERMS).unwrap_or_else(|e| panic!("{e}")).grammar.unwrap()
     }
 
     fn names(known: &[&str], has_roll: bool) -> Vec<String> {
         let has = |channel| has_roll || channel != Channel::Phi;
         let forms =
-            grammar().forms(&[Axis::X, Axis::Y, Axis::N], &|name| known.contains(&name), &has);
+            grammar().list_forms(&[Axis::X, Axis::Y, Axis::N], &|name| known.contains(&name), &has);
         forms.iter().map(|form| form.file.name.clone()).collect()
     }
 
@@ -211,7 +230,7 @@ grammar:
 
     #[test]
     fn a_term_is_a_form_of_one_parameter() {
-        let forms = grammar().forms(&[Axis::Y], &|_| false, &|_| true);
+        let forms = grammar().list_forms(&[Axis::Y], &|_| false, &|_| true);
         let form = forms.iter().find(|form| form.file.name == "Y_v|v|").unwrap();
         let parameter = &form.parameters["Y_v_abs_v"];
         assert_eq!((parameter.prior_deviation, parameter.bounds), (0.01, [-0.2, 0.2]));
@@ -220,7 +239,7 @@ grammar:
             (roll.parameters.len(), roll.file.needs.as_slice()),
             (1, [Channel::Phi].as_slice())
         );
-        assert_eq!(Form::read(ActsOn::Force, &form.file).as_ref(), Ok(form.as_ref()));
+        assert_eq!(EffectForm::from_file(ActsOn::Force, &form.file).as_ref(), Ok(form.as_ref()));
     }
 
     #[test]

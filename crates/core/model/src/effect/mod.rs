@@ -15,13 +15,13 @@ mod symmetry;
 mod term;
 
 pub use applied::AppliedEffect;
-pub use as_terms::AsTerms;
-pub(crate) use dress::dress;
-pub use dress::{TIME, input_channel, qualified};
+pub use as_terms::EffectsAsTerms;
+pub(crate) use dress::apply_effects;
+pub use dress::{TIME_INPUT, input_channel, qualified_name};
 pub use file::{
     ActsOn, EffectFile, EffectParameterFile, FormFile, GrammarFile, Mirror, PriorFile,
     PriorOddsFile,
 };
-pub use form::{EffectParameter, Form, Report};
-pub use grammar::Grammar;
+pub use form::{EffectForm, EffectParameter, ReportedFigure};
+pub use grammar::TermGrammar;
 pub use read::Effect;

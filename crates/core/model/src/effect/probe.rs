@@ -11,7 +11,7 @@ use super::form::EffectParameter;
 use sistership_formula::{self as formula, Expr};
 
 /// Names that change sign in the mirror.
-const ODD: [&str; 16] = [
+const ODD_NAMES: [&str; 16] = [
     "v",
     "v_water",
     "r",
@@ -35,11 +35,11 @@ pub const SEEDS: [u32; 3] = [7, 31, 101];
 
 /// Returns true if the quantity changes sign when the ship is mirrored port to starboard.
 pub fn is_odd(name: &str) -> bool {
-    ODD.contains(&name)
+    ODD_NAMES.contains(&name)
 }
 
 /// One point, or its mirror image.
-pub struct Probe<'a> {
+pub struct FormulaProbe<'a> {
     pub parameters: &'a IndexMap<String, EffectParameter>,
     pub values: &'a IndexMap<String, Expr>,
     pub seed: u32,
@@ -50,58 +50,57 @@ pub struct Probe<'a> {
     pub known: RefCell<HashMap<String, Option<f64>>>,
 }
 
-impl Probe<'_> {
+impl FormulaProbe<'_> {
     /// Value of a formula; `None` if it is not finite.
-    pub fn of(&self, expr: &Expr) -> Option<f64> {
-        expr.value(&|name| self.name(name)).filter(|value| value.is_finite())
+    pub fn evaluate_formula(&self, expr: &Expr) -> Option<f64> {
+        expr.value(&|name| self.name_value(name)).filter(|value| value.is_finite())
     }
 
-    fn name(&self, name: &str) -> Option<f64> {
+    fn name_value(&self, name: &str) -> Option<f64> {
         if let Some(value) = self.values.get(name) {
             if let Some(known) = self.known.borrow().get(name) {
                 return *known;
             }
-            let found = value.value(&|name| self.name(name));
+            let found = value.value(&|name| self.name_value(name));
             self.known.borrow_mut().insert(name.to_owned(), found);
             return found;
         }
-        if let Some((value, _)) = formula::builtin(name) {
+        if let Some((value, _)) = formula::builtin_constant(name) {
             return Some(value);
         }
-        Some(
-            self.parameters
-                .get(name)
-                .map_or_else(|| self.outside(name), |parameter| self.parameter(name, parameter)),
-        )
+        Some(self.parameters.get(name).map_or_else(
+            || self.external_value(name),
+            |parameter| self.parameter_value(name, parameter),
+        ))
     }
 
-    fn parameter(&self, name: &str, parameter: &EffectParameter) -> f64 {
+    fn parameter_value(&self, name: &str, parameter: &EffectParameter) -> f64 {
         // Between 0.3 and 0.7 of the bounds, away from both ends.
         let [low, high] = parameter.bounds;
         let here = if self.absent {
             parameter.absent
         } else {
-            low + (0.3 + 0.4 * self.fraction(name)) * (high - low)
+            low + (0.3 + 0.4 * self.name_fraction(name)) * (high - low)
         };
         if self.mirrored && parameter.mirror == Mirror::Opposite { -here } else { here }
     }
 
-    fn outside(&self, name: &str) -> f64 {
-        let size = 0.2 + self.fraction(name);
+    fn external_value(&self, name: &str) -> f64 {
+        let size = 0.2 + self.name_fraction(name);
         if !is_odd(name) {
             return size;
         }
         // At each point an odd quantity has an arbitrary sign, and in the mirror the opposite one.
-        let to_port = (self.hash(name) / 997) % 2 == 1;
+        let to_port = (self.name_hash(name) / 997) % 2 == 1;
         if to_port == self.mirrored { size } else { -size }
     }
 
     /// Fraction from 0 to 1 that belongs to a name.
-    fn fraction(&self, name: &str) -> f64 {
-        f64::from(self.hash(name) % 997) / 997.0
+    fn name_fraction(&self, name: &str) -> f64 {
+        f64::from(self.name_hash(name) % 997) / 997.0
     }
 
-    fn hash(&self, name: &str) -> u32 {
+    fn name_hash(&self, name: &str) -> u32 {
         name.bytes()
             .fold(self.seed, |hash, byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)))
     }

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::file::{ActsOn, EffectFile, FormFile, GrammarFile, PriorOddsFile};
-use super::form::Form;
-use super::grammar::Grammar;
-use crate::error::{Blame, FileError};
+use super::form::EffectForm;
+use super::grammar::TermGrammar;
+use crate::error::{ErrorContext, FileError};
 use crate::name::check_slug;
 use crate::source::Source;
 
@@ -26,9 +26,9 @@ pub struct Effect {
     /// Prior odds of the effect, before any trial is considered.
     pub beforehand: Option<PriorOddsFile>,
     /// The forms in which it may appear; empty if terms are searched.
-    pub forms: Vec<Arc<Form>>,
+    pub forms: Vec<Arc<EffectForm>>,
     /// Grammar of the terms that are searched.
-    pub grammar: Option<Grammar>,
+    pub grammar: Option<TermGrammar>,
 }
 
 impl Effect {
@@ -38,21 +38,21 @@ impl Effect {
     /// Returns an error with file, line and field of the first fault: syntax, an unknown name, a
     /// unit, a symmetry.
     pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
-        read(file, text)
+        read_effect(file, text)
     }
 }
 
-fn read(file: &str, text: &str) -> Result<Effect, FileError> {
-    let blame = Blame::new(file, text);
-    let raw: EffectFile = blame.read()?;
-    check_slug(&raw.name).map_err(|e| blame.at("name", e))?;
+fn read_effect(file: &str, text: &str) -> Result<Effect, FileError> {
+    let blame = ErrorContext::new(file, text);
+    let raw: EffectFile = blame.deserialize()?;
+    check_slug(&raw.name).map_err(|e| blame.field_error("name", e))?;
     if raw.forms.is_empty() == raw.grammar.is_none() {
-        return Err(blame.at("forms", "write either `forms` or a `grammar`"));
+        return Err(blame.field_error("forms", "write either `forms` or a `grammar`"));
     }
-    let at = |(field, message): (String, String)| blame.at(&field, message);
+    let at = |(field, message): (String, String)| blame.field_error(&field, message);
     raw.beforehand.as_ref().map_or(Ok(()), check_odds).map_err(at)?;
     Ok(Effect {
-        forms: forms(raw.acts_on, &raw.forms).map_err(at)?,
+        forms: read_forms(raw.acts_on, &raw.forms).map_err(at)?,
         grammar: raw
             .grammar
             .as_ref()
@@ -87,7 +87,7 @@ fn check_misfit(form: &FormFile) -> Result<(), (String, String)> {
     }
 }
 
-fn forms(acts_on: ActsOn, raw: &[FormFile]) -> Result<Vec<Arc<Form>>, (String, String)> {
+fn read_forms(acts_on: ActsOn, raw: &[FormFile]) -> Result<Vec<Arc<EffectForm>>, (String, String)> {
     let one = |(index, form): (usize, &FormFile)| {
         let path = format!("forms.{}", form.name);
         check_slug(&form.name).map_err(|e| (path.clone(), e.to_string()))?;
@@ -100,16 +100,16 @@ fn forms(acts_on: ActsOn, raw: &[FormFile]) -> Result<Vec<Arc<Form>>, (String, S
             (field, message)
         };
         check_misfit(form).map_err(below)?;
-        Form::read(acts_on, form).map(Arc::new).map_err(below)
+        EffectForm::from_file(acts_on, form).map(Arc::new).map_err(below)
     };
     raw.iter().enumerate().map(one).collect()
 }
 
-fn read_grammar(acts_on: ActsOn, raw: &GrammarFile) -> Result<Grammar, (String, String)> {
+fn read_grammar(acts_on: ActsOn, raw: &GrammarFile) -> Result<TermGrammar, (String, String)> {
     if acts_on != ActsOn::Force {
         return Err(("acts_on".into(), "a grammar spells forces: write `force`".into()));
     }
-    Grammar::read(raw).map_err(|(field, message)| (format!("grammar.{field}"), message))
+    TermGrammar::from_file(raw).map_err(|(field, message)| (format!("grammar.{field}"), message))
 }
 
 #[cfg(test)]
@@ -137,12 +137,12 @@ forms:
 
     fn refused(from: &str, to: &str) -> String {
         assert!(DRAG.contains(from), "{from}");
-        read("drag.yaml", &DRAG.replace(from, to)).unwrap_err().to_string()
+        read_effect("drag.yaml", &DRAG.replace(from, to)).unwrap_err().to_string()
     }
 
     #[test]
     fn a_form_reads() {
-        let effect = read("drag.yaml", DRAG).unwrap_or_else(|e| panic!("{e}"));
+        let effect = read_effect("drag.yaml", DRAG).unwrap_or_else(|e| panic!("{e}"));
         let form = &effect.forms[0];
         assert_eq!(form.reports["share_percent"].factor, 100.0);
         assert_eq!(
@@ -209,6 +209,6 @@ forms:
     #[test]
     fn forms_or_a_grammar() {
         let neither = &DRAG[..DRAG.find("forms:").unwrap()];
-        assert!(read("drag.yaml", neither).unwrap_err().message.contains("either"));
+        assert!(read_effect("drag.yaml", neither).unwrap_err().message.contains("either"));
     }
 }

@@ -4,13 +4,13 @@ use std::cell::RefCell;
 
 use indexmap::IndexMap;
 
-use super::form::{EffectParameter, Form};
-use super::probe::{Probe, SEEDS, is_odd};
+use super::form::{EffectForm, EffectParameter};
+use super::probe::{FormulaProbe, SEEDS, is_odd};
 use sistership_formula::Expr;
 
 /// Formula that acts: its field, its parity in the mirror, and its value while the effect is
 /// absent.
-struct Action<'a> {
+struct FormulaAction<'a> {
     field: String,
     formula: &'a Expr,
     odd: bool,
@@ -19,22 +19,22 @@ struct Action<'a> {
 
 /// Checks that mirrored motion with mirrored parameters gives mirrored results, and that an absent
 /// effect does nothing.
-pub fn check(form: &Form) -> Result<(), (String, String)> {
-    for action in actions(form) {
-        let Action { field, formula, .. } = &action;
+pub fn check_form(form: &EffectForm) -> Result<(), (String, String)> {
+    for action in list_actions(form) {
+        let FormulaAction { field, formula, .. } = &action;
         check_finite(form, &action).map_err(|e| (field.clone(), e))?;
         check_absence(form, &action).map_err(|e| (field.clone(), e))?;
         if !has_parity(&form.parameters, &form.values, formula, action.odd) {
-            return Err((action.field, broken(action.odd)));
+            return Err((action.field, symmetry_message(action.odd)));
         }
     }
     Ok(())
 }
 
-fn actions(form: &Form) -> Vec<Action<'_>> {
+fn list_actions(form: &EffectForm) -> Vec<FormulaAction<'_>> {
     let mut actions = Vec::new();
     let mut add = |section: &str, key: &str, formula, odd, absent| {
-        actions.push(Action { field: format!("{section}.{key}"), formula, odd, absent });
+        actions.push(FormulaAction { field: format!("{section}.{key}"), formula, odd, absent });
     };
     // A replaced state or a reading without the effect is the quantity itself.
     let itself = |name: &str| Expr::Name(name.to_owned());
@@ -58,8 +58,8 @@ fn actions(form: &Form) -> Vec<Action<'_>> {
     actions
 }
 
-fn check_finite(form: &Form, action: &Action<'_>) -> Result<(), String> {
-    let finite = |seed: u32| probe(form, seed, false).of(action.formula).is_some();
+fn check_finite(form: &EffectForm, action: &FormulaAction<'_>) -> Result<(), String> {
+    let finite = |seed: u32| probe_at(form, seed, false).evaluate_formula(action.formula).is_some();
     if SEEDS.into_iter().all(finite) {
         Ok(())
     } else {
@@ -67,11 +67,13 @@ fn check_finite(form: &Form, action: &Action<'_>) -> Result<(), String> {
     }
 }
 
-fn check_absence(form: &Form, action: &Action<'_>) -> Result<(), String> {
+fn check_absence(form: &EffectForm, action: &FormulaAction<'_>) -> Result<(), String> {
     let harmless = |seed: u32| {
-        let absent = probe(form, seed, true);
-        let present = probe(form, seed, false).of(action.formula).map_or(0.0, f64::abs);
-        let pair = absent.of(action.formula).zip(absent.of(&action.absent));
+        let absent = probe_at(form, seed, true);
+        let present =
+            probe_at(form, seed, false).evaluate_formula(action.formula).map_or(0.0, f64::abs);
+        let pair =
+            absent.evaluate_formula(action.formula).zip(absent.evaluate_formula(&action.absent));
         // Rounding errors scale with the present effect, and so does the tolerance.
         pair.is_some_and(|(found, wanted)| {
             (found - wanted).abs() <= 1e-9 * (wanted.abs() + present)
@@ -90,8 +92,8 @@ fn check_absence(form: &Form, action: &Action<'_>) -> Result<(), String> {
     ))
 }
 
-fn probe(form: &Form, seed: u32, absent: bool) -> Probe<'_> {
-    Probe {
+fn probe_at(form: &EffectForm, seed: u32, absent: bool) -> FormulaProbe<'_> {
+    FormulaProbe {
         parameters: &form.parameters,
         values: &form.values,
         seed,
@@ -102,7 +104,7 @@ fn probe(form: &Form, seed: u32, absent: bool) -> Probe<'_> {
 }
 
 /// Message for a formula that is not odd (or even) as it should be.
-pub fn broken(odd: bool) -> String {
+pub fn symmetry_message(odd: bool) -> String {
     let wanted = if odd { "change its sign" } else { "stay as it is" };
     format!(
         "breaks the port/starboard symmetry: mirrored (v, r, p, phi, psi, delta and `mirror: \
@@ -121,8 +123,15 @@ pub fn has_parity(
     let sign = if odd { -1.0 } else { 1.0 };
     SEEDS.into_iter().all(|seed| {
         let at = |mirrored| {
-            Probe { parameters, values, seed, mirrored, absent: false, known: RefCell::default() }
-                .of(formula)
+            FormulaProbe {
+                parameters,
+                values,
+                seed,
+                mirrored,
+                absent: false,
+                known: RefCell::default(),
+            }
+            .evaluate_formula(formula)
         };
         let pair = at(false).zip(at(true));
         pair.is_some_and(|(here, there)| {

@@ -12,7 +12,7 @@ use sistership_formula::{self as formula, Expr};
 
 /// Meaning of a factor of a coefficient's name.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Factor {
+pub struct GrammarFactor {
     pub symbol: String,
     pub text: String,
     /// True if it changes its sign in the mirror.
@@ -21,14 +21,14 @@ pub struct Factor {
 }
 
 /// Factors of a term, of which the last may be an absolute value.
-pub struct Term<'a> {
-    pub factors: Vec<&'a Factor>,
+pub struct GrammarTerm<'a> {
+    pub factors: Vec<&'a GrammarFactor>,
     pub bars: bool,
 }
 
-impl Term<'_> {
+impl GrammarTerm<'_> {
     /// Returns true if its parity is that of the axis.
-    pub fn fits(&self, axis: Axis) -> bool {
+    pub fn fits_axis(&self, axis: Axis) -> bool {
         let odd = self.factors.iter().filter(|factor| factor.odd).count();
         // Bars make the last factor even.
         let in_bars = self.factors.last().filter(|factor| self.bars && factor.odd).map_or(0, |_| 1);
@@ -37,9 +37,9 @@ impl Term<'_> {
 
     /// Name of the term, like that of a coefficient. Formulas cannot contain bars, so that the
     /// parameter has another mark in their place.
-    fn name(&self, axis: Axis, bar: &str) -> String {
+    fn coefficient_name(&self, axis: Axis, bar: &str) -> String {
         let Some(last) = self.factors.len().checked_sub(1) else { return format!("{axis}_0") };
-        let symbol = |(place, factor): (usize, &&Factor)| {
+        let symbol = |(place, factor): (usize, &&GrammarFactor)| {
             if self.bars && place == last {
                 format!("{bar}{}{bar}", factor.symbol)
             } else {
@@ -49,9 +49,9 @@ impl Term<'_> {
         format!("{axis}_{}", self.factors.iter().enumerate().map(symbol).collect::<String>())
     }
 
-    fn product(&self) -> String {
+    fn product_formula(&self) -> String {
         let Some(last) = self.factors.len().checked_sub(1) else { return "1".into() };
-        let one = |(place, factor): (usize, &&Factor)| {
+        let one = |(place, factor): (usize, &&GrammarFactor)| {
             if self.bars && place == last {
                 format!("abs({})", factor.text)
             } else {
@@ -62,15 +62,17 @@ impl Term<'_> {
     }
 
     /// Form of the term on an axis.
-    pub fn form(&self, grammar: &GrammarFile, axis: Axis) -> FormFile {
+    pub fn to_form(&self, grammar: &GrammarFile, axis: Axis) -> FormFile {
         // A trailing mark is dropped from the name of the parameter.
-        let (name, parameter) =
-            (self.name(axis, "|"), self.name(axis, "_abs_").trim_end_matches("_abs_").to_owned());
-        let force = format!("{parameter}*({})*{}", grammar.scales[&axis], self.product());
+        let (name, parameter) = (
+            self.coefficient_name(axis, "|"),
+            self.coefficient_name(axis, "_abs_").trim_end_matches("_abs_").to_owned(),
+        );
+        let force = format!("{parameter}*({})*{}", grammar.scales[&axis], self.product_formula());
         FormFile {
             meaning: format!("the term {name} of the hull's polynomial"),
             name,
-            needs: needs(&force),
+            needs: required_channels(&force),
             unless: Vec::new(),
             only_without_roll: false,
             only_as_change: false,
@@ -78,7 +80,7 @@ impl Term<'_> {
             particulars: IndexMap::new(),
             parameters: IndexMap::from([(
                 parameter,
-                coefficient(grammar.deviations[&axis], self.fits(axis)),
+                coefficient_parameter(grammar.deviations[&axis], self.fits_axis(axis)),
             )]),
             reports: IndexMap::new(),
             values: IndexMap::new(),
@@ -94,15 +96,15 @@ impl Term<'_> {
 }
 
 /// Channels that a formula uses and that trials may lack.
-fn needs(formula: &str) -> Vec<Channel> {
+fn required_channels(formula: &str) -> Vec<Channel> {
     let parsed = formula::parse(formula);
     let mut needs: Vec<Channel> =
-        parsed.iter().flat_map(Expr::names).filter_map(names::needed).collect();
+        parsed.iter().flat_map(Expr::mentioned_names).filter_map(names::required_channel).collect();
     needs.sort_unstable();
     needs
 }
 
-fn coefficient(deviation: f64, is_symmetric: bool) -> EffectParameterFile {
+fn coefficient_parameter(deviation: f64, is_symmetric: bool) -> EffectParameterFile {
     EffectParameterFile {
         unit: "1".into(),
         meaning: "the coefficient".into(),

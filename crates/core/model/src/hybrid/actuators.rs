@@ -7,19 +7,19 @@ use crate::law::STATES;
 
 /// Variable of the expansion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Variable {
+pub struct ExpansionVariable {
     /// Symbol in the names of coefficients.
     pub symbol: String,
     /// Formula of its value, SI.
     pub formula: String,
     /// Unit by which it is divided to be a pure number.
-    pub unit: Unit,
+    pub unit: VariableUnit,
     /// True if it changes sign in the mirror.
     pub odd: bool,
     /// True for a sine or a cosine.
     pub trigonometric: bool,
     /// Actuator to which it belongs, and its couplings; `None` for the ship's motion.
-    pub actuator: Option<Reach>,
+    pub actuator: Option<ActuatorReach>,
     /// Symbol of the variable with which it exchanges places in the mirror; its own if it has no
     /// twin.
     pub twin: String,
@@ -27,7 +27,7 @@ pub struct Variable {
 
 /// Unit of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unit {
+pub enum VariableUnit {
     /// A pure number.
     Number,
     /// A velocity.
@@ -38,7 +38,7 @@ pub enum Unit {
 
 /// Couplings of an actuator.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reach {
+pub struct ActuatorReach {
     /// Its name.
     pub name: String,
     /// Variables by which its terms are multiplied.
@@ -59,18 +59,22 @@ pub struct ActuatorInput {
 }
 
 /// Returns the inputs in order, and the variables in the order of coefficients' names.
-pub fn inputs_and_variables(file: &HybridFile) -> (Vec<ActuatorInput>, Vec<Variable>) {
+pub fn inputs_and_variables(file: &HybridFile) -> (Vec<ActuatorInput>, Vec<ExpansionVariable>) {
     let mut inputs = Vec::new();
-    let mut variables = motion();
+    let mut variables = motion_variables();
     for (name, actuator) in &file.actuators {
-        for side in sides(actuator) {
-            let one =
-                One { name, side, actuator, exchanges: file.rules.symmetry == Symmetry::Mirror };
-            inputs.extend(one.inputs());
-            variables.extend(one.variables());
+        for side in side_suffixes(actuator) {
+            let one = ActuatorSide {
+                name,
+                side,
+                actuator,
+                exchanges: file.rules.symmetry == Symmetry::Mirror,
+            };
+            inputs.extend(one.list_inputs());
+            variables.extend(one.list_variables());
         }
     }
-    let rank = |v: &Variable| {
+    let rank = |v: &ExpansionVariable| {
         STANDARD_FACTORS.iter().position(|f| *f == v.symbol).unwrap_or(STANDARD_FACTORS.len())
     };
     variables.sort_by_key(rank);
@@ -78,12 +82,12 @@ pub fn inputs_and_variables(file: &HybridFile) -> (Vec<ActuatorInput>, Vec<Varia
 }
 
 /// Returns the suffixes of the sides on which an actuator has a twin.
-pub fn sides(actuator: &ActuatorFile) -> &'static [&'static str] {
+pub fn side_suffixes(actuator: &ActuatorFile) -> &'static [&'static str] {
     if actuator.pair || actuator.kind == ActuatorKind::Vectwin { &["_s", "_p"] } else { &[""] }
 }
 
-fn motion() -> Vec<Variable> {
-    let one = |symbol: &str, unit, odd| Variable {
+fn motion_variables() -> Vec<ExpansionVariable> {
+    let one = |symbol: &str, unit, odd| ExpansionVariable {
         symbol: symbol.into(),
         formula: symbol.into(),
         unit,
@@ -92,20 +96,24 @@ fn motion() -> Vec<Variable> {
         actuator: None,
         twin: symbol.into(),
     };
-    vec![one("u", Unit::Speed, false), one("v", Unit::Speed, true), one("r", Unit::Rate, true)]
+    vec![
+        one("u", VariableUnit::Speed, false),
+        one("v", VariableUnit::Speed, true),
+        one("r", VariableUnit::Rate, true),
+    ]
 }
 
 /// One actuator, or one side of a pair.
-struct One<'a> {
+struct ActuatorSide<'a> {
     name: &'a str,
     side: &'a str,
     actuator: &'a ActuatorFile,
     exchanges: bool,
 }
 
-impl One<'_> {
+impl ActuatorSide<'_> {
     /// Returns its input with a prefix, and the input that it becomes in the mirror.
-    fn input(&self, prefix: &str) -> (String, String) {
+    fn input_names(&self, prefix: &str) -> (String, String) {
         let other = match self.side {
             "_s" => "_p",
             "_p" => "_s",
@@ -114,18 +122,22 @@ impl One<'_> {
         (format!("{prefix}{}{}", self.name, self.side), format!("{prefix}{}{other}", self.name))
     }
 
-    fn inputs(&self) -> Vec<ActuatorInput> {
-        let revolutions = |prefix: &str, odd| self.declared(prefix, "rps", odd);
+    fn list_inputs(&self) -> Vec<ActuatorInput> {
+        let revolutions = |prefix: &str, odd| self.declare_input(prefix, "rps", odd);
         match self.actuator.kind {
             ActuatorKind::Propeller => vec![revolutions("", false)],
             ActuatorKind::TunnelThruster => vec![revolutions("", true)],
-            ActuatorKind::Rudder | ActuatorKind::Vectwin => vec![self.declared("", "rad", true)],
-            ActuatorKind::Azimuth => vec![revolutions("n_", false), self.declared("", "rad", true)],
+            ActuatorKind::Rudder | ActuatorKind::Vectwin => {
+                vec![self.declare_input("", "rad", true)]
+            }
+            ActuatorKind::Azimuth => {
+                vec![revolutions("n_", false), self.declare_input("", "rad", true)]
+            }
         }
     }
 
-    fn declared(&self, prefix: &str, unit: &'static str, odd: bool) -> ActuatorInput {
-        let (name, other) = self.input(prefix);
+    fn declare_input(&self, prefix: &str, unit: &'static str, odd: bool) -> ActuatorInput {
+        let (name, other) = self.input_names(prefix);
         let known = STATES.iter().any(|(state, _)| *state == name) || name == "delta";
         let becomes = if self.exchanges { other } else { name.clone() };
         // One mirror entry serves both sides of a pair.
@@ -134,24 +146,24 @@ impl One<'_> {
         ActuatorInput { name, unit, mirror }
     }
 
-    fn variables(&self) -> Vec<Variable> {
+    fn list_variables(&self) -> Vec<ExpansionVariable> {
         let revolutions = |prefix: &str, odd| {
-            self.variable("", prefix, Unit::Rate, odd, |input| input.to_owned())
+            self.build_variable("", prefix, VariableUnit::Rate, odd, |input| input.to_owned())
         };
         match self.actuator.kind {
             ActuatorKind::Propeller => vec![revolutions("", false)],
             ActuatorKind::TunnelThruster => vec![revolutions("", true)],
-            ActuatorKind::Rudder | ActuatorKind::Vectwin => self.angle(),
+            ActuatorKind::Rudder | ActuatorKind::Vectwin => self.angle_variables(),
             ActuatorKind::Azimuth => {
-                std::iter::once(revolutions("n_", false)).chain(self.angle()).collect()
+                std::iter::once(revolutions("n_", false)).chain(self.angle_variables()).collect()
             }
         }
     }
 
-    fn angle(&self) -> Vec<Variable> {
+    fn angle_variables(&self) -> Vec<ExpansionVariable> {
         let trigonometric = |function: &str, odd, formula: fn(&str) -> String| {
-            let variable = self.variable(function, "", Unit::Number, odd, formula);
-            Variable { trigonometric: true, ..variable }
+            let variable = self.build_variable(function, "", VariableUnit::Number, odd, formula);
+            ExpansionVariable { trigonometric: true, ..variable }
         };
         let sine = trigonometric("sin", true, |input| format!("sin({input})"));
         match self.actuator.angle {
@@ -162,28 +174,36 @@ impl One<'_> {
                 vec![sine, trigonometric("cos", false, |input| format!("1 - cos({input})"))]
             }
             AngleFeature::Plain => {
-                vec![self.variable("", "", Unit::Number, true, |input| input.to_owned())]
+                vec![
+                    self.build_variable("", "", VariableUnit::Number, true, |input| {
+                        input.to_owned()
+                    }),
+                ]
             }
         }
     }
 
-    fn variable(
+    fn build_variable(
         &self,
         function: &str,
         prefix: &str,
-        unit: Unit,
+        unit: VariableUnit,
         odd: bool,
         formula: impl Fn(&str) -> String,
-    ) -> Variable {
-        let (name, other) = self.input(prefix);
+    ) -> ExpansionVariable {
+        let (name, other) = self.input_names(prefix);
         let ActuatorFile { couples, axes, .. } = self.actuator;
-        Variable {
+        ExpansionVariable {
             symbol: format!("{function}{name}"),
             formula: formula(&name),
             unit,
             odd,
             trigonometric: false,
-            actuator: Some(Reach { name: self.name.into(), couples: *couples, axes: axes.clone() }),
+            actuator: Some(ActuatorReach {
+                name: self.name.into(),
+                couples: *couples,
+                axes: axes.clone(),
+            }),
             twin: format!("{function}{other}"),
         }
     }

@@ -1,28 +1,28 @@
 //! Checks of a declaration.
 
-use super::actuators::{ActuatorInput, Variable, inputs_and_variables, sides};
+use super::actuators::{ActuatorInput, ExpansionVariable, inputs_and_variables, side_suffixes};
 use super::file::{ActuatorFile, ActuatorKind, AngleFeature, HybridFile, Squares, Symmetry};
-use super::rules::AXES;
+use super::rules::HYBRID_AXES;
 use crate::coefficient::STANDARD_FACTORS;
 use crate::law::STATES;
-use crate::law::limits::most;
+use crate::law::limits::check_count;
 use crate::name::check_slug;
 use crate::particulars;
 use sistership_formula as formula;
 
 /// Largest number of terms of an expansion.
-const MOST_TERMS: usize = 5000;
+const MAX_TERMS: usize = 5000;
 
 /// Largest number of actuators.
-const MOST_ACTUATORS: usize = 50;
+const MAX_ACTUATORS: usize = 50;
 
-type Fault = (String, String);
+type FieldFault = (String, String);
 
 /// Checks everything that can be checked before the law is written.
 ///
 /// # Errors
 /// Returns the field at fault and its remedy.
-pub fn check(file: &HybridFile) -> Result<(), Fault> {
+pub fn check_declaration(file: &HybridFile) -> Result<(), FieldFault> {
     let fault = |field: &str, message: String| Err((field.to_owned(), message));
     check_slug(&file.name).map_err(|e| ("name".to_owned(), e.to_string()))?;
     if !(1..=4).contains(&file.order) {
@@ -34,7 +34,7 @@ pub fn check(file: &HybridFile) -> Result<(), Fault> {
     if file.actuators.is_empty() {
         return fault("actuators", "name at least one actuator".into());
     }
-    most("actuators", file.actuators.len(), MOST_ACTUATORS)?;
+    check_count("actuators", file.actuators.len(), MAX_ACTUATORS)?;
     for (name, actuator) in &file.actuators {
         let field = |(key, message): (&str, String)| (format!("actuators.{name}{key}"), message);
         check_name(name).map_err(|e| field(("", e)))?;
@@ -57,10 +57,10 @@ fn check_name(name: &str) -> Result<(), String> {
     }
     let state = STATES.iter().any(|(state, _)| *state == name);
     let known = state
-        || formula::builtin(name).is_some()
+        || formula::builtin_constant(name).is_some()
         || formula::Function::by_name(name).is_some()
         || name == "if";
-    if known || particulars::dimension(name).is_some() {
+    if known || particulars::particular_dimension(name).is_some() {
         return Err(format!("`{name}` means something else in formulas; choose another name"));
     }
     Ok(())
@@ -82,7 +82,7 @@ fn check_actuator(actuator: &ActuatorFile) -> Result<(), (&'static str, String)>
     if actuator
         .axes
         .as_ref()
-        .is_some_and(|axes| axes.is_empty() || axes.iter().any(|axis| !AXES.contains(axis)))
+        .is_some_and(|axes| axes.is_empty() || axes.iter().any(|axis| !HYBRID_AXES.contains(axis)))
     {
         return Err((".axes", "give some of X, Y and N".into()));
     }
@@ -90,9 +90,9 @@ fn check_actuator(actuator: &ActuatorFile) -> Result<(), (&'static str, String)>
     if !matches!(kind, Rudder | Vectwin) {
         return Err((".stall_deg", "only rudders stall".into()));
     }
-    match sides(actuator)
+    match side_suffixes(actuator)
         .iter()
-        .map(|side| stall.of(side))
+        .map(|side| stall.side_angle(side))
         .find(|angle| !(*angle > 0.0 && *angle < 180.0))
     {
         Some(angle) => {
@@ -104,7 +104,7 @@ fn check_actuator(actuator: &ActuatorFile) -> Result<(), (&'static str, String)>
 
 /// Checks that no two actuators share an input, and that an input with a standard name has its
 /// standard unit.
-fn check_inputs(inputs: &[ActuatorInput]) -> Result<(), Fault> {
+fn check_inputs(inputs: &[ActuatorInput]) -> Result<(), FieldFault> {
     for (place, input) in inputs.iter().enumerate() {
         let field = || "actuators".to_owned();
         if inputs[..place].iter().any(|earlier| earlier.name == input.name) {
@@ -131,7 +131,7 @@ fn check_inputs(inputs: &[ActuatorInput]) -> Result<(), Fault> {
     Ok(())
 }
 
-fn check_rules(file: &HybridFile, variables: &[Variable]) -> Result<(), Fault> {
+fn check_rules(file: &HybridFile, variables: &[ExpansionVariable]) -> Result<(), FieldFault> {
     let rules = &file.rules;
     let mirrors = rules.symmetry == Symmetry::Mirror;
     if mirrors && rules.zeroth_powers {
@@ -161,14 +161,14 @@ fn check_rules(file: &HybridFile, variables: &[Variable]) -> Result<(), Fault> {
     Ok(())
 }
 
-fn check_size(file: &HybridFile, variables: usize) -> Result<(), Fault> {
+fn check_size(file: &HybridFile, variables: usize) -> Result<(), FieldFault> {
     // Number of monomials up to the order: the binomial coefficient of variables + order over
     // order.
     let terms = (0..file.order as usize)
         .fold(1, |product, i| product * (variables + file.order as usize - i) / (i + 1));
-    if terms > MOST_TERMS {
+    if terms > MAX_TERMS {
         let message = format!(
-            "{variables} variables to order {} make {terms} terms on an axis; {MOST_TERMS} are the \
+            "{variables} variables to order {} make {terms} terms on an axis; {MAX_TERMS} are the \
              most",
             file.order
         );

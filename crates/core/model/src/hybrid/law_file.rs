@@ -5,52 +5,53 @@ use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
 
-use super::actuators::{ActuatorInput, Unit, Variable};
+use super::actuators::{ActuatorInput, ExpansionVariable, VariableUnit};
 use super::file::{HybridFile, Scaling};
-use super::rules::{AXES, Term};
+use super::rules::{HYBRID_AXES, HybridTerm};
 use crate::coefficient::Axis;
 use crate::law::{AxisFile, InputFile, LawFile, LawKind, ParameterFile, SubmodelFile, TermFile};
 use crate::source::Source;
 
 /// Writer of the derived law.
-pub struct Writer<'a> {
+pub struct LawWriter<'a> {
     pub file: &'a HybridFile,
     pub inputs: &'a [ActuatorInput],
-    pub variables: &'a [Variable],
-    pub terms: &'a [Vec<Term>; 3],
+    pub variables: &'a [ExpansionVariable],
+    pub terms: &'a [Vec<HybridTerm>; 3],
     pub submodels: IndexMap<String, SubmodelFile>,
 }
 
-impl Writer<'_> {
-    pub fn law(self) -> LawFile {
-        let inertia = Inertia::of(self.file.scaling);
+impl LawWriter<'_> {
+    pub fn write_law(self) -> LawFile {
+        let inertia = InertiaFormulas::from_scaling(self.file.scaling);
         let input = |input: &ActuatorInput| {
             (input.name.clone(), InputFile { unit: input.unit.into(), default: None })
         };
         let mirror = |input: &ActuatorInput| Some((input.name.clone(), input.mirror.clone()?));
-        let factor = |place: usize| (self.variables[place].symbol.clone(), self.called(place));
+        let factor =
+            |place: usize| (self.variables[place].symbol.clone(), self.formula_name(place));
         LawFile {
             kind: LawKind::Law,
             name: self.file.name.clone(),
             title: self.file.title.clone(),
-            sources: self.sources(),
+            sources: self.list_sources(),
             inputs: self.inputs.iter().map(input).collect(),
-            parameters: inertia.parameters(),
-            values: self.values(),
+            parameters: inertia.parameter_files(),
+            values: self.list_values(),
             factors: (0..self.variables.len()).map(factor).collect(),
-            axes: AXES
+            axes: HYBRID_AXES
                 .into_iter()
                 .zip(self.terms)
-                .map(|(axis, terms)| (axis, self.axis(axis, terms, &inertia)))
+                .map(|(axis, terms)| (axis, self.axis_file(axis, terms, &inertia)))
                 .collect(),
-            mass: inertia.mass(),
+            mass: inertia.mass_matrix(),
             kinematics: BTreeMap::new(),
             mirrors: self.inputs.iter().filter_map(mirror).collect(),
             submodels: self.submodels,
         }
     }
 
-    fn sources(&self) -> BTreeMap<String, Source> {
+    fn list_sources(&self) -> BTreeMap<String, Source> {
         let citation = "Miyauchi, Y., Akimoto, Y. and Maki, A. (2024). Development of a \
                         mathematical model for harbor maneuvers to realize modeling automation. J \
                         Mar Sci Technol 29, 975-999, sec. 2.2";
@@ -61,12 +62,12 @@ impl Writer<'_> {
         sources
     }
 
-    fn is_scaled(&self, variable: &Variable) -> bool {
-        self.file.scaling == Scaling::Bis && variable.unit != Unit::Number
+    fn is_scaled(&self, variable: &ExpansionVariable) -> bool {
+        self.file.scaling == Scaling::Bis && variable.unit != VariableUnit::Number
     }
 
     /// Name of a variable in formulas.
-    fn called(&self, place: usize) -> String {
+    fn formula_name(&self, place: usize) -> String {
         let variable = &self.variables[place];
         if self.is_scaled(variable) {
             format!("{}_bis", variable.symbol)
@@ -75,7 +76,7 @@ impl Writer<'_> {
         }
     }
 
-    fn values(&self) -> IndexMap<String, String> {
+    fn list_values(&self) -> IndexMap<String, String> {
         let mut values = IndexMap::new();
         // Units of the bis system: sqrt(g L) for speed, sqrt(L / g) for time.
         if self.file.scaling == Scaling::Bis {
@@ -84,33 +85,36 @@ impl Writer<'_> {
         }
         for (place, variable) in self.variables.iter().enumerate() {
             let formula = match variable.unit {
-                Unit::Speed if self.is_scaled(variable) => {
+                VariableUnit::Speed if self.is_scaled(variable) => {
                     format!("{}/speed_unit", variable.formula)
                 }
-                Unit::Rate if self.is_scaled(variable) => format!("{}*time_unit", variable.formula),
+                VariableUnit::Rate if self.is_scaled(variable) => {
+                    format!("{}*time_unit", variable.formula)
+                }
                 _ => variable.formula.clone(),
             };
             // A variable that equals its symbol needs no value.
             if formula != variable.symbol {
-                values.insert(self.called(place), formula);
+                values.insert(self.formula_name(place), formula);
             }
         }
         values
     }
 
-    fn axis(&self, axis: Axis, terms: &[Term], inertia: &Inertia) -> AxisFile {
+    fn axis_file(&self, axis: Axis, terms: &[HybridTerm], inertia: &InertiaFormulas) -> AxisFile {
         AxisFile {
-            scale: inertia.scale(axis),
-            terms: terms.iter().map(|term| self.term(axis, term)).collect(),
-            rest: Some(inertia.rest(axis)),
+            scale: inertia.axis_scale(axis),
+            terms: terms.iter().map(|term| self.term_file(axis, term)).collect(),
+            rest: Some(inertia.centripetal_terms(axis)),
             open: false,
         }
     }
 
-    fn term(&self, axis: Axis, term: &Term) -> TermFile {
-        let name = term.monomial.name(axis, self.variables);
-        let formula =
-            |monomial: &super::monomial::Monomial| monomial.formula(&|place| self.called(place));
+    fn term_file(&self, axis: Axis, term: &HybridTerm) -> TermFile {
+        let name = term.monomial.coefficient_name(axis, self.variables);
+        let formula = |monomial: &super::monomial::Monomial| {
+            monomial.to_formula(&|place| self.formula_name(place))
+        };
         match &term.image {
             // The constant term has no factors in its name, so that its formula is written out.
             None if term.monomial.degree() == 0 => {
@@ -130,7 +134,7 @@ impl Writer<'_> {
 }
 
 /// Inertial side of Eq. 1 in one scaling.
-struct Inertia {
+struct InertiaFormulas {
     scaling: Scaling,
     /// Mass with the added mass in surge and in sway, kg.
     surge: &'static str,
@@ -141,8 +145,8 @@ struct Inertia {
     moment: &'static str,
 }
 
-impl Inertia {
-    fn of(scaling: Scaling) -> Self {
+impl InertiaFormulas {
+    fn from_scaling(scaling: Scaling) -> Self {
         match scaling {
             // In the bis system parameters are divided by mass and length.
             Scaling::Bis => Self {
@@ -162,7 +166,7 @@ impl Inertia {
         }
     }
 
-    fn parameters(&self) -> IndexMap<String, ParameterFile> {
+    fn parameter_files(&self) -> IndexMap<String, ParameterFile> {
         let bis = self.scaling == Scaling::Bis;
         let one = |name: &str, unit: &str, of: &str, by: &str, from: Option<&str>| {
             let meaning =
@@ -187,13 +191,13 @@ impl Inertia {
         ])
     }
 
-    fn scale(&self, axis: Axis) -> Option<String> {
+    fn axis_scale(&self, axis: Axis) -> Option<String> {
         let bis = if axis == Axis::N { "m*g*lpp_m" } else { "m*g" };
         (self.scaling == Scaling::Bis).then(|| bis.to_owned())
     }
 
     /// Products of velocities that remain on the right-hand side of Eq. 1.
-    fn rest(&self, axis: Axis) -> String {
+    fn centripetal_terms(&self, axis: Axis) -> String {
         match axis {
             Axis::X => format!("{}*v*r + {}*r^2", self.sway, self.moment),
             Axis::Y => format!("-{}*u*r", self.surge),
@@ -201,7 +205,7 @@ impl Inertia {
         }
     }
 
-    fn mass(&self) -> BTreeMap<Axis, BTreeMap<Axis, String>> {
+    fn mass_matrix(&self) -> BTreeMap<Axis, BTreeMap<Axis, String>> {
         let row = |entries: &[(Axis, &str)]| {
             entries.iter().map(|(axis, formula)| (*axis, (*formula).to_owned())).collect()
         };

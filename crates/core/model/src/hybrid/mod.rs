@@ -14,13 +14,13 @@ mod rules;
 mod submodels;
 mod unknowns;
 
-pub use derivation::{Derivation, derive};
+pub use derivation::{LawDerivation, derive_law};
 pub use file::{
     ActuatorFile, ActuatorKind, AngleFeature, Coupling, EffectUse, ExceptionFile, HybridFile,
     Rules, Scaling, Scheme, Squares, StallFile, SubmodelsFile, Symmetry, TrigonometricPowers,
 };
-pub use rules::{AXES, Step};
-pub use unknowns::{EffectUnknowns, RuleCount, Unknowns};
+pub use rules::{HYBRID_AXES, SelectionStep};
+pub use unknowns::{EffectUnknowns, RuleCount, UnknownCounts};
 
 #[cfg(test)]
 mod tests;

@@ -1,14 +1,14 @@
 //! Selection and notation of the terms of the expansion: Miyauchi 2024, sec. 2.2.2, one function
 //! for each rule.
 
-use super::actuators::Variable;
+use super::actuators::ExpansionVariable;
 use super::file::{Coupling, Rules, Squares, Symmetry, TrigonometricPowers};
 use super::monomial::Monomial;
 use crate::coefficient::Axis;
 
 /// Term: a monomial, or the sum or difference of two that are mirror images of each other.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Term {
+pub struct HybridTerm {
     /// The monomial, which gives the coefficient its name.
     pub monomial: Monomial,
     /// Its mirror image, and true if that is subtracted.
@@ -17,7 +17,7 @@ pub struct Term {
 
 /// Result of one rule.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step {
+pub struct SelectionStep {
     /// The rule.
     pub rule: &'static str,
     /// Setting of the rule.
@@ -27,66 +27,70 @@ pub struct Step {
 }
 
 /// Axes of the hybrid.
-pub const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::N];
+pub const HYBRID_AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::N];
 
 /// Applies the rules one after another; returns the terms by axis, in the order of [`AXES`], and
 /// the result of each rule.
-pub fn select(
+pub fn select_terms(
     all: &[Monomial],
     rules: &Rules,
-    variables: &[Variable],
+    variables: &[ExpansionVariable],
     setting: &str,
-) -> ([Vec<Term>; 3], Vec<Step>) {
-    let alone = |monomial: &Monomial| Term { monomial: monomial.clone(), image: None };
-    let mut terms = AXES.map(|_| all.iter().map(alone).collect::<Vec<Term>>());
-    let mut steps = vec![Step {
+) -> ([Vec<HybridTerm>; 3], Vec<SelectionStep>) {
+    let alone = |monomial: &Monomial| HybridTerm { monomial: monomial.clone(), image: None };
+    let mut terms = HYBRID_AXES.map(|_| all.iter().map(alone).collect::<Vec<HybridTerm>>());
+    let mut steps = vec![SelectionStep {
         rule: "Taylor expansion",
         setting: setting.to_owned(),
         terms: terms.each_ref().map(Vec::len),
     }];
-    let selector = Selector { rules, variables };
-    for (rule, setting, apply) in selector.rules() {
-        for (axis, terms) in AXES.into_iter().zip(&mut terms) {
+    let selector = TermSelector { rules, variables };
+    for (rule, setting, apply) in selector.ordered_rules() {
+        for (axis, terms) in HYBRID_AXES.into_iter().zip(&mut terms) {
             *terms = terms.drain(..).filter_map(|term| apply(&selector, axis, term)).collect();
         }
-        steps.push(Step { rule, setting, terms: terms.each_ref().map(Vec::len) });
+        steps.push(SelectionStep { rule, setting, terms: terms.each_ref().map(Vec::len) });
     }
     (terms, steps)
 }
 
-type Rule<'a> = fn(&Selector<'a>, Axis, Term) -> Option<Term>;
+type RuleFunction<'a> = fn(&TermSelector<'a>, Axis, HybridTerm) -> Option<HybridTerm>;
 
-struct Selector<'a> {
+struct TermSelector<'a> {
     rules: &'a Rules,
-    variables: &'a [Variable],
+    variables: &'a [ExpansionVariable],
 }
 
-impl<'a> Selector<'a> {
+impl<'a> TermSelector<'a> {
     /// The rules in order, with their settings in words.
-    fn rules(&self) -> [(&'static str, String, Rule<'a>); 5] {
+    fn ordered_rules(&self) -> [(&'static str, String, RuleFunction<'a>); 5] {
         let constant = if self.rules.constant { "keep" } else { "drop" };
         [
-            ("force at rest", constant.into(), Self::constant),
-            ("axes and couplings", "as declared".into(), Self::reach),
-            ("A: symmetry", symmetry_in_words(self.rules), Self::symmetry),
-            ("B: powers of sines and cosines", powers_in_words(self.rules), Self::trigonometric),
-            ("C: squares", squares_in_words(self.rules).into(), Self::squares),
+            ("force at rest", constant.into(), Self::apply_constant),
+            ("axes and couplings", "as declared".into(), Self::apply_reach),
+            ("A: symmetry", describe_symmetry(self.rules), Self::apply_symmetry),
+            (
+                "B: powers of sines and cosines",
+                describe_powers(self.rules),
+                Self::apply_trigonometric,
+            ),
+            ("C: squares", describe_squares(self.rules).into(), Self::apply_squares),
         ]
     }
 
     /// Rule of the force at rest, the first term of Eq. 7.
-    fn constant(&self, _: Axis, term: Term) -> Option<Term> {
+    fn apply_constant(&self, _: Axis, term: HybridTerm) -> Option<HybridTerm> {
         (self.rules.constant || term.monomial.degree() > 0).then_some(term)
     }
 
     /// Rule of couplings: actuators act on their axes only, and multiply only the variables with
     /// which they couple.
-    fn reach(&self, axis: Axis, term: Term) -> Option<Term> {
+    fn apply_reach(&self, axis: Axis, term: HybridTerm) -> Option<HybridTerm> {
         let places =
             || term.monomial.powers.iter().map(|&(place, _)| &self.variables[place].actuator);
         let allowed = places().flatten().all(|one| {
             // `All` meets everything, `Hull` the motion, and every actuator itself.
-            let met = |other: &Option<super::actuators::Reach>| match (one.couples, other) {
+            let met = |other: &Option<super::actuators::ActuatorReach>| match (one.couples, other) {
                 (Coupling::All, _) => true,
                 (Coupling::Hull, None) => true,
                 (_, other) => other.as_ref().is_some_and(|other| other.name == one.name),
@@ -97,8 +101,8 @@ impl<'a> Selector<'a> {
     }
 
     /// Rule of symmetry, modification A.
-    fn symmetry(&self, axis: Axis, term: Term) -> Option<Term> {
-        let image = term.monomial.exchanged(self.variables);
+    fn apply_symmetry(&self, axis: Axis, term: HybridTerm) -> Option<HybridTerm> {
+        let image = term.monomial.with_sides_exchanged(self.variables);
         let fits = term.monomial.is_odd(self.variables) == axis.is_odd();
         match self.rules.symmetry {
             Symmetry::None => Some(term),
@@ -106,10 +110,10 @@ impl<'a> Selector<'a> {
             // the axis.
             Symmetry::Mirror if image != term.monomial => {
                 let first = term.monomial < image;
-                first.then_some(Term { image: Some((image, !fits)), ..term })
+                first.then_some(HybridTerm { image: Some((image, !fits)), ..term })
             }
             _ if fits || self.is_bias(axis, &term.monomial) => Some(term),
-            _ => self.signed(axis, term),
+            _ => self.with_signed_square(axis, term),
         }
     }
 
@@ -120,16 +124,16 @@ impl<'a> Selector<'a> {
     }
 
     /// Replaces `v^2` by `v|v|`, if that gives the term the parity of its axis.
-    fn signed(&self, axis: Axis, mut term: Term) -> Option<Term> {
+    fn with_signed_square(&self, axis: Axis, mut term: HybridTerm) -> Option<HybridTerm> {
         // The first square of an odd variable is changed.
-        let square = term.monomial.squares().find(|&place| self.variables[place].odd)?;
+        let square = term.monomial.squared_variables().find(|&place| self.variables[place].odd)?;
         term.monomial.moduli.insert(square);
         (self.rules.signed_squares && term.monomial.is_odd(self.variables) == axis.is_odd())
             .then_some(term)
     }
 
     /// Rule of the powers of sines and cosines, modification B.
-    fn trigonometric(&self, axis: Axis, term: Term) -> Option<Term> {
+    fn apply_trigonometric(&self, axis: Axis, term: HybridTerm) -> Option<HybridTerm> {
         let drops = self.rules.trigonometric_powers == TrigonometricPowers::Drop;
         let excepted = |place: usize, power: u32| {
             let named = |of: &&super::file::ExceptionFile| {
@@ -145,27 +149,29 @@ impl<'a> Selector<'a> {
     }
 
     /// Rule of squares, modification C.
-    fn squares(&self, axis: Axis, mut term: Term) -> Option<Term> {
-        self.moduli(axis, &mut term.monomial);
+    fn apply_squares(&self, axis: Axis, mut term: HybridTerm) -> Option<HybridTerm> {
+        self.mark_moduli(axis, &mut term.monomial);
         if let Some((image, _)) = &mut term.image {
-            self.moduli(axis, image);
+            self.mark_moduli(axis, image);
         }
         Some(term)
     }
 
-    fn moduli(&self, axis: Axis, monomial: &mut Monomial) {
+    fn mark_moduli(&self, axis: Axis, monomial: &mut Monomial) {
         let wanted = match self.rules.squares {
             Squares::Plain => return,
             Squares::AsPrinted => axis.is_odd(),
             Squares::AsDescribed => false,
         };
-        let squares: Vec<usize> =
-            monomial.squares().filter(|&place| self.variables[place].odd == wanted).collect();
+        let squares: Vec<usize> = monomial
+            .squared_variables()
+            .filter(|&place| self.variables[place].odd == wanted)
+            .collect();
         monomial.moduli.extend(squares);
     }
 }
 
-fn symmetry_in_words(rules: &Rules) -> String {
+fn describe_symmetry(rules: &Rules) -> String {
     let selection = match rules.symmetry {
         Symmetry::Parity => "parity",
         Symmetry::Mirror => "mirror",
@@ -177,7 +183,7 @@ fn symmetry_in_words(rules: &Rules) -> String {
     format!("{selection}{on}")
 }
 
-fn powers_in_words(rules: &Rules) -> String {
+fn describe_powers(rules: &Rules) -> String {
     let powers = match rules.trigonometric_powers {
         TrigonometricPowers::Drop => "drop",
         TrigonometricPowers::Keep => "keep",
@@ -187,7 +193,7 @@ fn powers_in_words(rules: &Rules) -> String {
     format!("{powers}{excepted}")
 }
 
-fn squares_in_words(rules: &Rules) -> &'static str {
+fn describe_squares(rules: &Rules) -> &'static str {
     match rules.squares {
         Squares::AsDescribed => "as described",
         Squares::AsPrinted => "as printed",

@@ -5,7 +5,7 @@
 
 use indexmap::IndexMap;
 
-use super::actuators::sides;
+use super::actuators::side_suffixes;
 use super::file::{ActuatorKind, HybridFile, Scheme, StallFile, SubmodelsFile};
 use crate::law::SubmodelFile;
 
@@ -13,7 +13,7 @@ use crate::law::SubmodelFile;
 ///
 /// # Errors
 /// Returns an error if the ship lacks what the scheme needs.
-pub fn submodels(file: &HybridFile) -> Result<IndexMap<String, SubmodelFile>, String> {
+pub fn build_submodels(file: &HybridFile) -> Result<IndexMap<String, SubmodelFile>, String> {
     let ahead = || "u >= 0".to_owned();
     let astern = || "u < 0".to_owned();
     let listed: Vec<(&str, &str, Vec<String>)> = match &file.submodels {
@@ -23,15 +23,23 @@ pub fn submodels(file: &HybridFile) -> Result<IndexMap<String, SubmodelFile>, St
             vec![("astern", "moving astern", vec![astern()])]
         }
         SubmodelsFile::Scheme(Scheme::AheadStalledAstern) => vec![
-            ("stalled", "ahead, a rudder stalled", vec![ahead(), stalled(file, ">=")?]),
+            ("stalled", "ahead, a rudder stalled", vec![ahead(), stall_condition(file, ">=")?]),
             ("astern", "moving astern", vec![astern()]),
         ],
         SubmodelsFile::Scheme(Scheme::AheadAsternStalled) => vec![
-            ("ahead-stalled", "ahead, a rudder stalled", vec![ahead(), stalled(file, ">=")?]),
-            ("astern", "astern, no rudder stalled", vec![astern(), stalled(file, "<")?]),
-            ("astern-stalled", "astern, a rudder stalled", vec![astern(), stalled(file, ">=")?]),
+            (
+                "ahead-stalled",
+                "ahead, a rudder stalled",
+                vec![ahead(), stall_condition(file, ">=")?],
+            ),
+            ("astern", "astern, no rudder stalled", vec![astern(), stall_condition(file, "<")?]),
+            (
+                "astern-stalled",
+                "astern, a rudder stalled",
+                vec![astern(), stall_condition(file, ">=")?],
+            ),
         ],
-        SubmodelsFile::Scheme(Scheme::Quadrants) => quadrants(&propeller(file)?),
+        SubmodelsFile::Scheme(Scheme::Quadrants) => quadrant_conditions(&single_propeller(file)?),
     };
     let named = |(name, meaning, when): (&str, &str, Vec<String>)| {
         (
@@ -42,7 +50,7 @@ pub fn submodels(file: &HybridFile) -> Result<IndexMap<String, SubmodelFile>, St
     Ok(listed.into_iter().map(named).collect())
 }
 
-fn quadrants(n: &str) -> Vec<(&'static str, &'static str, Vec<String>)> {
+fn quadrant_conditions(n: &str) -> Vec<(&'static str, &'static str, Vec<String>)> {
     let when = |u: &str, sign: &str| vec![format!("u {u} 0"), format!("{n} {sign} 0")];
     vec![
         ("crash-astern", "ahead, the propeller reversed", when(">=", "<")),
@@ -52,7 +60,7 @@ fn quadrants(n: &str) -> Vec<(&'static str, &'static str, Vec<String>)> {
 }
 
 /// Returns the input of the revolutions that distinguish the quadrants.
-fn propeller(file: &HybridFile) -> Result<String, String> {
+fn single_propeller(file: &HybridFile) -> Result<String, String> {
     let propellers: Vec<&String> = file
         .actuators
         .iter()
@@ -71,7 +79,7 @@ fn propeller(file: &HybridFile) -> Result<String, String> {
 /// Condition of stall, `max(|delta_s| - stall_s, |delta_p| - stall_p) >= 0`: at least one rudder is
 /// beyond its stall angle. The paper's Algorithms 2 and 3 print the starboard rudder in both
 /// comparisons; the port one is meant in the second.
-fn stalled(file: &HybridFile, comparison: &str) -> Result<String, String> {
+fn stall_condition(file: &HybridFile, comparison: &str) -> Result<String, String> {
     let beyond = |(name, angle): (String, f64)| format!("abs({name}) - {angle}*pi/180");
     let excess = stall_angles(file).into_iter().map(beyond).reduce(|a, b| format!("max({a}, {b})"));
     let excess =
@@ -84,8 +92,8 @@ fn stall_angles(file: &HybridFile) -> Vec<(String, f64)> {
     let mut angles = Vec::new();
     for (name, actuator) in &file.actuators {
         let Some(stall) = actuator.stall_deg else { continue };
-        for side in sides(actuator) {
-            angles.push((format!("{name}{side}"), stall.of(side)));
+        for side in side_suffixes(actuator) {
+            angles.push((format!("{name}{side}"), stall.side_angle(side)));
         }
     }
     angles
@@ -93,7 +101,7 @@ fn stall_angles(file: &HybridFile) -> Vec<(String, f64)> {
 
 impl StallFile {
     /// Angle of a side, deg.
-    pub(crate) fn of(self, side: &str) -> f64 {
+    pub(crate) fn side_angle(self, side: &str) -> f64 {
         match self {
             Self::Both(angle) => angle,
             Self::Sides { port, .. } if side == "_p" => port,

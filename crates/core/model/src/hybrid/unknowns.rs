@@ -2,14 +2,14 @@
 
 use serde::Serialize;
 
-use super::derivation::Derivation;
+use super::derivation::LawDerivation;
 use super::file::EffectUse;
-use super::rules::Step;
+use super::rules::SelectionStep;
 use crate::Zoo;
 
 /// Unknowns of a derived law, rule by rule.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Unknowns {
+pub struct UnknownCounts {
     /// Number of terms after each rule.
     pub rules: Vec<RuleCount>,
     /// Number of sets of coefficients: the shared one and those of the submodels.
@@ -55,14 +55,14 @@ pub struct EffectUnknowns {
     pub unknowns: usize,
 }
 
-impl Derivation {
+impl LawDerivation {
     /// Counts the unknowns; `zoo` supplies the effects.
     ///
     /// # Errors
     /// Returns the field of the declaration that names an effect or form that is not in the zoo,
     /// and the known ones.
-    pub fn unknowns(&self, zoo: &Zoo) -> Result<Unknowns, (String, String)> {
-        let effects = self.effects(zoo)?;
+    pub fn count_unknowns(&self, zoo: &Zoo) -> Result<UnknownCounts, (String, String)> {
+        let effects = self.effect_unknowns(zoo)?;
         let parameters: Vec<String> = self
             .law
             .parameters
@@ -72,8 +72,8 @@ impl Derivation {
             .collect();
         let coefficients = self.law.coefficient_names().len();
         let of_effects: usize = effects.iter().map(|effect| effect.unknowns).sum();
-        Ok(Unknowns {
-            rules: self.rules(),
+        Ok(UnknownCounts {
+            rules: self.rule_counts(),
             coefficient_sets: 1 + self.law.submodels.len(),
             coefficients,
             unknowns: coefficients + parameters.len() + of_effects,
@@ -82,15 +82,15 @@ impl Derivation {
         })
     }
 
-    fn rules(&self) -> Vec<RuleCount> {
-        let count = |step: &Step| {
+    fn rule_counts(&self) -> Vec<RuleCount> {
+        let count = |step: &SelectionStep| {
             let [x, y, n] = step.terms;
             RuleCount { rule: step.rule, setting: step.setting.clone(), x, y, n, total: x + y + n }
         };
         self.steps.iter().map(count).collect()
     }
 
-    fn effects(&self, zoo: &Zoo) -> Result<Vec<EffectUnknowns>, (String, String)> {
+    fn effect_unknowns(&self, zoo: &Zoo) -> Result<Vec<EffectUnknowns>, (String, String)> {
         let one = |used: &EffectUse| {
             let fault = |message| ("effects".to_owned(), message);
             let names =

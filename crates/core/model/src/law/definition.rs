@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use indexmap::IndexMap;
 
 use super::dimension::{STATES, axis_dimension};
-use super::dressing::Dressing;
+use super::dressing::LawAdditions;
 use super::error::TermError;
 use crate::coefficient::{Axis, CoefficientName, split_submodel};
 use crate::particulars;
@@ -25,9 +25,9 @@ pub struct Law {
     /// Publications of the law.
     pub sources: BTreeMap<String, Source>,
     /// Inputs in addition to the states: rudder, revolutions, depth.
-    pub inputs: IndexMap<String, Input>,
+    pub inputs: IndexMap<String, LawInput>,
     /// Nonlinear parameters: everything that a vessel must give besides coefficients.
-    pub parameters: IndexMap<String, Parameter>,
+    pub parameters: IndexMap<String, LawParameter>,
     /// Intermediate values, ordered so that each needs only earlier ones.
     pub values: IndexMap<String, Expr>,
     /// Dimensions of the values, each determined once: a repeated search would double with each
@@ -37,7 +37,7 @@ pub struct Law {
     pub factors: IndexMap<String, Expr>,
     /// Submodels by name; the first one whose conditions hold applies. The indicator of each is the
     /// value [`indicator`].
-    pub submodels: IndexMap<String, Submodel>,
+    pub submodels: IndexMap<String, LawSubmodel>,
     /// Right-hand sides by axis.
     pub axes: BTreeMap<Axis, AxisLaw>,
     /// Mass matrix, by axis and the axis whose acceleration it multiplies; absent entries are zero.
@@ -48,12 +48,12 @@ pub struct Law {
     /// name, or `-name` for the opposite.
     pub mirrors: BTreeMap<String, String>,
     /// Additions of effects; empty in a law as its file writes it.
-    pub dressing: Dressing,
+    pub dressing: LawAdditions,
 }
 
 /// Input of the law.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Input {
+pub struct LawInput {
     /// Its dimension.
     pub dimension: Dimension,
     /// Default value; an input without a default must be given.
@@ -62,7 +62,7 @@ pub struct Input {
 
 /// Nonlinear parameter.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Parameter {
+pub struct LawParameter {
     /// Its dimension.
     pub dimension: Dimension,
     /// The unit as the law writes it.
@@ -80,7 +80,7 @@ pub struct Parameter {
 /// Conditions under which coefficients deviate from the shared ones: while they hold, `X_u@name` is
 /// added to `X_u`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Submodel {
+pub struct LawSubmodel {
     /// Its meaning.
     pub meaning: String,
     /// Precision of a deviation's prior, which shrinks it to zero, relative to that of the shared
@@ -90,7 +90,7 @@ pub struct Submodel {
 
 /// Name of the value that is 1 while a submodel applies and 0 otherwise; formulas of files cannot
 /// contain it.
-pub fn indicator(submodel: &str) -> String {
+pub fn indicator_name(submodel: &str) -> String {
     format!("@{submodel}")
 }
 
@@ -109,7 +109,7 @@ pub struct AxisLaw {
 
 impl Law {
     /// Returns a law without formulas, for a vessel that has no model.
-    pub(crate) fn empty() -> Self {
+    pub(crate) fn empty_law() -> Self {
         Self {
             name: String::new(),
             title: String::new(),
@@ -124,7 +124,7 @@ impl Law {
             mass: BTreeMap::new(),
             kinematics: BTreeMap::new(),
             mirrors: BTreeMap::new(),
-            dressing: Dressing::default(),
+            dressing: LawAdditions::default(),
         }
     }
 
@@ -142,8 +142,8 @@ impl Law {
     ///
     /// # Errors
     /// Returns an error if the law has no such coefficient.
-    pub fn regressor(&self, name: &str) -> Result<(Axis, Expr), TermError> {
-        let (axis, term) = self.term(name)?;
+    pub fn scaled_regressor(&self, name: &str) -> Result<(Axis, Expr), TermError> {
+        let (axis, term) = self.unscaled_regressor(name)?;
         Ok((axis, self.axes[&axis].scale.clone().times(term)))
     }
 
@@ -151,7 +151,7 @@ impl Law {
     ///
     /// # Errors
     /// Returns an error if the law has no such coefficient.
-    pub fn term(&self, name: &str) -> Result<(Axis, Expr), TermError> {
+    pub fn unscaled_regressor(&self, name: &str) -> Result<(Axis, Expr), TermError> {
         let parsed = CoefficientName::parse(name, &self.extra_factors())?;
         let axis = self
             .axes
@@ -161,25 +161,26 @@ impl Law {
         // A listed term has its own formula; an open axis also accepts products of known factors.
         let term = match axis.terms.get(shared) {
             Some(term) => term.clone(),
-            None if axis.open => self.product(&parsed)?,
+            None if axis.open => self.factor_product(&parsed)?,
             None => {
                 let known: Vec<&str> = axis.terms.keys().map(String::as_str).collect();
                 let (law, known) = (self.name.clone(), known.join(", "));
                 return Err(TermError::Unlisted { law, name: name.to_owned(), known });
             }
         };
-        let term = submodel.map_or(Ok(term.clone()), |submodel| self.under(submodel, term))?;
+        let term =
+            submodel.map_or(Ok(term.clone()), |submodel| self.conditional_term(submodel, term))?;
         // Effects may scale the coefficient.
         let factors = self.dressing.coefficients.iter().filter(|(of, _)| of == shared);
         let term = factors.fold(term, |term, (_, factor)| term.times(factor.clone()));
         // Outside the range covered by trials the propulsion balance replaces the term straight
         // ahead.
         let straight = self.dressing.straight.as_ref();
-        Ok((parsed.axis, straight.map_or(term.clone(), |of| of.blended(term, &axis.scale))))
+        Ok((parsed.axis, straight.map_or(term.clone(), |of| of.subtract_share(term, &axis.scale))))
     }
 
     /// Returns the regressor that a name expresses: the product of its factors.
-    pub(crate) fn product(&self, name: &CoefficientName) -> Result<Expr, TermError> {
+    pub(crate) fn factor_product(&self, name: &CoefficientName) -> Result<Expr, TermError> {
         name.factors.iter().try_fold(Expr::Number(1.0), |product, factor| {
             let of = self.factors.get(&factor.symbol);
             let of = of.ok_or_else(|| TermError::Factor {
@@ -197,10 +198,10 @@ impl Law {
     }
 
     /// Returns a term that is zero unless a submodel applies.
-    fn under(&self, submodel: &str, term: Expr) -> Result<Expr, TermError> {
+    fn conditional_term(&self, submodel: &str, term: Expr) -> Result<Expr, TermError> {
         if self.submodels.contains_key(submodel) {
             // The indicator is 1 while the submodel applies and 0 otherwise.
-            return Ok(term.times(Expr::Name(indicator(submodel))));
+            return Ok(term.times(Expr::Name(indicator_name(submodel))));
         }
         let known: Vec<&str> = self.submodels.keys().map(String::as_str).collect();
         let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
@@ -212,27 +213,28 @@ impl Law {
     /// # Errors
     /// The errors of [`Law::regressor`].
     pub fn coefficient_dimension(&self, name: &str) -> Result<Dimension, TermError> {
-        let (axis, regressor) = self.regressor(name)?;
+        let (axis, regressor) = self.scaled_regressor(name)?;
         Ok(axis_dimension(axis)
-            - sistership_formula::dimension_of(&regressor, &|n| self.dimension(n))?)
+            - sistership_formula::dimension_of(&regressor, &|n| self.name_dimension(n))?)
     }
 
     /// Dimension of any name that a formula of this law may use; `None` for an unknown name.
-    pub fn dimension(&self, name: &str) -> Option<Dimension> {
+    pub fn name_dimension(&self, name: &str) -> Option<Dimension> {
         let state =
             STATES.iter().find(|(state, _)| *state == name).map(|&(_, dimension)| dimension);
         state
-            .or_else(|| sistership_formula::builtin(name).map(|(_, dimension)| dimension))
+            .or_else(|| sistership_formula::builtin_constant(name).map(|(_, dimension)| dimension))
             .or_else(|| self.inputs.get(name).map(|input| input.dimension))
             .or_else(|| self.parameters.get(name).map(|parameter| parameter.dimension))
             .or_else(|| self.value_dimensions.get(name).copied())
-            .or_else(|| particulars::dimension(name))
+            .or_else(|| particulars::particular_dimension(name))
     }
 
     /// Adds a value that needs only earlier ones.
     pub fn add_value(&mut self, name: String, expr: Expr) {
         // A value whose dimension cannot be determined stays unknown to later checks of units.
-        if let Ok(dimension) = sistership_formula::dimension_of(&expr, &|n| self.dimension(n)) {
+        if let Ok(dimension) = sistership_formula::dimension_of(&expr, &|n| self.name_dimension(n))
+        {
             self.value_dimensions.insert(name.clone(), dimension);
         }
         self.values.insert(name, expr);
@@ -242,7 +244,7 @@ impl Law {
     /// formula for it, or if the particulars do not suffice.
     pub fn derived_parameter(&self, name: &str, ship: &BTreeMap<String, Quantity>) -> Option<f64> {
         let from = self.parameters.get(name)?.from.as_ref()?;
-        from.value(&|particular| particulars::value(ship, particular))
+        from.value(&|particular| particulars::particular_value(ship, particular))
             .filter(|value| value.is_finite())
     }
 

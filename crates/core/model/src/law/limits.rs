@@ -28,10 +28,10 @@ const MAX_NAMES: usize = 500;
 /// Largest number of comparisons of one submodel.
 const MAX_COMPARISONS: usize = 16;
 
-type Fault = (String, String);
+type FieldFault = (String, String);
 
 /// Refuses a law whose file lists too much, before any of it is read.
-pub fn check_counts(raw: &LawFile) -> Result<(), Fault> {
+pub fn check_counts(raw: &LawFile) -> Result<(), FieldFault> {
     let names = [
         ("inputs", raw.inputs.len()),
         ("parameters", raw.parameters.len()),
@@ -40,22 +40,22 @@ pub fn check_counts(raw: &LawFile) -> Result<(), Fault> {
         ("mirrors", raw.mirrors.len()),
         ("submodels", raw.submodels.len()),
     ];
-    names.into_iter().try_for_each(|(field, count)| most(field, count, MAX_NAMES))?;
+    names.into_iter().try_for_each(|(field, count)| check_count(field, count, MAX_NAMES))?;
     for (name, submodel) in &raw.submodels {
-        most(&format!("submodels.{name}.when"), submodel.when.len(), MAX_COMPARISONS)?;
+        check_count(&format!("submodels.{name}.when"), submodel.when.len(), MAX_COMPARISONS)?;
     }
     let terms = raw.axes.values().map(|axis| axis.terms.len()).sum::<usize>();
-    most("axes", terms, MAX_TERMS)
+    check_count("axes", terms, MAX_TERMS)
         .map_err(|(field, message)| (field, format!("terms: {message}")))?;
     // Each submodel has a deviation of every term.
     let coefficients = terms * (1 + raw.submodels.len());
     let told =
         |(field, message)| (field, format!("coefficients, {terms} for each condition: {message}"));
-    most("submodels", coefficients, MAX_COEFFICIENTS).map_err(told)
+    check_count("submodels", coefficients, MAX_COEFFICIENTS).map_err(told)
 }
 
 /// Refuses a field that lists more than some number of items.
-pub(crate) fn most(field: &str, found: usize, most: usize) -> Result<(), Fault> {
+pub(crate) fn check_count(field: &str, found: usize, most: usize) -> Result<(), FieldFault> {
     if found > most {
         Err((field.to_owned(), format!("there are {found}; {most} are the most")))
     } else {
@@ -64,31 +64,30 @@ pub(crate) fn most(field: &str, found: usize, most: usize) -> Result<(), Fault> 
 }
 
 /// Refuses a law whose formulas are too many, or too deep through the values that they mention.
-pub fn check(law: &Law) -> Result<(), Fault> {
-    let formulas = formulas(law);
-    most("axes", formulas.iter().map(|(_, expr)| expr.size()).sum(), MAX_SIZE).map_err(
-        |(_, message)| {
+pub fn check_size(law: &Law) -> Result<(), FieldFault> {
+    let formulas = named_formulas(law);
+    check_count("axes", formulas.iter().map(|(_, expr)| expr.node_count()).sum(), MAX_SIZE)
+        .map_err(|(_, message)| {
             (String::new(), format!("numbers, names and operators of all formulas: {message}"))
-        },
-    )?;
-    let depths = Depths::of(&law.values);
+        })?;
+    let depths = FormulaDepths::new(&law.values);
     formulas.into_iter().try_for_each(|(field, expr)| depths.check(&field, expr, MAX_DEPTH))
 }
 
 impl Law {
     /// Refuses a law that effects have made too deep.
     pub(crate) fn check_depth(&self) -> Result<(), String> {
-        let depths = Depths::of(&self.values);
+        let depths = FormulaDepths::new(&self.values);
         // Twice the depth of a file's law leaves room for the formulas of effects.
-        let more = self.dressing.formulas().map(|expr| ("effects".to_owned(), expr));
-        let mut all = formulas(self).into_iter().chain(more);
+        let more = self.dressing.all_formulas().map(|expr| ("effects".to_owned(), expr));
+        let mut all = named_formulas(self).into_iter().chain(more);
         all.try_for_each(|(field, expr)| depths.check(&field, expr, 2 * MAX_DEPTH))
             .map_err(|(_, message)| message)
     }
 }
 
 /// Returns every formula of a law with its field.
-fn formulas(law: &Law) -> Vec<(String, &Expr)> {
+fn named_formulas(law: &Law) -> Vec<(String, &Expr)> {
     let mut all: Vec<(String, &Expr)> =
         law.values.iter().map(|(name, expr)| (format!("values.{name}"), expr)).collect();
     all.extend(law.factors.iter().map(|(name, expr)| (format!("factors.{name}"), expr)));
@@ -110,19 +109,19 @@ fn formulas(law: &Law) -> Vec<(String, &Expr)> {
 }
 
 /// Depths of formulas through values, each of which is examined once.
-pub(crate) struct Depths<'a> {
+pub(crate) struct FormulaDepths<'a> {
     values: &'a indexmap::IndexMap<String, Expr>,
     known: RefCell<HashMap<String, usize>>,
 }
 
-impl<'a> Depths<'a> {
-    pub(crate) fn of(values: &'a indexmap::IndexMap<String, Expr>) -> Self {
+impl<'a> FormulaDepths<'a> {
+    pub(crate) fn new(values: &'a indexmap::IndexMap<String, Expr>) -> Self {
         Self { values, known: RefCell::default() }
     }
 
     /// Refuses a formula that is deeper than `most`.
-    pub(crate) fn check(&self, field: &str, expr: &Expr, most: usize) -> Result<(), Fault> {
-        match expr.depth(most, &|name, left| self.of_name(name, left)) {
+    pub(crate) fn check(&self, field: &str, expr: &Expr, most: usize) -> Result<(), FieldFault> {
+        match expr.depth_within(most, &|name, left| self.name_depth(name, left)) {
             Some(_) => Ok(()),
             None => {
                 let message = format!(
@@ -133,13 +132,14 @@ impl<'a> Depths<'a> {
         }
     }
 
-    fn of_name(&self, name: &str, left: usize) -> Option<usize> {
+    fn name_depth(&self, name: &str, left: usize) -> Option<usize> {
         let Some(expr) = self.values.get(name) else { return Some(0) };
         if let Some(depth) = self.known.borrow().get(name) {
             return Some(*depth);
         }
         // One level less is left below the value; an exhausted depth ends the search.
-        let depth = 1 + expr.depth(left.checked_sub(1)?, &|name, left| self.of_name(name, left))?;
+        let depth = 1 + expr
+            .depth_within(left.checked_sub(1)?, &|name, left| self.name_depth(name, left))?;
         self.known.borrow_mut().insert(name.to_owned(), depth);
         Some(depth)
     }

@@ -10,9 +10,9 @@ mod read;
 mod submodel;
 mod symmetry;
 
-pub use definition::{AxisLaw, Input, Law, Parameter, Submodel, indicator};
+pub use definition::{AxisLaw, Law, LawInput, LawParameter, LawSubmodel, indicator_name};
 pub use dimension::{STATES, acceleration_dimension, axis_dimension};
-pub use dressing::{Dressing, Straight};
+pub use dressing::{LawAdditions, StraightAhead};
 pub use error::TermError;
 pub use file::{AxisFile, InputFile, LawFile, LawKind, ParameterFile, SubmodelFile, TermFile};
 pub use limits::{MAX_COEFFICIENTS, MAX_EFFECTS, MAX_SIZE, MAX_TERMS};

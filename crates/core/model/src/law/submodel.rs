@@ -7,7 +7,7 @@
 
 use indexmap::IndexMap;
 
-use super::definition::{AxisLaw, Law, Submodel, indicator};
+use super::definition::{AxisLaw, Law, LawSubmodel, indicator_name};
 use super::file::SubmodelFile;
 use crate::coefficient::split_submodel;
 use crate::name::check_slug;
@@ -24,11 +24,11 @@ pub fn read_submodels(
         if !(file.shrinkage > 0.0 && file.shrinkage.is_finite()) {
             return Err(field(format!("shrinkage must be above 0, not {}", file.shrinkage)));
         }
-        let expr = applies(law, file).map_err(field)?;
-        law.add_value(indicator(name), expr);
+        let expr = applies_formula(law, file).map_err(field)?;
+        law.add_value(indicator_name(name), expr);
         law.submodels.insert(
             name.clone(),
-            Submodel { meaning: file.meaning.clone(), shrinkage: file.shrinkage },
+            LawSubmodel { meaning: file.meaning.clone(), shrinkage: file.shrinkage },
         );
     }
     Ok(())
@@ -36,20 +36,22 @@ pub fn read_submodels(
 
 /// Returns a formula that is 1 if every comparison holds and no earlier submodel applies, and 0
 /// otherwise.
-fn applies(law: &Law, file: &SubmodelFile) -> Result<Expr, String> {
+fn applies_formula(law: &Law, file: &SubmodelFile) -> Result<Expr, String> {
     let mut product: Option<Expr> = None;
     for text in &file.when {
         let condition = formula::parse_condition(text).map_err(|e| e.to_string())?;
         // Both sides of the comparison must have the same dimension.
-        formula::dimension_of(&condition, &|n| law.dimension(n))
+        formula::dimension_of(&condition, &|n| law.name_dimension(n))
             .map_err(|e| format!("`{text}` {e}"))?;
         product = Some(product.map_or(condition.clone(), |product| product.times(condition)));
     }
     let holds = product.ok_or("give at least one comparison under `when`")?;
     // Earlier submodels take precedence: `product * (1 - earlier)`.
     Ok(law.submodels.keys().fold(holds, |holds, earlier| {
-        let elsewhere =
-            Expr::Subtract(Box::new(Expr::Number(1.0)), Box::new(Expr::Name(indicator(earlier))));
+        let elsewhere = Expr::Subtract(
+            Box::new(Expr::Number(1.0)),
+            Box::new(Expr::Name(indicator_name(earlier))),
+        );
         holds.times(elsewhere)
     }))
 }
@@ -58,7 +60,7 @@ impl Law {
     /// Submodel of a coefficient that is a deviation; `None` for a shared coefficient. An estimator
     /// shrinks deviations to zero by a prior whose precision is [`Submodel::shrinkage`] times that
     /// of the shared coefficient.
-    pub fn deviation(&self, coefficient: &str) -> Option<&Submodel> {
+    pub fn deviation_submodel(&self, coefficient: &str) -> Option<&LawSubmodel> {
         self.submodels.get(split_submodel(coefficient).1?)
     }
 
@@ -103,7 +105,7 @@ mass: { X: { X: mass_kg }, Y: { Y: mass_kg }, N: { N: mass_kg*lpp_m^2 } }
             let known = at.iter().find(|(known, _)| *known == name).map(|&(_, value)| value);
             known.or_else(|| law.values.get(name)?.value(&|n| of(law, n, at)))
         }
-        law.term(name).unwrap().1.value(&|n| of(law, n, at)).unwrap()
+        law.unscaled_regressor(name).unwrap().1.value(&|n| of(law, n, at)).unwrap()
     }
 
     #[test]
@@ -128,11 +130,17 @@ mass: { X: { X: mass_kg }, Y: { Y: mass_kg }, N: { N: mass_kg*lpp_m^2 } }
     #[test]
     fn deviations_are_flagged_and_listed() {
         let law = Law::parse("two.yaml", LAW).unwrap();
-        assert_eq!(law.deviation("X_u@stalled").map(|submodel| submodel.shrinkage), Some(4.0));
-        assert_eq!(law.deviation("X_u@astern").map(|submodel| submodel.shrinkage), Some(1.0));
-        assert_eq!(law.deviation("X_u"), None);
+        assert_eq!(
+            law.deviation_submodel("X_u@stalled").map(|submodel| submodel.shrinkage),
+            Some(4.0)
+        );
+        assert_eq!(
+            law.deviation_submodel("X_u@astern").map(|submodel| submodel.shrinkage),
+            Some(1.0)
+        );
+        assert_eq!(law.deviation_submodel("X_u"), None);
         assert_eq!(law.coefficient_names().len(), 12);
-        assert!(law.coefficient_names().iter().all(|name| law.regressor(name).is_ok()));
+        assert!(law.coefficient_names().iter().all(|name| law.scaled_regressor(name).is_ok()));
         assert_eq!(law.coefficient_dimension("Y_v@astern"), law.coefficient_dimension("Y_v"));
     }
 
@@ -153,7 +161,7 @@ mass: { X: { X: mass_kg }, Y: { Y: mass_kg }, N: { N: mass_kg*lpp_m^2 } }
         assert!(
             Law::parse("two.yaml", LAW)
                 .unwrap()
-                .term("X_u@backing")
+                .unscaled_regressor("X_u@backing")
                 .unwrap_err()
                 .to_string()
                 .contains("stalled, astern")

@@ -3,15 +3,15 @@
 use std::collections::HashSet;
 
 /// Refuses aliases of anchors, and directives of tags; returns the byte at fault and a message.
-pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
+pub fn check_aliases(bytes: &[u8]) -> Result<(), (usize, String)> {
     let marks: Vec<(usize, &[u8])> =
-        (0..bytes.len()).filter_map(|at| Some((at, name(bytes, at)?))).collect();
+        (0..bytes.len()).filter_map(|at| Some((at, mark_name(bytes, at)?))).collect();
     let anchors: HashSet<&[u8]> =
         marks.iter().filter(|(at, _)| bytes[*at] == b'&').map(|(_, name)| *name).collect();
     // An asterisk without an anchor of that name is part of a text.
     let alias = marks.iter().find(|(at, name)| bytes[*at] == b'*' && anchors.contains(name));
     if let Some((at, name)) = alias {
-        let name = sistership_formula::head(&String::from_utf8_lossy(name));
+        let name = sistership_formula::text_head(&String::from_utf8_lossy(name));
         return Err((*at, format!("`*{name}` is an alias: write out what `&{name}` stands for")));
     }
     match (0..bytes.len()).find(|&at| begins_line(bytes, at) && bytes[at..].starts_with(b"%TAG")) {
@@ -21,7 +21,7 @@ pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
 }
 
 /// Returns the name of a possible anchor or alias at a position.
-fn name(bytes: &[u8], at: usize) -> Option<&[u8]> {
+fn mark_name(bytes: &[u8], at: usize) -> Option<&[u8]> {
     if !matches!(bytes[at], b'&' | b'*') || !may_begin(bytes, at) {
         return None;
     }

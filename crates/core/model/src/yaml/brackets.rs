@@ -6,7 +6,7 @@
 //! text is read by the rules for the inside. For true outermost brackets this is how the parser
 //! reads them; for those within a text the reading is superfluous, and seldom deep.
 
-use super::line_break::break_at;
+use super::line_break::line_break_length;
 
 /// Largest nesting depth of brackets and braces.
 pub const MAX_DEPTH: usize = 64;
@@ -17,16 +17,16 @@ const MAX_PASSES: usize = 16;
 
 /// Smallest length that is assumed of a document, bytes: short ones may have more brackets that are
 /// never closed.
-const SHORT: usize = 256 << 10;
+const MIN_BUDGET_LENGTH: usize = 256 << 10;
 
 /// Refuses brackets that nest deeper than [`MAX_DEPTH`]; returns the byte at fault and a message.
-pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
+pub fn check_brackets(bytes: &[u8]) -> Result<(), (usize, String)> {
     // Every byte that is read is subtracted from the budget, which bounds the time.
-    let mut budget = MAX_PASSES * bytes.len().max(SHORT);
+    let mut budget = MAX_PASSES * bytes.len().max(MIN_BUDGET_LENGTH);
     for at in (0..bytes.len()).filter(|&at| matches!(bytes[at], b'[' | b'{')) {
         // Each opening bracket is read as if it were the outermost one.
-        let mut inside = Inside { bytes, at, depth: 0, most: 0 };
-        inside.read();
+        let mut inside = BracketScanner { bytes, at, depth: 0, most: 0 };
+        inside.scan_tokens();
         if inside.most > MAX_DEPTH {
             return Err((
                 inside.at,
@@ -48,17 +48,17 @@ pub fn check(bytes: &[u8]) -> Result<(), (usize, String)> {
 }
 
 /// Reader of the text inside brackets, by the rules of libyaml's scanner.
-struct Inside<'a> {
+struct BracketScanner<'a> {
     bytes: &'a [u8],
     at: usize,
     depth: usize,
     most: usize,
 }
 
-impl Inside<'_> {
+impl BracketScanner<'_> {
     /// Reads tokens until the bracket is closed, the limit of depth is exceeded or the text ends.
-    fn read(&mut self) {
-        while let Some(byte) = self.peek() {
+    fn scan_tokens(&mut self) {
+        while let Some(byte) = self.peek_byte() {
             match byte {
                 b'[' | b'{' => {
                     self.depth += 1;
@@ -69,18 +69,18 @@ impl Inside<'_> {
                     self.depth -= 1;
                     self.at += 1;
                 }
-                b'"' => self.quoted(),
-                b'\'' => self.single_quoted(),
-                b'#' => self.comment(),
-                b'!' => self.tag(),
-                b'&' | b'*' => self.anchor(),
+                b'"' => self.skip_double_quoted(),
+                b'\'' => self.skip_single_quoted(),
+                b'#' => self.skip_comment(),
+                b'!' => self.skip_tag(),
+                b'&' | b'*' => self.skip_anchor(),
                 b' ' | b'\t' | b',' | b':' | b'?' => self.at += 1,
                 b'-' if self.bytes.get(self.at + 1).is_none_or(|next| !next.is_ascii_graphic()) => {
                     self.at += 1
                 }
-                _ => match break_at(self.bytes, self.at) {
+                _ => match line_break_length(self.bytes, self.at) {
                     Some(length) => self.at += length,
-                    None => self.plain(),
+                    None => self.skip_plain(),
                 },
             }
             // At depth 0 the bracket is closed.
@@ -90,19 +90,19 @@ impl Inside<'_> {
         }
     }
 
-    fn peek(&self) -> Option<u8> {
+    fn peek_byte(&self) -> Option<u8> {
         self.bytes.get(self.at).copied()
     }
 
     fn skip_while(&mut self, wanted: impl Fn(u8) -> bool) {
-        while self.peek().is_some_and(&wanted) {
+        while self.peek_byte().is_some_and(&wanted) {
             self.at += 1;
         }
     }
 
-    fn quoted(&mut self) {
+    fn skip_double_quoted(&mut self) {
         self.at += 1;
-        while let Some(byte) = self.peek() {
+        while let Some(byte) = self.peek_byte() {
             // A backslash escapes the next byte.
             self.at += if byte == b'\\' { 2 } else { 1 };
             if byte == b'"' {
@@ -115,38 +115,38 @@ impl Inside<'_> {
 
     /// Skips a single-quoted string. A doubled quote is read as the end of one string and the
     /// beginning of the next, with the same end.
-    fn single_quoted(&mut self) {
+    fn skip_single_quoted(&mut self) {
         self.at += 1;
         self.skip_while(|byte| byte != b'\'');
         self.at = (self.at + 1).min(self.bytes.len());
     }
 
-    fn comment(&mut self) {
-        while self.at < self.bytes.len() && break_at(self.bytes, self.at).is_none() {
+    fn skip_comment(&mut self) {
+        while self.at < self.bytes.len() && line_break_length(self.bytes, self.at).is_none() {
             self.at += 1;
         }
     }
 
     /// Skips a tag. Only a verbatim tag, `!<...>`, may contain brackets.
-    fn tag(&mut self) {
+    fn skip_tag(&mut self) {
         self.at += 1;
-        if self.peek() == Some(b'<') {
+        if self.peek_byte() == Some(b'<') {
             self.skip_while(|byte| byte != b'>' && !byte.is_ascii_whitespace());
         }
         self.skip_while(|byte| !byte.is_ascii_whitespace() && !b",[]{}".contains(&byte));
     }
 
-    fn anchor(&mut self) {
+    fn skip_anchor(&mut self) {
         self.at += 1;
         self.skip_while(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-'));
     }
 
     /// Skips a plain scalar: quotes, spaces and line breaks are part of it, up to the character
     /// that ends it.
-    fn plain(&mut self) {
+    fn skip_plain(&mut self) {
         let mut after_space = false;
-        while let Some(byte) = self.peek() {
-            let line_break = break_at(self.bytes, self.at);
+        while let Some(byte) = self.peek_byte() {
+            let line_break = line_break_length(self.bytes, self.at);
             // Indicators that end a plain scalar inside brackets.
             let ends = match byte {
                 b',' | b'[' | b']' | b'{' | b'}' => true,

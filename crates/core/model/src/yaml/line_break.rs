@@ -2,7 +2,7 @@
 
 /// Length in bytes of the line break at a position; `None` if there is none. NEL, LS and PS are
 /// included, which libyaml takes for line breaks.
-pub fn break_at(bytes: &[u8], at: usize) -> Option<usize> {
+pub fn line_break_length(bytes: &[u8], at: usize) -> Option<usize> {
     match bytes[at] {
         b'\n' | b'\r' => Some(1),
         0xC2 if bytes.get(at + 1) == Some(&0x85) => Some(2),

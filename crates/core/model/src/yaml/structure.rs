@@ -3,50 +3,55 @@
 use schemars::JsonSchema;
 use serde_json::{Map, Value};
 
-use super::{MOST_FAULTS, read};
+use super::{MAX_FAULTS, read_document};
 
 /// A dotted path and the fault there.
 pub type ShapeFault = (String, String);
 
 /// Returns the places where a text does not have the shape of its type, at most [`MOST_FAULTS`];
 /// empty if the schema finds none, or if the text is not YAML.
-pub fn faults<T: JsonSchema>(text: &str) -> Vec<ShapeFault> {
+pub fn find_faults<T: JsonSchema>(text: &str) -> Vec<ShapeFault> {
     // `read` checks the limits before the text is parsed.
-    let Ok(document) = read::<Value>(text) else { return Vec::new() };
+    let Ok(document) = read_document::<Value>(text) else { return Vec::new() };
     let schema = schemars::schema_for!(T);
-    let shape = Shape { root: schema.as_value() };
-    shape.faults(schema.as_value(), &document, "")
+    let shape = SchemaChecker { root: schema.as_value() };
+    shape.check_value(schema.as_value(), &document, "")
 }
 
 /// Checker for the keywords of schemas that are derived from types.
-struct Shape<'a> {
+struct SchemaChecker<'a> {
     root: &'a Value,
 }
 
-impl Shape<'_> {
-    fn faults(&self, schema: &Value, value: &Value, path: &str) -> Vec<ShapeFault> {
+impl SchemaChecker<'_> {
+    fn check_value(&self, schema: &Value, value: &Value, path: &str) -> Vec<ShapeFault> {
         // Schemas of named types are references into the root schema.
         if let Some(target) = schema["$ref"].as_str() {
             let target = target.strip_prefix('#').and_then(|pointer| self.root.pointer(pointer));
-            return target.map_or_else(Vec::new, |schema| self.faults(schema, value, path));
+            return target.map_or_else(Vec::new, |schema| self.check_value(schema, value, path));
         }
-        if let Some(words) = words(schema) {
+        if let Some(words) = permitted_words(schema) {
             let is_known = words.contains(&value);
-            return fault(!is_known, path, || unknown(value, words.iter().copied()));
+            return single_fault(!is_known, path, || {
+                unknown_word_message(value, words.iter().copied())
+            });
         }
         let choice = schema["anyOf"].as_array().or_else(|| schema["oneOf"].as_array());
         if let Some(choice) = choice {
-            return self.of_choice(choice, value, path);
+            return self.check_choice(choice, value, path);
         }
         if !has_type(schema, value) {
-            let message = || format!("is {}; {} is asked for", kind(value), expected(schema));
-            return fault(true, path, message);
+            let message =
+                || format!("is {}; {} is asked for", value_kind(value), expected_kind(schema));
+            return single_fault(true, path, message);
         }
         match value {
-            Value::Object(fields) => self.of_object(schema, fields, path),
+            Value::Object(fields) => self.check_object(schema, fields, path),
             Value::Array(items) => {
-                let of = |(place, item)| self.faults(&schema["items"], item, &below(path, place));
-                items.iter().enumerate().flat_map(of).take(MOST_FAULTS).collect()
+                let of = |(place, item)| {
+                    self.check_value(&schema["items"], item, &path_below(path, place))
+                };
+                items.iter().enumerate().flat_map(of).take(MAX_FAULTS).collect()
             }
             _ => Vec::new(),
         }
@@ -54,13 +59,13 @@ impl Shape<'_> {
 
     /// Returns the faults of a choice: those of the alternative that its tag selects, or that
     /// matches best.
-    fn of_choice(&self, choice: &[Value], value: &Value, path: &str) -> Vec<ShapeFault> {
-        let each = choice.iter().map(|schema| self.faults(schema, value, path));
+    fn check_choice(&self, choice: &[Value], value: &Value, path: &str) -> Vec<ShapeFault> {
+        let each = choice.iter().map(|schema| self.check_value(schema, value, path));
         let mut each: Vec<Vec<ShapeFault>> = each.collect();
         if each.iter().any(Vec::is_empty) {
             return Vec::new();
         }
-        let tags = choice.iter().filter_map(|schema| self.tag(schema));
+        let tags = choice.iter().filter_map(|schema| self.choice_tag(schema));
         let tags: Vec<(&str, &Value)> = tags.collect();
         if let Some(&(name, _)) = tags.first()
             && let Some(given) = value.get(name)
@@ -69,7 +74,10 @@ impl Shape<'_> {
             // Indices match only if every alternative has a tag.
             return match at.filter(|_| tags.len() == each.len()) {
                 Some(at) => each.swap_remove(at),
-                None => vec![(below(path, name), unknown(given, tags.iter().map(|tag| tag.1)))],
+                None => vec![(
+                    path_below(path, name),
+                    unknown_word_message(given, tags.iter().map(|tag| tag.1)),
+                )],
             };
         }
         // The alternative whose faults lie deepest accepted most of the value.
@@ -78,14 +86,14 @@ impl Shape<'_> {
     }
 
     /// Returns the field that distinguishes the alternatives of a choice, and its value.
-    fn tag<'v>(&'v self, schema: &'v Value) -> Option<(&'v str, &'v Value)> {
+    fn choice_tag<'v>(&'v self, schema: &'v Value) -> Option<(&'v str, &'v Value)> {
         let target = schema["$ref"].as_str().and_then(|target| target.strip_prefix('#'));
         let schema = target.and_then(|pointer| self.root.pointer(pointer)).unwrap_or(schema);
         let mut fields = schema["properties"].as_object()?.iter();
         fields.find_map(|(name, field)| Some((name.as_str(), field.get("const")?)))
     }
 
-    fn of_object(
+    fn check_object(
         &self,
         schema: &Value,
         fields: &Map<String, Value>,
@@ -97,49 +105,49 @@ impl Shape<'_> {
         let mut found = Vec::new();
         for (name, value) in fields {
             // The number of faults is limited, because each is searched in the text later.
-            if found.len() >= MOST_FAULTS {
+            if found.len() >= MAX_FAULTS {
                 break;
             }
-            let at = below(path, name);
+            let at = path_below(path, name);
             match known.get(name) {
-                Some(schema) => found.extend(self.faults(schema, value, &at)),
+                Some(schema) => found.extend(self.check_value(schema, value, &at)),
                 None if *others == Value::Bool(false) => {
                     found.push((at, format!("is no field; there are {}", names.join(", "))));
                 }
-                None if others.is_object() => found.extend(self.faults(others, value, &at)),
+                None if others.is_object() => found.extend(self.check_value(others, value, &at)),
                 None => {}
             }
         }
         let required = schema["required"].as_array().into_iter().flatten();
         let missing = required.filter_map(Value::as_str).filter(|name| !fields.contains_key(*name));
-        found.extend(missing.map(|name| (below(path, name), "is missing".to_owned())));
+        found.extend(missing.map(|name| (path_below(path, name), "is missing".to_owned())));
         found
     }
 }
 
-fn fault(is_wrong: bool, path: &str, message: impl Fn() -> String) -> Vec<ShapeFault> {
+fn single_fault(is_wrong: bool, path: &str, message: impl Fn() -> String) -> Vec<ShapeFault> {
     if is_wrong { vec![(path.to_owned(), message())] } else { Vec::new() }
 }
 
-fn below(path: &str, name: impl std::fmt::Display) -> String {
+fn path_below(path: &str, name: impl std::fmt::Display) -> String {
     if path.is_empty() { name.to_string() } else { format!("{path}.{name}") }
 }
 
 /// Returns the permitted words of a schema, if it lists any; words with descriptions are listed as
 /// alternatives.
-fn words(schema: &Value) -> Option<Vec<&Value>> {
+fn permitted_words(schema: &Value) -> Option<Vec<&Value>> {
     let one = schema.get("const").map(|word| vec![word]);
     let described = || schema["oneOf"].as_array()?.iter().map(|one| one.get("const")).collect();
     let all = || schema["enum"].as_array().map(|words| words.iter().collect());
     one.or_else(all).or_else(described)
 }
 
-fn unknown<'v>(value: &Value, words: impl Iterator<Item = &'v Value>) -> String {
-    let known: Vec<String> = words.map(said).collect();
-    format!("is {}; there are {}", said(value), known.join(", "))
+fn unknown_word_message<'v>(value: &Value, words: impl Iterator<Item = &'v Value>) -> String {
+    let known: Vec<String> = words.map(display_value).collect();
+    format!("is {}; there are {}", display_value(value), known.join(", "))
 }
 
-fn types(schema: &Value) -> Vec<&str> {
+fn schema_types(schema: &Value) -> Vec<&str> {
     match &schema["type"] {
         Value::String(one) => vec![one],
         Value::Array(all) => all.iter().filter_map(Value::as_str).collect(),
@@ -158,11 +166,11 @@ fn has_type(schema: &Value, value: &Value) -> bool {
         "boolean" => value.is_boolean(),
         _ => value.is_null(),
     };
-    let types = types(schema);
+    let types = schema_types(schema);
     types.is_empty() || types.iter().any(is)
 }
 
-fn expected(schema: &Value) -> String {
+fn expected_kind(schema: &Value) -> String {
     let named = |name: &&str| match *name {
         "object" => "a mapping",
         "array" => "a list",
@@ -172,20 +180,20 @@ fn expected(schema: &Value) -> String {
         "boolean" => "true or false",
         _ => "nothing",
     };
-    types(schema).iter().map(named).collect::<Vec<_>>().join(" or ")
+    schema_types(schema).iter().map(named).collect::<Vec<_>>().join(" or ")
 }
 
-fn kind(value: &Value) -> String {
+fn value_kind(value: &Value) -> String {
     match value {
         Value::Object(_) => "a mapping".to_owned(),
         Value::Array(_) => "a list".to_owned(),
         Value::Null => "empty".to_owned(),
-        other => said(other),
+        other => display_value(other),
     }
 }
 
 /// Formats a value for readers.
-fn said(value: &Value) -> String {
+fn display_value(value: &Value) -> String {
     match value {
         Value::String(text) => format!("`{text}`"),
         other => other.to_string(),

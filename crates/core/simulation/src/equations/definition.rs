@@ -11,18 +11,18 @@ use sistership_model::particulars;
 
 use super::refusal::PlantError;
 use crate::state::at;
-use crate::tape::Binding;
+use crate::tape::NameBinding;
 
 /// Places in the state vector of the moving states: velocities first, in the order of the axes.
-const PLANE: [usize; 6] = [at::U, at::V, at::R, at::PSI, at::X, at::Y];
-const ROLL: [usize; 8] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI, at::X, at::Y];
+const STATES_3DOF: [usize; 6] = [at::U, at::V, at::R, at::PSI, at::X, at::Y];
+const STATES_4DOF: [usize; 8] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI, at::X, at::Y];
 
 /// Axes in the order of the velocities among those states.
-const AXES: [Axis; 4] = [Axis::X, Axis::Y, Axis::N, Axis::K];
+const ALL_AXES: [Axis; 4] = [Axis::X, Axis::Y, Axis::N, Axis::K];
 
 /// Representation of the coefficients in a force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Coefficients {
+pub enum CoefficientBinding {
     /// The values of the model that are not zero.
     Values,
     /// The name of each coefficient of the model, as an input of the tape.
@@ -31,7 +31,7 @@ pub enum Coefficients {
 
 /// Attitude of the ship's axes in kinematics that the law does not define.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Attitude {
+pub enum AxesAttitude {
     /// Velocities are horizontal.
     Upright,
     /// Velocities are measured along axes that heel with the ship.
@@ -55,25 +55,25 @@ impl<'a> EquationsOfMotion<'a> {
         if model.branch.is_some() {
             return Err(PlantError::Branch(model.name.clone()));
         }
-        Self::of_foundation(model, law)
+        Self::from_foundation(model, law)
     }
 
     /// Sets up the equations as [`EquationsOfMotion::new`] does, without the learned correction.
     ///
     /// # Errors
     /// Returns an error that names the effect that cannot be used.
-    pub fn of_foundation(model: &'a Model, law: &'a Law) -> Result<Self, PlantError> {
+    pub fn from_foundation(model: &'a Model, law: &'a Law) -> Result<Self, PlantError> {
         if model.effects.is_empty() && model.propulsion.is_none() {
-            return Ok(Self::of_law(model, Cow::Borrowed(law)));
+            return Ok(Self::from_law(model, Cow::Borrowed(law)));
         }
         let dressed = law
             .with_effects(model)
             .map_err(|(field, message)| PlantError::Effect { field, message })?;
-        Ok(Self::of_law(model, Cow::Owned(dressed)))
+        Ok(Self::from_law(model, Cow::Owned(dressed)))
     }
 
     /// Sets up the equations of a law as it is: effects are in it already, or are left out.
-    pub fn of_law(model: &'a Model, law: Cow<'a, Law>) -> Self {
+    pub fn from_law(model: &'a Model, law: Cow<'a, Law>) -> Self {
         Self { model, law }
     }
 
@@ -89,7 +89,7 @@ impl<'a> EquationsOfMotion<'a> {
 
     /// Input names of a tape of forces: the states that formulas can use, then the inputs of the
     /// law.
-    pub fn names(&self) -> Vec<String> {
+    pub fn tape_input_names(&self) -> Vec<String> {
         // Evaluators rely on this order: states first, then the inputs of the law.
         STATES
             .iter()
@@ -99,37 +99,37 @@ impl<'a> EquationsOfMotion<'a> {
     }
 
     /// Inputs of the law with their defaults.
-    pub fn inputs(&self) -> Vec<(String, Option<f64>)> {
+    pub fn law_inputs(&self) -> Vec<(String, Option<f64>)> {
         self.law.inputs.iter().map(|(name, input)| (name.clone(), input.default)).collect()
     }
 
     /// Axes in the order of the velocities: X, Y, N, and K for a 4-DOF law.
     pub fn axes(&self) -> &'static [Axis] {
-        if self.law.has_roll() { &AXES } else { &AXES[..3] }
+        if self.law.has_roll() { &ALL_AXES } else { &ALL_AXES[..3] }
     }
 
     /// Places in the state vector of the moving states: velocities in the order of the axes, then
     /// attitude and position.
-    pub fn states(&self) -> &'static [usize] {
-        if self.law.has_roll() { &ROLL } else { &PLANE }
+    pub fn state_places(&self) -> &'static [usize] {
+        if self.law.has_roll() { &STATES_4DOF } else { &STATES_3DOF }
     }
 
     /// Returns the formula or value of a name of the law; `None` for an unknown name.
-    pub fn binding(&self, name: &str) -> Option<Binding> {
+    pub fn name_binding(&self, name: &str) -> Option<NameBinding> {
         if let Some(expr) = self.law.values.get(name) {
-            return Some(Binding::Formula(expr.clone()));
+            return Some(NameBinding::Formula(expr.clone()));
         }
         // Parameters of effects take precedence over those of the model, and both over particulars.
         let of_effect = self.law.dressing.parameters.get(name).copied();
         let parameter =
             of_effect.or_else(|| self.model.parameters.get(name).map(|quantity| quantity.value));
         parameter
-            .or_else(|| particulars::value(&self.model.particulars, name))
-            .map(Binding::Constant)
+            .or_else(|| particulars::particular_value(&self.model.particulars, name))
+            .map(NameBinding::Constant)
     }
 
     /// Names of the coefficients that the model has on an axis.
-    pub fn coefficients(&self, axis: Axis) -> impl Iterator<Item = &'a String> + use<'a> {
+    pub fn axis_coefficients(&self, axis: Axis) -> impl Iterator<Item = &'a String> + use<'a> {
         let prefix = format!("{axis}_");
         self.model.coefficients.keys().filter(move |name| name.starts_with(&prefix))
     }
@@ -138,16 +138,16 @@ impl<'a> EquationsOfMotion<'a> {
     ///
     /// # Errors
     /// Returns an error if the law has no such coefficient.
-    pub fn term(&self, name: &str) -> Result<Expr, PlantError> {
-        Ok(self.law.term(name)?.1)
+    pub fn unscaled_regressor(&self, name: &str) -> Result<Expr, PlantError> {
+        Ok(self.law.unscaled_regressor(name)?.1)
     }
 
     /// Returns the regressor of a coefficient with the scale of its axis, N (N m) per unit.
     ///
     /// # Errors
     /// Returns an error if the law has no such coefficient.
-    pub fn regressor(&self, name: &str) -> Result<Expr, PlantError> {
-        Ok(self.law.regressor(name)?.1)
+    pub fn scaled_regressor(&self, name: &str) -> Result<Expr, PlantError> {
+        Ok(self.law.scaled_regressor(name)?.1)
     }
 
     /// Returns the whole right-hand side of an axis, N (N m): coefficients times regressors, and
@@ -155,17 +155,21 @@ impl<'a> EquationsOfMotion<'a> {
     ///
     /// # Errors
     /// Returns an error that names a coefficient that the law does not have.
-    pub fn force(&self, axis: Axis, coefficients: Coefficients) -> Result<Expr, PlantError> {
+    pub fn axis_force(
+        &self,
+        axis: Axis,
+        coefficients: CoefficientBinding,
+    ) -> Result<Expr, PlantError> {
         let axis_law = &self.law.axes[&axis];
         let mut sum = Expr::Number(0.0);
         for (name, quantity) in &self.model.coefficients {
             let factor = match coefficients {
                 // Zero coefficients are left out, which keeps the tape short.
-                Coefficients::Values if quantity.value == 0.0 => continue,
-                Coefficients::Values => Expr::Number(quantity.value),
-                Coefficients::Names => Expr::Name(name.clone()),
+                CoefficientBinding::Values if quantity.value == 0.0 => continue,
+                CoefficientBinding::Values => Expr::Number(quantity.value),
+                CoefficientBinding::Names => Expr::Name(name.clone()),
             };
-            let (acts_on, term) = self.law.term(name)?;
+            let (acts_on, term) = self.law.unscaled_regressor(name)?;
             if acts_on == axis {
                 sum = Expr::Add(Box::new(sum), Box::new(term.times(factor)));
             }
@@ -175,7 +179,7 @@ impl<'a> EquationsOfMotion<'a> {
     }
 
     /// Acceleration that effects add on an axis, m/s2 (rad/s2); `None` if no effect adds any.
-    pub fn addition(&self, axis: Axis) -> Option<Expr> {
+    pub fn added_acceleration(&self, axis: Axis) -> Option<Expr> {
         let added = self
             .law
             .dressing
@@ -191,7 +195,7 @@ impl<'a> EquationsOfMotion<'a> {
     ///
     /// # Errors
     /// Returns an error if a built-in formula cannot be parsed; no law can cause this.
-    pub fn kinematic(&self, state: usize, attitude: Attitude) -> Result<Expr, PlantError> {
+    pub fn kinematic_rate(&self, state: usize, attitude: AxesAttitude) -> Result<Expr, PlantError> {
         let (name, upright, heeled) = match state {
             at::PHI => ("phi", "p", "p"),
             at::PSI => ("psi", "r", "r*cos(phi)"),
@@ -201,7 +205,7 @@ impl<'a> EquationsOfMotion<'a> {
         };
         match self.law.kinematics.get(name) {
             Some(expr) => Ok(expr.clone()),
-            None => Ok(parse(if attitude == Attitude::Upright { upright } else { heeled })?),
+            None => Ok(parse(if attitude == AxesAttitude::Upright { upright } else { heeled })?),
         }
     }
 
@@ -210,7 +214,7 @@ impl<'a> EquationsOfMotion<'a> {
     ///
     /// Returns an error that names the model and the view.
     /// Names the model and the view.
-    pub fn without_lags_or_instruments(&self, view: &'static str) -> Result<(), PlantError> {
+    pub fn reject_lags_and_instruments(&self, view: &'static str) -> Result<(), PlantError> {
         let dressing = &self.law.dressing;
         if dressing.lags.is_empty() && dressing.bands.is_empty() && dressing.measures.is_empty() {
             return Ok(());

@@ -7,7 +7,7 @@ use super::refusal::PlantError;
 use crate::tape::Tape;
 
 /// Returns the accelerations that unit forces cause; all NaN if the matrix is singular.
-pub fn mobility(n: usize, mass: impl Fn(usize, usize) -> f64) -> Matrix4<f64> {
+pub fn solve_mobility(n: usize, mass: impl Fn(usize, usize) -> f64) -> Matrix4<f64> {
     // Axes that the law does not have are padded by those of the identity matrix.
     let padded =
         Matrix4::from_fn(
@@ -31,7 +31,7 @@ pub fn constant_mobility(
         mass.iter().map(|o| o.map_or(Some(0.0), |o| tape.constant_output(o))).collect();
     let Some(entries) = entries else { return Ok(None) };
     let n = equations.axes().len();
-    let solved = mobility(n, |i, j| entries[i * n + j]);
+    let solved = solve_mobility(n, |i, j| entries[i * n + j]);
     let constant: Vec<f64> = (0..n * n).map(|k| solved[(k / n, k % n)]).collect();
     // NaN marks a matrix that could not be inverted.
     if constant.iter().any(|value| !value.is_finite()) {

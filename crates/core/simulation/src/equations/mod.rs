@@ -14,9 +14,9 @@ mod lowering;
 mod mobility;
 mod refusal;
 
-pub use definition::{Attitude, Coefficients, EquationsOfMotion};
-pub use lowering::Lowering;
-pub(crate) use mobility::{constant_mobility, mobility};
+pub use definition::{AxesAttitude, CoefficientBinding, EquationsOfMotion};
+pub use lowering::EquationLowering;
+pub(crate) use mobility::{constant_mobility, solve_mobility};
 pub use refusal::PlantError;
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 use sistership_model::law::Law;
 use sistership_model::{Model, Zoo};
 
-use super::{EquationsOfMotion, Lowering, PlantError};
+use super::{EquationLowering, EquationsOfMotion, PlantError};
 use crate::Plant;
 use crate::candidates::CandidateSystem;
 use crate::sensitivity::SensitiveSystem;
@@ -18,8 +18,8 @@ fn refusals(model: &Model, law: &Law) -> [Option<PlantError>; 3] {
 
 #[test]
 fn every_view_refuses_what_the_model_does_not_give_alike() {
-    let zoo = Zoo::embedded().unwrap();
-    let complete = zoo.model("mariner").unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let complete = zoo.find_model("mariner").unwrap();
     let law = zoo.law(&complete.law).unwrap();
     assert_eq!(refusals(&complete, law), [None, None, None]);
     let mut missing = Vec::new();
@@ -36,13 +36,13 @@ fn every_view_refuses_what_the_model_does_not_give_alike() {
 
 #[test]
 fn a_tape_takes_states_and_inputs_and_folds_all_else() {
-    let zoo = Zoo::embedded().unwrap();
-    let model = zoo.model("mariner").unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = zoo.find_model("mariner").unwrap();
     let equations = EquationsOfMotion::new(&model, zoo.law(&model.law).unwrap()).unwrap();
-    let mut lowering = Lowering::new(&equations, &equations.names());
-    let mass = lowering.mass_matrix(equations.axes()).unwrap();
+    let mut lowering = EquationLowering::new(&equations, &equations.tape_input_names());
+    let mass = lowering.add_mass_matrix(equations.axes()).unwrap();
     let tape = lowering.finish();
-    assert_eq!(tape.inputs(), equations.names());
+    assert_eq!(tape.input_names(), equations.tape_input_names());
     assert_eq!(mass.len(), equations.axes().len().pow(2));
     assert!(mass.iter().flatten().all(|&entry| tape.constant_output(entry).is_some()));
 }

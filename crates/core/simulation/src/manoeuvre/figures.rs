@@ -4,7 +4,7 @@ use super::StandardManoeuvres;
 
 /// One figure of a manoeuvre or criterion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Figure {
+pub struct NamedFigure {
     /// Name of the manoeuvre or criterion and of the figure, such as `turn 35 deg: tactical
     /// diameter` or `IMO: advance`.
     pub name: String,
@@ -18,8 +18,8 @@ pub struct Figure {
 
 impl StandardManoeuvres {
     /// Returns every figure, in an order that depends only on the manoeuvres that were simulated.
-    pub fn figures(&self) -> Vec<Figure> {
-        let plain = |name: String, unit: &str, value| Figure {
+    pub fn list_figures(&self) -> Vec<NamedFigure> {
+        let plain = |name: String, unit: &str, value| NamedFigure {
             name,
             unit: unit.to_owned(),
             value,
@@ -50,7 +50,7 @@ impl StandardManoeuvres {
         all.push(plain("initial turning".to_owned(), "m", self.initial_turning_m));
         for criterion in &self.imo {
             let name = format!("IMO: {}", criterion.criterion);
-            all.push(Figure {
+            all.push(NamedFigure {
                 name,
                 unit: criterion.unit.clone(),
                 value: criterion.value,

@@ -5,11 +5,11 @@ use sistership_model::Model;
 use sistership_model::law::Law;
 
 use super::ManoeuvreSettings;
-use super::pull_out::pull_out;
-use super::spiral::spiral;
-use super::stopping::{AsternOrder, NoStopping, stop};
+use super::pull_out::simulate_pull_out;
+use super::spiral::simulate_spirals;
+use super::stopping::{AsternOrder, StoppingError, simulate_stop};
 use crate::metrics::{
-    Criterion, PullOutMetrics, SpiralMetrics, StoppingMetrics, TRACK_REACH_ALLOWED,
+    ImoCriterion, PullOutMetrics, SpiralMetrics, StoppingMetrics, TRACK_REACH_ALLOWED,
     is_straight_line_stable,
 };
 use crate::ship::Ship;
@@ -17,18 +17,18 @@ use crate::state::Trajectory;
 
 /// Selection of the additional manoeuvres to simulate.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct FurtherAsked {
+pub struct FurtherSelection {
     /// A full astern stop.
     pub stop: Option<AsternOrder>,
     /// Pull-outs of turns with these rudder angles, deg.
     pub pull_outs_deg: Vec<f64>,
     /// Condition under which spirals are simulated.
-    pub spiral: AskedSpiral,
+    pub spiral: SpiralSelection,
 }
 
 /// Condition under which spirals are simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum AskedSpiral {
+pub enum SpiralSelection {
     /// Never.
     #[default]
     Never,
@@ -42,14 +42,14 @@ pub enum AskedSpiral {
 /// appendix 4.
 const PULL_OUT_DEG: f64 = 20.0;
 
-impl FurtherAsked {
+impl FurtherSelection {
     /// Default selection: a stop, pull-outs to both sides, and spirals for a ship that is not
     /// stable on a straight course.
-    pub fn usual() -> Self {
+    pub fn default_selection() -> Self {
         Self {
             stop: Some(AsternOrder::default()),
             pull_outs_deg: vec![PULL_OUT_DEG, -PULL_OUT_DEG],
-            spiral: AskedSpiral::WhereUnstable,
+            spiral: SpiralSelection::WhereUnstable,
         }
     }
 }
@@ -82,12 +82,12 @@ pub struct FurtherManoeuvres {
 
 impl FurtherManoeuvres {
     /// Criterion of stopping ability; `None` without a stopping test.
-    pub fn criterion(&self, lpp_m: f64) -> Option<Criterion> {
-        Some(self.stopping.as_ref()?.criterion(lpp_m))
+    pub fn stopping_criterion(&self, lpp_m: f64) -> Option<ImoCriterion> {
+        Some(self.stopping.as_ref()?.track_reach_criterion(lpp_m))
     }
 
     /// Remarks that a reader of the figures needs.
-    pub fn remarks(&self, lpp_m: f64) -> Vec<String> {
+    pub fn reader_remarks(&self, lpp_m: f64) -> Vec<String> {
         let mut remarks = Vec::new();
         if let Some(stop) = &self.stopping {
             let StoppingMetrics { astern_rps, reversal_s, .. } = stop;
@@ -96,7 +96,7 @@ impl FurtherManoeuvres {
                  stays amidships"
             ));
             let lengths = stop.track_reach_m.map_or(0.0, |metres| metres / lpp_m);
-            let limit = stop.criterion(lpp_m).limit;
+            let limit = stop.track_reach_criterion(lpp_m).limit;
             if lengths > limit && lengths <= TRACK_REACH_ALLOWED {
                 remarks.push(format!(
                     "stopping: an Administration may allow up to {TRACK_REACH_ALLOWED} L to a \
@@ -111,27 +111,31 @@ impl FurtherManoeuvres {
 
 /// Simulates the selected manoeuvres; one that leaves the physical range is reported, and the
 /// others continue.
-pub fn further(
+pub fn simulate_further_manoeuvres(
     model: &Model,
     law: &Law,
     ship: &Ship,
     settings: &ManoeuvreSettings,
-    asked: &FurtherAsked,
+    asked: &FurtherSelection,
 ) -> FurtherManoeuvres {
     let mut all = FurtherManoeuvres::default();
     if let Some(order) = asked.stop {
-        match stop(model, law, ship, settings, order) {
+        match simulate_stop(model, law, ship, settings, order) {
             Ok(sailed) => {
                 all.stopping = Some(sailed.metrics);
                 all.tracks.push(("stopping".into(), sailed.track));
             }
-            Err(reason @ NoStopping::NotReversing(_)) => all.no_stopping = Some(reason.to_string()),
-            Err(NoStopping::Stopped(stopped)) => all.failures.push(format!("stopping: {stopped}")),
+            Err(reason @ StoppingError::NotReversing(_)) => {
+                all.no_stopping = Some(reason.to_string())
+            }
+            Err(StoppingError::Stopped(stopped)) => {
+                all.failures.push(format!("stopping: {stopped}"))
+            }
         }
     }
     for rudder_deg in &asked.pull_outs_deg {
         let name = format!("pull-out {rudder_deg} deg");
-        match pull_out(ship, *rudder_deg, settings) {
+        match simulate_pull_out(ship, *rudder_deg, settings) {
             Ok(sailed) => {
                 all.pull_outs.push(sailed.metrics);
                 all.tracks.push((name, sailed.track));
@@ -143,9 +147,10 @@ pub fn further(
     all.straight_line_stable = is_straight_line_stable(&all.pull_outs);
     // An unknown stability is treated as instability, which the spirals then decide.
     let unstable = all.straight_line_stable != Some(true);
-    if asked.spiral == AskedSpiral::Always || asked.spiral == AskedSpiral::WhereUnstable && unstable
+    if asked.spiral == SpiralSelection::Always
+        || asked.spiral == SpiralSelection::WhereUnstable && unstable
     {
-        match spiral(ship, settings) {
+        match simulate_spirals(ship, settings) {
             Ok(sailed) => {
                 all.straight_line_stable = Some(sailed.is_stable());
                 all.spiral = Some(sailed);

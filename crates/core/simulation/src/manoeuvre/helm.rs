@@ -1,10 +1,10 @@
 //! Orders to the rudder during a manoeuvre, and the simulation of many manoeuvres at once.
 
 use super::ManoeuvreSettings;
-use crate::envelope::Stopped;
-use crate::sailing::{HeldOrder, Sailing, sail_all};
-use crate::ship::{Order, Ship};
-use crate::state::{StateVector, Trajectory, at, straight};
+use crate::envelope::SimulationStop;
+use crate::sailing::{HeldOrder, OrderedRun, simulate_runs};
+use crate::ship::{HelmOrder, Ship};
+use crate::state::{StateVector, Trajectory, at, straight_state};
 
 /// A manoeuvre by its angles, deg.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +34,7 @@ impl std::fmt::Display for Manoeuvre {
 
 /// Simulated manoeuvre.
 #[derive(Debug)]
-pub struct Sailed {
+pub struct SimulatedManoeuvre {
     /// Track from the execution of the rudder on.
     pub after: Trajectory,
     /// Track including the approach before it.
@@ -48,26 +48,28 @@ pub struct Sailed {
 /// coefficients.
 ///
 /// Each result is an error by itself if its motion leaves the physical range, with time and reason.
-pub fn sail_together(
+pub fn simulate_manoeuvre_batch(
     ship: &Ship,
     manoeuvres: &[(Manoeuvre, &[f64])],
     settings: &ManoeuvreSettings,
-) -> Vec<Result<Sailed, Stopped>> {
+) -> Vec<Result<SimulatedManoeuvre, SimulationStop>> {
     // Every manoeuvre starts from straight running at the approach speed.
-    let run = settings.run(ship, straight(settings.speed(ship)));
-    let mut helms: Vec<Helm> =
-        manoeuvres.iter().map(|(manoeuvre, _)| Helm::new(ship, *manoeuvre, settings)).collect();
+    let run = settings.run_settings(ship, straight_state(settings.approach_speed(ship)));
+    let mut helms: Vec<ManoeuvreHelm> = manoeuvres
+        .iter()
+        .map(|(manoeuvre, _)| ManoeuvreHelm::new(ship, *manoeuvre, settings))
+        .collect();
     let sailings = helms.iter_mut().zip(manoeuvres).map(|(helm, (_, coefficients))| {
-        Sailing::new(run, coefficients, |t_s, state: &StateVector| helm.order(t_s, state))
+        OrderedRun::new(run, coefficients, |t_s, state: &StateVector| helm.next_order(t_s, state))
     });
     let sailings = sailings.collect();
-    let sailed = sail_all(ship, settings.method, sailings);
-    let one = |(helm, sailed): (Helm, crate::sailing::Sailed)| match sailed.stopped {
+    let sailed = simulate_runs(ship, settings.method, sailings);
+    let one = |(helm, sailed): (ManoeuvreHelm, crate::sailing::RunOutcome)| match sailed.stopped {
         Some(stopped) => Err(stopped),
         None => {
             // The track includes the approach, the metrics start at the execution.
-            let after = after(&sailed.track, settings.run_in_s);
-            Ok(Sailed { after, track: sailed.track, reversals_s: helm.reversals_s })
+            let after = track_after(&sailed.track, settings.run_in_s);
+            Ok(SimulatedManoeuvre { after, track: sailed.track, reversals_s: helm.reversals_s })
         }
     };
     helms.into_iter().zip(sailed).map(one).collect()
@@ -76,12 +78,12 @@ pub fn sail_together(
 /// Rudder angle and change of heading of the initial turning test, deg.
 pub(super) const INITIAL_DEG: f64 = 10.0;
 /// Tolerance of the heading, deg: a hundredth of the resolution of overshoots.
-const HEADING_DEG: f64 = 1e-3;
+const HEADING_TOLERANCE_DEG: f64 = 1e-3;
 /// Smallest part of a step that is simulated separately: it ends the approach to a heading.
-const LEAST_OF_STEP: f64 = 1e-3;
+const SMALLEST_STEP_PART: f64 = 1e-3;
 
 /// Controller that carries out a manoeuvre.
-struct Helm {
+struct ManoeuvreHelm {
     manoeuvre: Manoeuvre,
     n_rps: f64,
     run_in_s: f64,
@@ -95,9 +97,9 @@ struct Helm {
     reversals_s: Vec<f64>,
 }
 
-impl Helm {
+impl ManoeuvreHelm {
     fn new(ship: &Ship, manoeuvre: Manoeuvre, settings: &ManoeuvreSettings) -> Self {
-        let (n_rps, run_in_s) = (settings.revolutions(ship), settings.run_in_s);
+        let (n_rps, run_in_s) = (settings.propeller_revolutions(ship), settings.run_in_s);
         Self {
             manoeuvre,
             n_rps,
@@ -105,18 +107,18 @@ impl Helm {
             goes_on: settings.duration_s.is_some(),
             at_heading: settings.reversals_within_steps,
             figures_only: settings.figures_only,
-            step_s: settings.step(ship),
+            step_s: settings.step_length_s(ship),
             reversals_s: Vec::new(),
         }
     }
 
     /// Returns the order at a time; `None` when the manoeuvre is complete.
-    fn order(&mut self, t_s: f64, state: &StateVector) -> Option<HeldOrder> {
+    fn next_order(&mut self, t_s: f64, state: &StateVector) -> Option<HeldOrder> {
         let since_s = t_s - self.run_in_s;
         // The tolerance absorbs the rounding of the sum of steps.
         let rudder_deg = if since_s < -1e-9 { 0.0 } else { self.rudder_deg(since_s, state) };
-        let order = Order { delta_rad: rudder_deg.to_radians(), n_rps: self.n_rps };
-        let held = HeldOrder { order, lasts_s: self.lasts_s(state) };
+        let order = HelmOrder { delta_rad: rudder_deg.to_radians(), n_rps: self.n_rps };
+        let held = HeldOrder { order, lasts_s: self.order_duration_s(state) };
         // A given duration continues the run after the manoeuvre is complete.
         (self.goes_on || !self.is_done(state)).then_some(held)
     }
@@ -128,35 +130,35 @@ impl Helm {
             Manoeuvre::Turn { rudder } => return rudder,
             Manoeuvre::Zigzag { rudder, .. } => rudder,
         };
-        let tolerance = if self.at_heading { HEADING_DEG } else { 0.0 };
+        let tolerance = if self.at_heading { HEADING_TOLERANCE_DEG } else { 0.0 };
         // A step that ends at the heading does so by extrapolation, hence the tolerance.
-        if self.to_go_deg(state).is_some_and(|(to_go, _)| to_go <= tolerance) {
+        if self.remaining_heading_deg(state).is_some_and(|(to_go, _)| to_go <= tolerance) {
             self.reversals_s.push(since_s);
         }
-        self.swing() * rudder
+        self.rudder_side() * rudder
     }
 
     /// Side of the rudder: 1 before the first reversal, -1 before the second, and so on.
-    fn swing(&self) -> f64 {
+    fn rudder_side(&self) -> f64 {
         if self.reversals_s.len().is_multiple_of(2) { 1.0 } else { -1.0 }
     }
 
     /// Returns the remaining change of heading to the next switching angle, deg, and the rate at
     /// which it decreases, deg/s.
-    fn to_go_deg(&self, state: &StateVector) -> Option<(f64, f64)> {
+    fn remaining_heading_deg(&self, state: &StateVector) -> Option<(f64, f64)> {
         let Manoeuvre::Zigzag { rudder, switch } = self.manoeuvre else { return None };
-        let side = self.swing() * rudder.signum();
+        let side = self.rudder_side() * rudder.signum();
         let to_go = switch - side * state[at::PSI].to_degrees();
         Some((to_go, side * state[at::R].to_degrees()))
     }
 
     /// Duration of an order, s: to the heading at which the rudder is reversed, if that is reached
     /// within the step, otherwise the whole step.
-    fn lasts_s(&self, state: &StateVector) -> f64 {
-        match self.to_go_deg(state).filter(|_| self.at_heading) {
+    fn order_duration_s(&self, state: &StateVector) -> f64 {
+        match self.remaining_heading_deg(state).filter(|_| self.at_heading) {
             // Linear extrapolation of the heading; the lower limit ensures progress.
             Some((to_go, rate)) if rate * self.step_s > to_go => {
-                (to_go / rate).max(LEAST_OF_STEP * self.step_s)
+                (to_go / rate).max(SMALLEST_STEP_PART * self.step_s)
             }
             _ => self.step_s,
         }
@@ -178,7 +180,7 @@ impl Helm {
 }
 
 /// Returns the part of a track from a time on, with time counted from there.
-fn after(track: &Trajectory, from_s: f64) -> Trajectory {
+fn track_after(track: &Trajectory, from_s: f64) -> Trajectory {
     let keep = |index: &usize| track.t_s[*index] >= from_s - 1e-9;
     let mut result = Trajectory::default();
     for k in (0..track.t_s.len()).filter(keep) {
@@ -192,19 +194,23 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use sistership_model::Zoo;
 
-    use super::super::zigzag;
+    use super::super::simulate_zigzag;
     use super::*;
 
     #[test]
     fn reversals_within_steps_make_coarse_steps_as_good_as_fine_ones() {
-        let zoo = Zoo::embedded().unwrap();
-        let model = zoo.model("mariner").unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let model = zoo.find_model("mariner").unwrap();
         let ship = Ship::new(&model, zoo.law(&model.law).unwrap()).unwrap();
         let overshoot = |step_s: f64, reversals_within_steps: bool| {
             let step_s = Some(step_s);
             let settings =
                 ManoeuvreSettings { step_s, reversals_within_steps, ..Default::default() };
-            zigzag(&ship, 20.0, 20.0, &settings).unwrap().metrics.first_overshoot_deg.unwrap()
+            simulate_zigzag(&ship, 20.0, 20.0, &settings)
+                .unwrap()
+                .metrics
+                .first_overshoot_deg
+                .unwrap()
         };
         let exact = overshoot(0.005, false);
         let error =

@@ -12,20 +12,23 @@ mod stopping;
 
 use serde::{Deserialize, Serialize};
 
-pub use figures::Figure;
-pub use further::{AskedSpiral, FurtherAsked, FurtherManoeuvres, further};
-pub use helm::{Manoeuvre, Sailed, sail_together};
-pub use pull_out::{PullOut, pull_out};
-pub use reversing::{NotReversing, check_reversing};
-pub use spiral::spiral;
-pub use standard::{
-    STANDARD, StandardManoeuvres, Turn, Zigzag, standard, standard_of_sisters, standard_with_tracks,
+pub use figures::NamedFigure;
+pub use further::{
+    FurtherManoeuvres, FurtherSelection, SpiralSelection, simulate_further_manoeuvres,
 };
-pub use stopping::{AsternOrder, NoStopping, Stopping, stop};
+pub use helm::{Manoeuvre, SimulatedManoeuvre, simulate_manoeuvre_batch};
+pub use pull_out::{PullOut, simulate_pull_out};
+pub use reversing::{ReversingError, check_reversing};
+pub use spiral::simulate_spirals;
+pub use standard::{
+    STANDARD_MANOEUVRES, StandardManoeuvres, TurningCircle, ZigzagTest, simulate_standard_ensemble,
+    simulate_standard_manoeuvres, simulate_standard_with_tracks,
+};
+pub use stopping::{AsternOrder, StoppingError, StoppingTest, simulate_stop};
 
-use crate::envelope::Stopped;
+use crate::envelope::SimulationStop;
 use crate::integrate::Method;
-use crate::ship::{Run, Ship};
+use crate::ship::{RunSettings, Ship};
 use crate::state::StateVector;
 
 /// Settings of simulated manoeuvres.
@@ -67,29 +70,30 @@ impl Default for ManoeuvreSettings {
 }
 
 impl ManoeuvreSettings {
-    fn speed(&self, ship: &Ship) -> f64 {
+    fn approach_speed(&self, ship: &Ship) -> f64 {
         self.speed_m_s.unwrap_or(ship.approach_speed_m_s())
     }
 
-    fn revolutions(&self, ship: &Ship) -> f64 {
-        self.n_rps.unwrap_or_else(|| ship.revolutions_at(self.speed(ship)))
+    fn propeller_revolutions(&self, ship: &Ship) -> f64 {
+        self.n_rps.unwrap_or_else(|| ship.revolutions_at(self.approach_speed(ship)))
     }
 
     /// Duration, s, scaled with length and speed so that a small model and a large ship cover the
     /// same distance: 60 lengths.
-    fn duration(&self, ship: &Ship) -> f64 {
-        self.duration_s.unwrap_or_else(|| 60.0 * ship.lpp_m() / self.speed(ship)) + self.run_in_s
+    fn total_duration_s(&self, ship: &Ship) -> f64 {
+        self.duration_s.unwrap_or_else(|| 60.0 * ship.lpp_m() / self.approach_speed(ship))
+            + self.run_in_s
     }
 
     /// Step, s.
-    pub fn step(&self, ship: &Ship) -> f64 {
-        let default = 0.1_f64.min(0.02 * ship.lpp_m() / self.speed(ship));
+    pub fn step_length_s(&self, ship: &Ship) -> f64 {
+        let default = 0.1_f64.min(0.02 * ship.lpp_m() / self.approach_speed(ship));
         self.step_s.unwrap_or(default)
     }
 
-    fn run(&self, ship: &Ship, start: StateVector) -> Run {
-        let (duration_s, step_s) = (self.duration(ship), self.step(ship));
-        Run { start, duration_s, step_s, method: self.method }
+    fn run_settings(&self, ship: &Ship, start: StateVector) -> RunSettings {
+        let (duration_s, step_s) = (self.total_duration_s(ship), self.step_length_s(ship));
+        RunSettings { start, duration_s, step_s, method: self.method }
     }
 }
 
@@ -97,33 +101,42 @@ impl ManoeuvreSettings {
 ///
 /// # Errors
 /// Returns an error with time and reason if the motion left the physical range.
-pub fn turn(ship: &Ship, rudder_deg: f64, settings: &ManoeuvreSettings) -> Result<Turn, Stopped> {
+pub fn simulate_turn(
+    ship: &Ship,
+    rudder_deg: f64,
+    settings: &ManoeuvreSettings,
+) -> Result<TurningCircle, SimulationStop> {
     let turn = Manoeuvre::Turn { rudder: rudder_deg };
-    Turn::of(sail_together(ship, &[(turn, &[])], settings).remove(0)?, rudder_deg)
+    TurningCircle::from_manoeuvre(
+        simulate_manoeuvre_batch(ship, &[(turn, &[])], settings).remove(0)?,
+        rudder_deg,
+    )
 }
 
 /// Simulates a zigzag of four reversals.
 ///
 /// # Errors
 /// Returns an error with time and reason if the motion left the physical range.
-pub fn zigzag(
+pub fn simulate_zigzag(
     ship: &Ship,
     rudder_deg: f64,
     switch_deg: f64,
     settings: &ManoeuvreSettings,
-) -> Result<Zigzag, Stopped> {
-    zigzags(ship, &[(rudder_deg, switch_deg)], settings).remove(0)
+) -> Result<ZigzagTest, SimulationStop> {
+    simulate_zigzags(ship, &[(rudder_deg, switch_deg)], settings).remove(0)
 }
 
 /// Simulates zigzags in lockstep, each given by the rudder angle and the heading at which it is
 /// reversed, deg. Each has its own error, as in [`zigzag`].
-pub fn zigzags(
+pub fn simulate_zigzags(
     ship: &Ship,
     angles: &[(f64, f64)],
     settings: &ManoeuvreSettings,
-) -> Vec<Result<Zigzag, Stopped>> {
+) -> Vec<Result<ZigzagTest, SimulationStop>> {
     let of = |&(rudder, switch): &(f64, f64)| (Manoeuvre::Zigzag { rudder, switch }, &[] as &[_]);
     let all: Vec<_> = angles.iter().map(of).collect();
-    let sailed = sail_together(ship, &all, settings).into_iter().zip(angles);
-    sailed.map(|(track, (rudder, switch))| Zigzag::of(track?, *rudder, *switch)).collect()
+    let sailed = simulate_manoeuvre_batch(ship, &all, settings).into_iter().zip(angles);
+    sailed
+        .map(|(track, (rudder, switch))| ZigzagTest::from_manoeuvre(track?, *rudder, *switch))
+        .collect()
 }

@@ -6,17 +6,17 @@ use serde::{Deserialize, Serialize};
 use sistership_model::validity::Excursion;
 
 use super::ManoeuvreSettings;
-use super::helm::{INITIAL_DEG, Manoeuvre, Sailed, sail_together};
-use crate::envelope::Stopped;
+use super::helm::{INITIAL_DEG, Manoeuvre, SimulatedManoeuvre, simulate_manoeuvre_batch};
+use crate::envelope::SimulationStop;
 use crate::metrics::{
-    Criterion, TurningMetrics, ZigzagMetrics, criteria, initial_turning_distance,
+    ImoCriterion, TurningMetrics, ZigzagMetrics, imo_criteria, initial_turning_distance,
 };
 use crate::ship::Ship;
 use crate::state::Trajectory;
 
 /// Simulated turning circle.
 #[derive(Debug, Clone)]
-pub struct Turn {
+pub struct TurningCircle {
     /// Track.
     pub track: Trajectory,
     /// Metrics.
@@ -25,7 +25,7 @@ pub struct Turn {
 
 /// Simulated zigzag.
 #[derive(Debug, Clone)]
-pub struct Zigzag {
+pub struct ZigzagTest {
     /// Track.
     pub track: Trajectory,
     /// Metrics.
@@ -43,7 +43,7 @@ pub struct StandardManoeuvres {
     /// the worse side, m.
     pub initial_turning_m: Option<f64>,
     /// IMO criteria.
-    pub imo: Vec<Criterion>,
+    pub imo: Vec<ImoCriterion>,
     /// Manoeuvres that left the physical range, with the reason.
     pub failures: Vec<String>,
     /// Manoeuvres that left the range covered by the model's trials, with the excursion.
@@ -58,42 +58,53 @@ pub struct StandardManoeuvres {
 impl StandardManoeuvres {
     /// Records how a manoeuvre left the range covered by the model's trials, if it did, and the
     /// mean share of a learned correction.
-    pub fn note_outside(&mut self, name: &str, ship: &Ship, track: &Trajectory) {
-        self.outside.extend(ship.leaves(track).map(|excursion| (name.to_owned(), excursion)));
-        self.branch_share.extend(ship.branch_share(track).map(|share| (name.to_owned(), share)));
+    pub fn record_excursion(&mut self, name: &str, ship: &Ship, track: &Trajectory) {
+        self.outside
+            .extend(ship.find_excursion(track).map(|excursion| (name.to_owned(), excursion)));
+        self.branch_share
+            .extend(ship.mean_correction_share(track).map(|share| (name.to_owned(), share)));
     }
 }
 
-impl Turn {
+impl TurningCircle {
     /// Evaluates a simulated turning circle.
     ///
     /// # Errors
     /// Returns an error if the track ends before the rudder is executed.
-    pub fn of(sailed: Sailed, rudder_deg: f64) -> Result<Self, Stopped> {
-        let metrics = TurningMetrics::of(&sailed.after, rudder_deg).ok_or_else(nothing_sailed)?;
+    pub fn from_manoeuvre(
+        sailed: SimulatedManoeuvre,
+        rudder_deg: f64,
+    ) -> Result<Self, SimulationStop> {
+        let metrics =
+            TurningMetrics::from_track(&sailed.after, rudder_deg).ok_or_else(empty_track_error)?;
         Ok(Self { track: sailed.track, metrics })
     }
 }
 
-impl Zigzag {
+impl ZigzagTest {
     /// Evaluates a simulated zigzag.
     ///
     /// # Errors
     /// Returns an error if the track ends before the rudder is executed.
-    pub fn of(sailed: Sailed, rudder_deg: f64, switch_deg: f64) -> Result<Self, Stopped> {
-        let metrics = ZigzagMetrics::of(&sailed.after, rudder_deg, switch_deg, &sailed.reversals_s)
-            .ok_or_else(nothing_sailed)?;
+    pub fn from_manoeuvre(
+        sailed: SimulatedManoeuvre,
+        rudder_deg: f64,
+        switch_deg: f64,
+    ) -> Result<Self, SimulationStop> {
+        let metrics =
+            ZigzagMetrics::from_track(&sailed.after, rudder_deg, switch_deg, &sailed.reversals_s)
+                .ok_or_else(empty_track_error)?;
         Ok(Self { track: sailed.track, metrics })
     }
 }
 
-fn nothing_sailed() -> Stopped {
-    Stopped { t_s: 0.0, reason: "nothing was sailed".into() }
+fn empty_track_error() -> SimulationStop {
+    SimulationStop { t_s: 0.0, reason: "nothing was sailed".into() }
 }
 
 /// The standard manoeuvres: hard turns, zigzags, and turns with 10 deg of rudder for the initial
 /// turning ability.
-pub const STANDARD: [Manoeuvre; 8] = [
+pub const STANDARD_MANOEUVRES: [Manoeuvre; 8] = [
     Manoeuvre::Turn { rudder: 35.0 },
     Manoeuvre::Turn { rudder: -35.0 },
     Manoeuvre::Zigzag { rudder: 10.0, switch: 10.0 },
@@ -105,49 +116,60 @@ pub const STANDARD: [Manoeuvre; 8] = [
 ];
 
 /// Simulates the standard manoeuvres; one that diverges is reported, and the others continue.
-pub fn standard(ship: &Ship, settings: &ManoeuvreSettings) -> StandardManoeuvres {
-    standard_of_sisters(ship, &[&[]], settings).remove(0)
+pub fn simulate_standard_manoeuvres(
+    ship: &Ship,
+    settings: &ManoeuvreSettings,
+) -> StandardManoeuvres {
+    simulate_standard_ensemble(ship, &[&[]], settings).remove(0)
 }
 
 /// Simulates the standard manoeuvres as [`standard`] does, and also returns the tracks in the order
 /// of [`STANDARD`]; `None` for one that diverged.
-pub fn standard_with_tracks(
+pub fn simulate_standard_with_tracks(
     ship: &Ship,
     settings: &ManoeuvreSettings,
 ) -> (StandardManoeuvres, Vec<Option<Trajectory>>) {
-    let sailed = sail_together(ship, &STANDARD.map(|manoeuvre| (manoeuvre, &[][..])), settings);
+    let sailed = simulate_manoeuvre_batch(
+        ship,
+        &STANDARD_MANOEUVRES.map(|manoeuvre| (manoeuvre, &[][..])),
+        settings,
+    );
     let tracks = sailed.iter().map(|sailed| Some(sailed.as_ref().ok()?.track.clone())).collect();
-    (judged(ship, settings, sailed.into_iter()), tracks)
+    (collect_metrics(ship, settings, sailed.into_iter()), tracks)
 }
 
 /// Simulates the standard manoeuvres in lockstep for several ships that differ in their
 /// coefficients alone, each as [`standard`] would.
-pub fn standard_of_sisters(
+pub fn simulate_standard_ensemble(
     ship: &Ship,
     sisters: &[&[f64]],
     settings: &ManoeuvreSettings,
 ) -> Vec<StandardManoeuvres> {
     let manoeuvres: Vec<(Manoeuvre, &[f64])> = sisters
         .iter()
-        .flat_map(|coefficients| STANDARD.map(|manoeuvre| (manoeuvre, *coefficients)))
+        .flat_map(|coefficients| STANDARD_MANOEUVRES.map(|manoeuvre| (manoeuvre, *coefficients)))
         .collect();
-    let mut sailed = sail_together(ship, &manoeuvres, settings).into_iter();
-    sisters.iter().map(|_| judged(ship, settings, sailed.by_ref().take(STANDARD.len()))).collect()
+    let mut sailed = simulate_manoeuvre_batch(ship, &manoeuvres, settings).into_iter();
+    sisters
+        .iter()
+        .map(|_| collect_metrics(ship, settings, sailed.by_ref().take(STANDARD_MANOEUVRES.len())))
+        .collect()
 }
 
 /// Metrics of one ship's standard manoeuvres.
-fn judged(
+fn collect_metrics(
     ship: &Ship,
     settings: &ManoeuvreSettings,
-    sailed: impl Iterator<Item = Result<Sailed, Stopped>>,
+    sailed: impl Iterator<Item = Result<SimulatedManoeuvre, SimulationStop>>,
 ) -> StandardManoeuvres {
     let mut all = StandardManoeuvres::default();
     let mut initial = Vec::new();
-    for (manoeuvre, sailed) in STANDARD.into_iter().zip(sailed) {
+    for (manoeuvre, sailed) in STANDARD_MANOEUVRES.into_iter().zip(sailed) {
         match manoeuvre {
             Manoeuvre::Turn { rudder } => {
-                let turn = sailed.and_then(|sailed| Turn::of(sailed, rudder));
-                let turn = kept(ship, turn, &manoeuvre.to_string(), &mut all, |turn| &turn.track);
+                let turn = sailed.and_then(|sailed| TurningCircle::from_manoeuvre(sailed, rudder));
+                let turn =
+                    record_result(ship, turn, &manoeuvre.to_string(), &mut all, |turn| &turn.track);
                 // Turns with 10 deg of rudder serve the initial turning ability only.
                 match turn {
                     Some(turn) if rudder.abs() == INITIAL_DEG => {
@@ -157,9 +179,12 @@ fn judged(
                 }
             }
             Manoeuvre::Zigzag { rudder, switch } => {
-                let zigzag = sailed.and_then(|sailed| Zigzag::of(sailed, rudder, switch));
                 let zigzag =
-                    kept(ship, zigzag, &manoeuvre.to_string(), &mut all, |zigzag| &zigzag.track);
+                    sailed.and_then(|sailed| ZigzagTest::from_manoeuvre(sailed, rudder, switch));
+                let zigzag =
+                    record_result(ship, zigzag, &manoeuvre.to_string(), &mut all, |zigzag| {
+                        &zigzag.track
+                    });
                 all.zigzags.extend(zigzag.map(|zigzag| zigzag.metrics));
             }
         }
@@ -168,22 +193,22 @@ fn judged(
     let both: Option<Vec<f64>> = initial.into_iter().collect();
     all.initial_turning_m = both.and_then(|both| both.into_iter().reduce(f64::max));
     let speed = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
-    all.imo = criteria(ship.lpp_m(), speed, &all.turns, &all.zigzags, all.initial_turning_m);
+    all.imo = imo_criteria(ship.lpp_m(), speed, &all.turns, &all.zigzags, all.initial_turning_m);
     all
 }
 
 /// Returns a simulated manoeuvre after recording its excursion; records the failure of one that
 /// stopped.
-fn kept<T>(
+fn record_result<T>(
     ship: &Ship,
-    sailed: Result<T, Stopped>,
+    sailed: Result<T, SimulationStop>,
     name: &str,
     all: &mut StandardManoeuvres,
     track: impl Fn(&T) -> &Trajectory,
 ) -> Option<T> {
     match sailed {
         Ok(result) => {
-            all.note_outside(name, ship, track(&result));
+            all.record_excursion(name, ship, track(&result));
             Some(result)
         }
         Err(stopped) => {

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::ManoeuvreSettings;
 use crate::ship::Ship;
-use crate::state::{StateVector, at, speed};
+use crate::state::{StateVector, at, horizontal_speed};
 
 /// Largest change of the yaw rate of a steady motion during the time length over speed, in units of
 /// one radian in that time. The remainder of a motion that decays with a time constant of T'
@@ -15,21 +15,22 @@ const RATE_CHANGE: f64 = 1e-5;
 const SPEED_CHANGE: f64 = 1e-4;
 
 /// Default step in units of length over speed: a steady motion does not depend on it.
-const STEP: f64 = 0.05;
+const DEFAULT_STEP: f64 = 0.05;
 
 /// Settings of a simulation of which only the steady end is used.
-pub(super) fn to_the_end(
+pub(super) fn steady_settings(
     settings: &ManoeuvreSettings,
     ship: &Ship,
     duration_s: f64,
 ) -> ManoeuvreSettings {
-    let step_s = settings.step_s.unwrap_or(STEP * ship.lpp_m() / settings.speed(ship));
+    let step_s =
+        settings.step_s.unwrap_or(DEFAULT_STEP * ship.lpp_m() / settings.approach_speed(ship));
     let (duration_s, step_s) = (Some(duration_s), Some(step_s));
     ManoeuvreSettings { duration_s, step_s, run_in_s: 0.0, ..*settings }
 }
 
 /// Detector of a steady motion, step by step.
-pub(super) struct Steady {
+pub(super) struct SteadyDetector {
     /// Non-dimensional yaw rate and speed during the last time of length over speed.
     seen: VecDeque<[f64; 2]>,
     steps: usize,
@@ -37,7 +38,7 @@ pub(super) struct Steady {
     speed_m_s: f64,
 }
 
-impl Steady {
+impl SteadyDetector {
     /// Creates a detector for an approach speed, m/s, and a step, s.
     pub fn new(ship: &Ship, speed_m_s: f64, step_s: f64) -> Self {
         let length_s = ship.lpp_m() / speed_m_s;
@@ -46,13 +47,13 @@ impl Steady {
     }
 
     /// Discards the history.
-    pub fn restart(&mut self) {
+    pub fn clear_history(&mut self) {
         self.seen.clear();
     }
 
     /// Adds a state; returns true if the motion is steady.
     pub fn is_steady(&mut self, state: &StateVector) -> bool {
-        let now = [state[at::R] * self.length_s, speed(state) / self.speed_m_s];
+        let now = [state[at::R] * self.length_s, horizontal_speed(state) / self.speed_m_s];
         self.seen.push_back(now);
         // The window of one length over speed must be full first.
         if self.seen.len() <= self.steps {

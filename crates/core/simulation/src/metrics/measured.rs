@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use sistership_model::trial::{Channel, Trial};
 
 use super::{TurningMetrics, ZigzagMetrics};
-use crate::state::{RECORDED, StateVector, Trajectory};
+use crate::state::{RECORDED_CHANNELS, StateVector, Trajectory};
 
 /// Metrics of one manoeuvre.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -19,36 +19,41 @@ pub enum ManoeuvreMetrics {
 
 /// Manoeuvre of a trial: its kind, its first sample, and the times of the reversals of the rudder.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Recognised {
-    kind: Kind,
+pub struct ManoeuvreRecognition {
+    kind: ManoeuvreKind,
     start: usize,
     reversals_s: Vec<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
+enum ManoeuvreKind {
     Turn { rudder_deg: f64 },
     Zigzag { rudder_deg: f64, switch_deg: f64 },
 }
 
-impl Recognised {
+impl ManoeuvreRecognition {
     /// Recognises `turn ...` or `zigzag R/H` in the trial's manoeuvre; `None` for anything else, or
     /// if the rudder never moves.
-    pub fn of(trial: &Trial) -> Option<Self> {
+    pub fn from_trial(trial: &Trial) -> Option<Self> {
         let name = trial.manoeuvre.as_deref()?.to_lowercase();
         let delta = trial.channel(Channel::Delta)?;
-        let start = execution(delta)?;
+        let start = execution_sample(delta)?;
         let side = delta[start].signum();
         if name.starts_with("turn") {
             // The median of the second half is robust against the time in which the rudder moves.
             let rudder_deg = median(&delta[start + (delta.len() - start) / 2..])?.to_degrees();
-            return Some(Self { kind: Kind::Turn { rudder_deg }, start, reversals_s: Vec::new() });
+            return Some(Self {
+                kind: ManoeuvreKind::Turn { rudder_deg },
+                start,
+                reversals_s: Vec::new(),
+            });
         }
         let (rudder, switch) = name.strip_prefix("zigzag")?.trim().split_once('/')?;
         let angle = |text: &str| {
             text.trim().trim_end_matches("deg").trim().parse::<f64>().ok().map(f64::abs)
         };
-        let kind = Kind::Zigzag { rudder_deg: side * angle(rudder)?, switch_deg: angle(switch)? };
+        let kind =
+            ManoeuvreKind::Zigzag { rudder_deg: side * angle(rudder)?, switch_deg: angle(switch)? };
         // A reversal is a change of sign of the rudder, or its first sample at zero.
         let crossing =
             |k: &usize| delta[k - 1] * delta[*k] < 0.0 || (delta[*k] == 0.0 && delta[k - 1] != 0.0);
@@ -58,7 +63,7 @@ impl Recognised {
     }
 
     /// Returns the metrics of a track whose states belong to the given samples of the trial.
-    pub fn metrics(&self, track: &Trajectory, samples: &[usize]) -> Option<ManoeuvreMetrics> {
+    pub fn track_metrics(&self, track: &Trajectory, samples: &[usize]) -> Option<ManoeuvreMetrics> {
         let first = samples.iter().position(|&k| k >= self.start)?;
         // Time counts from the execution of the rudder.
         let mut after = Trajectory::default();
@@ -66,11 +71,11 @@ impl Recognised {
             after.push(track.t_s[k] - track.t_s[first], track.states[k], track.n_rps[k]);
         }
         match self.kind {
-            Kind::Turn { rudder_deg } => {
-                TurningMetrics::of(&after, rudder_deg).map(ManoeuvreMetrics::Turn)
+            ManoeuvreKind::Turn { rudder_deg } => {
+                TurningMetrics::from_track(&after, rudder_deg).map(ManoeuvreMetrics::Turn)
             }
-            Kind::Zigzag { rudder_deg, switch_deg } => {
-                ZigzagMetrics::of(&after, rudder_deg, switch_deg, &self.reversals_s)
+            ManoeuvreKind::Zigzag { rudder_deg, switch_deg } => {
+                ZigzagMetrics::from_track(&after, rudder_deg, switch_deg, &self.reversals_s)
                     .map(ManoeuvreMetrics::Zigzag)
             }
         }
@@ -79,7 +84,7 @@ impl Recognised {
 
 /// Returns a trial as a track; `None` if velocities, heading or position were not recorded.
 pub fn recorded_track(trial: &Trial) -> Option<Trajectory> {
-    let needed = &RECORDED[..6];
+    let needed = &RECORDED_CHANNELS[..6];
     let columns: Vec<(usize, &[f64])> = needed
         .iter()
         .filter_map(|&(channel, index)| Some((index, trial.channel(channel)?)))
@@ -98,7 +103,7 @@ pub fn recorded_track(trial: &Trial) -> Option<Trajectory> {
 
 /// Returns the sample at which the rudder leaves its first angle by a tenth of its range and by
 /// more than half a degree.
-fn execution(delta: &[f64]) -> Option<usize> {
+fn execution_sample(delta: &[f64]) -> Option<usize> {
     let rest = *delta.first()?;
     let range = delta.iter().map(|value| (value - rest).abs()).fold(0.0, f64::max);
     let least = (0.1 * range).max(0.5_f64.to_radians());
@@ -131,19 +136,22 @@ mod tests {
     fn a_zigzag_is_recognised_with_its_reversals() {
         let trial =
             trial("zigzag 10/5", &[0.0, 0.0, 5.0, 10.0, 10.0, 2.0, -8.0, -10.0, -10.0, 3.0, 10.0]);
-        let found = Recognised::of(&trial).unwrap();
+        let found = ManoeuvreRecognition::from_trial(&trial).unwrap();
         assert_eq!((found.start, found.reversals_s), (2, vec![4.0, 7.0]));
-        assert_eq!(found.kind, Kind::Zigzag { rudder_deg: 10.0, switch_deg: 5.0 });
+        assert_eq!(found.kind, ManoeuvreKind::Zigzag { rudder_deg: 10.0, switch_deg: 5.0 });
     }
 
     #[test]
     fn a_turn_has_the_rudder_it_ends_with() {
-        let found =
-            Recognised::of(&trial("turn", &[0.0, -3.0, -12.0, -12.0, -12.0, -12.0])).unwrap();
+        let found = ManoeuvreRecognition::from_trial(&trial(
+            "turn",
+            &[0.0, -3.0, -12.0, -12.0, -12.0, -12.0],
+        ))
+        .unwrap();
         assert_eq!(
             (found.start, found.kind),
-            (1, Kind::Turn { rudder_deg: (-12_f64.to_radians()).to_degrees() })
+            (1, ManoeuvreKind::Turn { rudder_deg: (-12_f64.to_radians()).to_degrees() })
         );
-        assert_eq!(Recognised::of(&trial("random", &[0.0, 5.0])), None);
+        assert_eq!(ManoeuvreRecognition::from_trial(&trial("random", &[0.0, 5.0])), None);
     }
 }

@@ -8,8 +8,8 @@ mod stopping;
 mod turning;
 mod zigzag;
 
-pub use imo::{Criterion, criteria};
-pub use measured::{ManoeuvreMetrics, Recognised, recorded_track};
+pub use imo::{ImoCriterion, imo_criteria};
+pub use measured::{ManoeuvreMetrics, ManoeuvreRecognition, recorded_track};
 pub use pull_out::{PullOutMetrics, is_straight_line_stable};
 pub use spiral::{SpiralMetrics, SpiralPoint, width_limit};
 pub use stopping::{StoppingMetrics, TRACK_REACH_ALLOWED};

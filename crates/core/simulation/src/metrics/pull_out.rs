@@ -17,10 +17,10 @@ pub struct PullOutMetrics {
 
 /// Smallest difference of non-dimensional yaw rates that can be distinguished: a turn of a radius
 /// of a thousand lengths.
-const ALIKE: f64 = 1e-3;
+const RATE_RESOLUTION: f64 = 1e-3;
 /// Non-dimensional yaw rate of a turn of a radius of a hundred lengths: below it the course is
 /// straight.
-const STRAIGHT: f64 = 1e-2;
+const STRAIGHT_RATE: f64 = 1e-2;
 
 /// Returns true if a ship is stable on a straight course: after turns to both sides it runs
 /// straight. `None` if one side was not simulated or did not become steady, or if both sides end in
@@ -33,9 +33,9 @@ pub fn is_straight_line_stable(pull_outs: &[PullOutMetrics]) -> Option<bool> {
     };
     let (starboard, port) = (side(true)?, side(false)?);
     // Both sides end in different turns: the straight course between them is unstable.
-    match (starboard - port).abs() < 2.0 * ALIKE {
+    match (starboard - port).abs() < 2.0 * RATE_RESOLUTION {
         false => Some(false),
-        true => (starboard.abs().max(port.abs()) < STRAIGHT).then_some(true),
+        true => (starboard.abs().max(port.abs()) < STRAIGHT_RATE).then_some(true),
     }
 }
 

@@ -35,11 +35,11 @@ pub struct SpiralMetrics {
 
 impl SpiralMetrics {
     /// Evaluates points in the order of their simulation; `length_s` is length over speed, s.
-    pub fn of(direct: Vec<SpiralPoint>, reverse: Vec<SpiralPoint>, length_s: f64) -> Self {
+    pub fn from_points(direct: Vec<SpiralPoint>, reverse: Vec<SpiralPoint>, length_s: f64) -> Self {
         Self {
-            direct_loop_width_deg: direct_width(&direct),
-            loop_width_deg: reverse_width(&reverse),
-            loop_height_deg_s: height(&direct),
+            direct_loop_width_deg: direct_loop_width(&direct),
+            loop_width_deg: reverse_loop_width(&reverse),
+            loop_height_deg_s: loop_height(&direct),
             width_limit_deg: width_limit(length_s),
             direct,
             reverse,
@@ -48,13 +48,13 @@ impl SpiralMetrics {
 
     /// Returns true if the ship is stable on a straight course, which means that there is no loop.
     pub fn is_stable(&self) -> bool {
-        self.loop_width_deg < NO_LOOP_DEG
+        self.loop_width_deg < SMALLEST_LOOP_DEG
     }
 }
 
 /// Smallest width of a loop, deg of rudder: five times the resolution of the rudder at a held rate
 /// (0.02 deg). At half and double of it the verdicts of docs/evidence/manoeuvres.md are the same.
-const NO_LOOP_DEG: f64 = 0.1;
+const SMALLEST_LOOP_DEG: f64 = 0.1;
 
 /// Acceptable width of the loop, deg: none below L/V = 9 s, 12 deg above 45 s, (L/V)/3 - 3 between
 /// (American Bureau of Shipping 2006, Guide for vessel maneuverability, sec. 2; its text was not at
@@ -65,7 +65,7 @@ pub fn width_limit(length_s: f64) -> f64 {
 
 /// Returns the difference of the rudder angles at which the yaw rate changes its sign on the way to
 /// port and back, deg.
-fn direct_width(points: &[SpiralPoint]) -> f64 {
+fn direct_loop_width(points: &[SpiralPoint]) -> f64 {
     // The smallest rudder angle separates the way to port from the way back.
     let least = points.iter().enumerate().min_by(|a, b| a.1.rudder_deg.total_cmp(&b.1.rudder_deg));
     let Some((turned, _)) = least else { return 0.0 };
@@ -79,7 +79,7 @@ fn direct_width(points: &[SpiralPoint]) -> f64 {
 
 /// Returns the range of rudder angles against the turn that hold small yaw rates, from side to
 /// side, deg.
-fn reverse_width(points: &[SpiralPoint]) -> f64 {
+fn reverse_loop_width(points: &[SpiralPoint]) -> f64 {
     // In a loop, rates to port are held by a rudder to starboard of that of rates to starboard.
     let port = points.iter().filter(|point| point.rate_deg_s <= 0.0);
     let starboard = points.iter().filter(|point| point.rate_deg_s >= 0.0);
@@ -90,7 +90,7 @@ fn reverse_width(points: &[SpiralPoint]) -> f64 {
 
 /// Returns the difference of the yaw rates with the rudder amidships on the way to port and back,
 /// deg/s.
-fn height(points: &[SpiralPoint]) -> f64 {
+fn loop_height(points: &[SpiralPoint]) -> f64 {
     let amidships = points.iter().filter(|point| point.rudder_deg.abs() < 0.05);
     let rates: Vec<f64> = amidships.map(|point| point.rate_deg_s).collect();
     // Amidships is passed once on each way; other counts belong to an incomplete spiral.
@@ -119,7 +119,7 @@ mod tests {
         let held: Vec<(f64, f64)> =
             (-200..=200).map(|k| f64::from(k) / 100.0).map(|r| (r * r * r - r, r)).collect();
         let direct = points(&[(1.0, 1.3), (0.0, 1.0), (-1.0, -1.3), (0.0, -1.0), (1.0, 1.3)]);
-        let spiral = SpiralMetrics::of(direct, points(&held), 30.0);
+        let spiral = SpiralMetrics::from_points(direct, points(&held), 30.0);
         assert!((spiral.loop_width_deg - 4.0 / 27_f64.sqrt()).abs() < 1e-3, "{spiral:?}");
         assert_eq!((spiral.direct_loop_width_deg, spiral.loop_height_deg_s), (1.0, 2.0));
         assert_eq!(spiral.width_limit_deg, 7.0);
@@ -129,7 +129,7 @@ mod tests {
     fn a_stable_ship_has_none() {
         let held = points(&[(-3.0, -1.0), (-1.0, -0.5), (0.2, 0.0), (1.0, 0.5), (3.0, 1.0)]);
         let direct = points(&[(1.0, 0.5), (0.0, 0.0), (-1.0, -0.5), (0.0, 0.0), (1.0, 0.5)]);
-        let spiral = SpiralMetrics::of(direct, held, 5.0);
+        let spiral = SpiralMetrics::from_points(direct, held, 5.0);
         assert_eq!((spiral.loop_width_deg, spiral.loop_height_deg_s), (0.0, 0.0));
         assert_eq!((width_limit(5.0), width_limit(60.0)), (0.0, 12.0));
     }

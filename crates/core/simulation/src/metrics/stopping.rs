@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Criterion;
+use super::ImoCriterion;
 use crate::state::{StateVector, Trajectory, at};
 
 /// Largest track reach, ship lengths: MSC.137(76), 5.3.4.
-const TRACK_REACH: f64 = 15.0;
+const TRACK_REACH_LIMIT: f64 = 15.0;
 /// Track reach that an Administration may allow where a ship's displacement makes the limit
 /// impracticable, ship lengths: ibid.
 pub const TRACK_REACH_ALLOWED: f64 = 20.0;
@@ -33,7 +33,7 @@ pub struct StoppingMetrics {
 
 impl StoppingMetrics {
     /// Evaluates a track that starts at the order to reverse; `None` for an empty track.
-    pub fn of(track: &Trajectory, astern_rps: f64, reversal_s: f64) -> Option<Self> {
+    pub fn from_track(track: &Trajectory, astern_rps: f64, reversal_s: f64) -> Option<Self> {
         let first = track.states.first()?;
         let stopped = dead_in_the_water(track);
         let offset = |state: &StateVector| {
@@ -45,7 +45,7 @@ impl StoppingMetrics {
         Some(Self {
             astern_rps,
             reversal_s,
-            track_reach_m: stopped.as_ref().map(|(t_s, state)| sailed(track, *t_s, state)),
+            track_reach_m: stopped.as_ref().map(|(t_s, state)| track_length(track, *t_s, state)),
             head_reach_m: end.map(|state| offset(state).0),
             lateral_deviation_m: end.map(|state| offset(state).1),
             heading_change_deg: end.map(|state| (state[at::PSI] - first[at::PSI]).to_degrees()),
@@ -54,9 +54,9 @@ impl StoppingMetrics {
     }
 
     /// Criterion of stopping ability for a ship of length `lpp_m`, m.
-    pub fn criterion(&self, lpp_m: f64) -> Criterion {
+    pub fn track_reach_criterion(&self, lpp_m: f64) -> ImoCriterion {
         let lengths = self.track_reach_m.map(|metres| metres / lpp_m);
-        Criterion::new("stopping: track reach", lengths, TRACK_REACH, "L")
+        ImoCriterion::new("stopping: track reach", lengths, TRACK_REACH_LIMIT, "L")
     }
 }
 
@@ -72,7 +72,7 @@ fn dead_in_the_water(track: &Trajectory) -> Option<(f64, StateVector)> {
 }
 
 /// Length of the track up to a time and the state at that time, m.
-fn sailed(track: &Trajectory, until_s: f64, end: &StateVector) -> f64 {
+fn track_length(track: &Trajectory, until_s: f64, end: &StateVector) -> f64 {
     let states = track.states.iter().zip(&track.t_s);
     let before: Vec<&StateVector> =
         states.filter(|(_, t_s)| **t_s < until_s).map(|(state, _)| state).chain([end]).collect();
@@ -105,12 +105,12 @@ mod tests {
 
     #[test]
     fn an_even_stop_has_the_reach_of_half_speed_times_time() {
-        let stop = StoppingMetrics::of(&slowing(), -1.0, 0.0).unwrap();
+        let stop = StoppingMetrics::from_track(&slowing(), -1.0, 0.0).unwrap();
         let close = |value: Option<f64>, expected: f64| (value.unwrap() - expected).abs() < 1e-9;
         assert!(close(stop.time_s, 40.0) && close(stop.track_reach_m, 80.0), "{stop:?}");
         assert!(close(stop.head_reach_m, 80.0) && close(stop.lateral_deviation_m, 0.0));
-        assert_eq!(stop.criterion(5.0).pass, Some(false));
-        assert_eq!(stop.criterion(5.4).pass, Some(true));
+        assert_eq!(stop.track_reach_criterion(5.0).pass, Some(false));
+        assert_eq!(stop.track_reach_criterion(5.4).pass, Some(true));
     }
 
     #[test]
@@ -118,7 +118,7 @@ mod tests {
         let mut track = slowing();
         track.states.truncate(30);
         track.t_s.truncate(30);
-        let stop = StoppingMetrics::of(&track, -1.0, 0.0).unwrap();
-        assert_eq!((stop.track_reach_m, stop.criterion(5.0).pass), (None, None));
+        let stop = StoppingMetrics::from_track(&track, -1.0, 0.0).unwrap();
+        assert_eq!((stop.track_reach_m, stop.track_reach_criterion(5.0).pass), (None, None));
     }
 }

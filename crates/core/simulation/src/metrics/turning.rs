@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::state::{StateVector, Trajectory, at, speed};
+use crate::state::{StateVector, Trajectory, at, horizontal_speed};
 
 /// Metrics of a turning circle, measured from the execution of the rudder. Lengths are positive
 /// towards the side of the turn.
@@ -28,25 +28,25 @@ pub struct TurningMetrics {
 
 impl TurningMetrics {
     /// Evaluates a track that starts at the execution of the rudder; `None` for an empty track.
-    pub fn of(track: &Trajectory, rudder_deg: f64) -> Option<Self> {
+    pub fn from_track(track: &Trajectory, rudder_deg: f64) -> Option<Self> {
         let (first, last) = (track.states.first()?, track.last()?);
-        let seen = View::new(first, rudder_deg);
-        let along = |state: &StateVector| seen.along(state);
-        let across = |state: &StateVector| seen.across(state);
+        let seen = TurnFrame::new(first, rudder_deg);
+        let along = |state: &StateVector| seen.distance_along(state);
+        let across = |state: &StateVector| seen.distance_across(state);
         let largest = |of: &dyn Fn(&StateVector) -> f64| {
             track.states.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
         };
         let rate = last[at::R].abs();
         Some(Self {
             rudder_deg,
-            advance_m: seen.at_turn(track, 90.0, &along),
-            transfer_m: seen.at_turn(track, 90.0, &across),
-            tactical_diameter_m: seen.at_turn(track, 180.0, &across),
+            advance_m: seen.value_at_turn(track, 90.0, &along),
+            transfer_m: seen.value_at_turn(track, 90.0, &across),
+            tactical_diameter_m: seen.value_at_turn(track, 180.0, &across),
             // A motion without yaw has no radius.
-            steady_radius_m: (rate > 1e-9).then(|| speed(last) / rate),
+            steady_radius_m: (rate > 1e-9).then(|| horizontal_speed(last) / rate),
             max_advance_m: largest(&along),
             max_transfer_m: largest(&across),
-            speed_loss_m_s: speed(first) - speed(last),
+            speed_loss_m_s: horizontal_speed(first) - horizontal_speed(last),
         })
     }
 }
@@ -65,40 +65,40 @@ pub fn initial_turning_distance(
         let leg = (pair[1][at::X] - pair[0][at::X]).hypot(pair[1][at::Y] - pair[0][at::Y]);
         sailed.push(sailed[sailed.len() - 1] + leg);
     }
-    let (k, w) = View::new(first, rudder_deg).crossing(track, change_deg)?;
+    let (k, w) = TurnFrame::new(first, rudder_deg).heading_crossing(track, change_deg)?;
     Some(sailed[k - 1] + w * (sailed[k] - sailed[k - 1]))
 }
 
 /// Coordinates with the origin and the first heading of the turn.
-struct View {
+struct TurnFrame {
     origin: StateVector,
     side: f64,
 }
 
-impl View {
+impl TurnFrame {
     fn new(origin: &StateVector, rudder_deg: f64) -> Self {
         Self { origin: *origin, side: if rudder_deg < 0.0 { -1.0 } else { 1.0 } }
     }
 
-    fn offset(&self, state: &StateVector) -> (f64, f64) {
+    fn offset_from_origin(&self, state: &StateVector) -> (f64, f64) {
         (state[at::X] - self.origin[at::X], state[at::Y] - self.origin[at::Y])
     }
 
-    fn along(&self, state: &StateVector) -> f64 {
-        let (x, y) = self.offset(state);
+    fn distance_along(&self, state: &StateVector) -> f64 {
+        let (x, y) = self.offset_from_origin(state);
         let (sin, cos) = self.origin[at::PSI].sin_cos();
         x * cos + y * sin
     }
 
-    fn across(&self, state: &StateVector) -> f64 {
-        let (x, y) = self.offset(state);
+    fn distance_across(&self, state: &StateVector) -> f64 {
+        let (x, y) = self.offset_from_origin(state);
         let (sin, cos) = self.origin[at::PSI].sin_cos();
         self.side * (y * cos - x * sin)
     }
 
     /// Returns the sample at which the heading has changed by an angle, and the fraction of the
     /// step before it.
-    fn crossing(&self, track: &Trajectory, change_deg: f64) -> Option<(usize, f64)> {
+    fn heading_crossing(&self, track: &Trajectory, change_deg: f64) -> Option<(usize, f64)> {
         let turned = |state: &StateVector| {
             self.side * (state[at::PSI] - self.origin[at::PSI]) - change_deg.to_radians()
         };
@@ -108,13 +108,13 @@ impl View {
         Some((k, before / (before - after)))
     }
 
-    fn at_turn(
+    fn value_at_turn(
         &self,
         track: &Trajectory,
         change_deg: f64,
         of: &dyn Fn(&StateVector) -> f64,
     ) -> Option<f64> {
-        let (k, w) = self.crossing(track, change_deg)?;
+        let (k, w) = self.heading_crossing(track, change_deg)?;
         let (before, after) = (of(&track.states[k - 1]), of(&track.states[k]));
         Some(before + w * (after - before))
     }

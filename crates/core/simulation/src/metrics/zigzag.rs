@@ -23,7 +23,7 @@ pub struct ZigzagMetrics {
 
 impl ZigzagMetrics {
     /// Evaluates a track that starts at the first execution, with the times of the reversals, s.
-    pub fn of(
+    pub fn from_track(
         track: &Trajectory,
         rudder_deg: f64,
         switch_deg: f64,

@@ -2,20 +2,20 @@
 
 use std::ops::Range;
 
-use super::record::Record;
-use super::replayed::Replay;
-use crate::envelope::Stopped;
-use crate::integrate::Stage;
-use crate::lockstep::Passage;
-use crate::plant::{Inputs, Work};
+use super::record::TrialRecord;
+use super::replayed::TrialReplay;
+use crate::envelope::SimulationStop;
+use crate::integrate::StepStage;
+use crate::lockstep::SimulationTask;
+use crate::plant::{LawInputs, PlantWorkspace};
 use crate::ship::Ship;
 use crate::state::{StateVector, Trajectory, at};
 
 /// Simulation of one part of a trial.
-pub struct Part<'a> {
+pub struct TrialPart<'a> {
     /// Index of the trial among all.
     trial: usize,
-    record: &'a Record<'a>,
+    record: &'a TrialRecord<'a>,
     coefficients: &'a [f64],
     part: Range<usize>,
     /// Longest step, s.
@@ -27,13 +27,13 @@ pub struct Part<'a> {
     steps: usize,
     track: Trajectory,
     samples: Vec<usize>,
-    stopped: Option<Stopped>,
+    stopped: Option<SimulationStop>,
 }
 
-impl<'a> Part<'a> {
+impl<'a> TrialPart<'a> {
     pub fn new(
         trial: usize,
-        record: &'a Record<'a>,
+        record: &'a TrialRecord<'a>,
         coefficients: &'a [f64],
         part: Range<usize>,
         longest_s: f64,
@@ -56,7 +56,7 @@ impl<'a> Part<'a> {
     }
 
     /// Appends the simulated samples to the result of the trial.
-    pub fn join(self, replays: &mut [Replay]) {
+    pub fn append_to_results(self, replays: &mut [TrialReplay]) {
         let replay = &mut replays[self.trial];
         replay.track.append(self.track);
         replay.samples.extend(self.samples);
@@ -67,15 +67,25 @@ impl<'a> Part<'a> {
     }
 
     /// Records the state at a sample; returns the length of the next step, s, or `None` at the end.
-    fn at_sample(&mut self, ship: &Ship, state: &mut StateVector, work: &mut Work) -> Option<f64> {
+    fn record_sample(
+        &mut self,
+        ship: &Ship,
+        state: &mut StateVector,
+        work: &mut PlantWorkspace,
+    ) -> Option<f64> {
         let (k, trial) = (self.sample, self.record.trial);
         // The recorded rudder drives the simulation.
         state[at::DELTA] = self.record.delta[k];
-        if let Err(stopped) = ship.envelope().check(trial.t_s[k], state) {
+        if let Err(stopped) = ship.envelope().check_state(trial.t_s[k], state) {
             self.stopped = Some(stopped);
             return None;
         }
-        let said = ship.says(trial.velocity, state, &self.record.inputs_at(k, 0.0), work);
+        let said = ship.instrument_readings(
+            trial.velocity,
+            state,
+            &self.record.interpolate_inputs(k, 0.0),
+            work,
+        );
         self.track.push(trial.t_s[k], said, self.record.n.map_or(0.0, |n| n[k]));
         self.samples.push(k);
         if k + 1 >= self.part.end {
@@ -92,31 +102,43 @@ impl<'a> Part<'a> {
     }
 }
 
-impl Passage for Part<'_> {
+impl SimulationTask for TrialPart<'_> {
     fn coefficients(&self) -> &[f64] {
         self.coefficients
     }
 
-    fn start(&mut self, ship: &Ship, work: &mut Work) -> StateVector {
+    fn initial_state(&mut self, ship: &Ship, work: &mut PlantWorkspace) -> StateVector {
         let (k, frame) = (self.part.start, self.record.trial.velocity);
-        ship.truth(frame, &self.record.state_at(k), &self.record.inputs_at(k, 0.0), work)
+        ship.true_state(
+            frame,
+            &self.record.recorded_state(k),
+            &self.record.interpolate_inputs(k, 0.0),
+            work,
+        )
     }
 
-    fn arrive(&mut self, ship: &Ship, state: &mut StateVector, work: &mut Work) -> Option<f64> {
+    fn next_step(
+        &mut self,
+        ship: &Ship,
+        state: &mut StateVector,
+        work: &mut PlantWorkspace,
+    ) -> Option<f64> {
         if self.steps == 0 {
-            return self.at_sample(ship, state, work);
+            return self.record_sample(ship, state, work);
         }
         self.taken += 1;
         if self.taken < self.steps {
             return Some(self.interval_s() / self.steps as f64);
         }
         self.sample += 1;
-        self.at_sample(ship, state, work)
+        self.record_sample(ship, state, work)
     }
 
-    fn inputs(&self, _: &Ship, stage: Stage, _: f64) -> Inputs {
-        self.record
-            .inputs_at(self.sample, (self.taken as f64 + stage.fraction()) / self.steps as f64)
+    fn stage_inputs(&self, _: &Ship, stage: StepStage, _: f64) -> LawInputs {
+        self.record.interpolate_inputs(
+            self.sample,
+            (self.taken as f64 + stage.fraction()) / self.steps as f64,
+        )
     }
 
     fn rudder_rate(&self, _: &Ship, _: f64) -> f64 {

@@ -2,9 +2,9 @@
 
 use sistership_model::trial::Trial;
 
-use super::record::{MissingChannel, Record};
-use crate::branch::Instant;
-use crate::plant::Work;
+use super::record::{MissingChannel, TrialRecord};
+use crate::branch::CorrectionInstant;
+use crate::plant::PlantWorkspace;
 use crate::ship::Ship;
 
 /// Returns the inputs of a learned correction at each sample of a trial, with the ship's own rates
@@ -12,14 +12,18 @@ use crate::ship::Ship;
 ///
 /// # Errors
 /// The errors of [`replay`](super::replay).
-pub fn instants_along(ship: &Ship, trial: &Trial) -> Result<Vec<Instant>, MissingChannel> {
-    let record = Record::new(ship, trial)?;
-    let mut work = Work::default();
+pub fn instants_along(
+    ship: &Ship,
+    trial: &Trial,
+) -> Result<Vec<CorrectionInstant>, MissingChannel> {
+    let record = TrialRecord::new(ship, trial)?;
+    let mut work = PlantWorkspace::default();
     let mut at_sample = |sample: usize| {
-        let (said, inputs) = (record.state_at(sample), record.inputs_at(sample, 0.0));
-        let state = ship.truth(trial.velocity, &said, &inputs, &mut work);
+        let (said, inputs) =
+            (record.recorded_state(sample), record.interpolate_inputs(sample, 0.0));
+        let state = ship.true_state(trial.velocity, &said, &inputs, &mut work);
         let rate = ship.rate_with(&state, &inputs, &mut work);
-        ship.instant(&state, &|slot| inputs[slot], &rate)
+        ship.correction_inputs(&state, &|slot| inputs[slot], &rate)
     };
     Ok((0..trial.len()).map(&mut at_sample).collect())
 }

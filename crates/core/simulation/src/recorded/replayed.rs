@@ -2,27 +2,27 @@
 
 use sistership_model::validity::Excursion;
 
-use crate::envelope::Stopped;
+use crate::envelope::SimulationStop;
 use crate::state::Trajectory;
 
 /// Simulated trial.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Replay {
+pub struct TrialReplay {
     /// Simulated readings of the instruments at the recorded times; after a divergence, until then
     /// only.
     pub track: Trajectory,
     /// Sample of the trial for each state.
     pub samples: Vec<usize>,
     /// Reason of an early stop, if any.
-    pub stopped: Option<Stopped>,
+    pub stopped: Option<SimulationStop>,
     /// True if roll was simulated.
     pub has_roll: bool,
     /// Excursion from the range covered by the model's trials, if any.
     pub outside: Option<Excursion>,
 }
 
-impl Replay {
-    pub(crate) fn nothing(has_roll: bool) -> Self {
+impl TrialReplay {
+    pub(crate) fn without_samples(has_roll: bool) -> Self {
         Self {
             track: Trajectory::default(),
             samples: Vec::new(),

@@ -2,10 +2,10 @@
 
 use sistership_model::trial::Trial;
 
-use super::record::{MissingChannel, Record};
-use crate::plant::Work;
+use super::record::{MissingChannel, TrialRecord};
+use crate::plant::PlantWorkspace;
 use crate::ship::Ship;
-use crate::state::RECORDED;
+use crate::state::RECORDED_CHANNELS;
 
 /// Returns a trial with the known errors of a ship's instruments removed. The rates of change,
 /// which an instrument with a delay needs, are those of the ship at the recorded state, so that
@@ -13,17 +13,17 @@ use crate::state::RECORDED;
 ///
 /// # Errors
 /// The errors of [`replay`](super::replay).
-pub fn as_true_instruments_say(ship: &Ship, trial: &Trial) -> Result<Trial, MissingChannel> {
-    let record = Record::new(ship, trial)?;
-    let (mut truth, mut work) = (trial.clone(), Work::default());
+pub fn correct_instrument_errors(ship: &Ship, trial: &Trial) -> Result<Trial, MissingChannel> {
+    let record = TrialRecord::new(ship, trial)?;
+    let (mut truth, mut work) = (trial.clone(), PlantWorkspace::default());
     for sample in 0..trial.len() {
-        let state = ship.truth(
+        let state = ship.true_state(
             trial.velocity,
-            &record.state_at(sample),
-            &record.inputs_at(sample, 0.0),
+            &record.recorded_state(sample),
+            &record.interpolate_inputs(sample, 0.0),
             &mut work,
         );
-        for (channel, place) in RECORDED {
+        for (channel, place) in RECORDED_CHANNELS {
             if let Some(column) = truth.channels.get_mut(&channel) {
                 column[sample] = state[place];
             }

@@ -8,18 +8,19 @@ use sistership_model::coefficient::Axis;
 use sistership_model::law::Law;
 
 use crate::equations::{
-    Attitude, Coefficients, EquationsOfMotion, Lowering, PlantError, constant_mobility, mobility,
+    AxesAttitude, CoefficientBinding, EquationLowering, EquationsOfMotion, PlantError,
+    constant_mobility, solve_mobility,
 };
 use crate::plant::check_inputs;
-use crate::tape::{Lanes, Tape};
+use crate::tape::{LaneValues, Tape};
 
 /// Names of the moving states by their places in the state vector.
-const NAMES: [&str; 8] = ["u", "v", "r", "p", "phi", "psi", "x", "y"];
+const STATE_NAMES: [&str; 8] = ["u", "v", "r", "p", "phi", "psi", "x", "y"];
 
 /// Value on the tape and its derivatives with respect to the states, in order; absent derivatives
 /// are zero.
 #[derive(Debug, Clone)]
-pub(super) struct Sloped {
+pub(super) struct WithGradient {
     pub value: usize,
     pub slopes: Vec<(usize, usize)>,
 }
@@ -30,9 +31,9 @@ pub struct SensitiveSystem {
     pub(super) tape: Tape,
     pub(super) states: &'static [usize],
     pub(super) axes: Vec<Axis>,
-    pub(super) forces: Vec<Sloped>,
-    pub(super) additions: Vec<Option<Sloped>>,
-    pub(super) kinematics: Vec<Sloped>,
+    pub(super) forces: Vec<WithGradient>,
+    pub(super) additions: Vec<Option<WithGradient>>,
+    pub(super) kinematics: Vec<WithGradient>,
     /// Outputs of the mass matrix entries over the axes, row by row.
     mass: Vec<Option<usize>>,
     /// Accelerations per unit force on each axis, where masses do not change.
@@ -54,9 +55,12 @@ impl SensitiveSystem {
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
         let equations = EquationsOfMotion::new(model, law)?;
         check_inputs(equations.law())?;
-        equations.without_lags_or_instruments("sensitivities")?;
-        Builder { equations: &equations, lowering: Lowering::new(&equations, &equations.names()) }
-            .build()
+        equations.reject_lags_and_instruments("sensitivities")?;
+        SensitivityBuilder {
+            equations: &equations,
+            lowering: EquationLowering::new(&equations, &equations.tape_input_names()),
+        }
+        .build_system()
     }
 
     /// Names of the coefficients, in the order of the columns of the sensitivities.
@@ -65,7 +69,7 @@ impl SensitiveSystem {
     }
 
     /// Places in the state vector of the rows of the sensitivities.
-    pub fn states(&self) -> &'static [usize] {
+    pub fn state_places(&self) -> &'static [usize] {
         self.states
     }
 
@@ -76,7 +80,11 @@ impl SensitiveSystem {
 
     /// Computes the accelerations per unit force on each axis, row by row over the axes, from an
     /// evaluated tape.
-    pub(super) fn mobility<const L: usize>(&self, work: &[Lanes<L>], out: &mut [Lanes<L>]) {
+    pub(super) fn evaluate_mobility<const L: usize>(
+        &self,
+        work: &[LaneValues<L>],
+        out: &mut [LaneValues<L>],
+    ) {
         if let Some(constant) = &self.constant {
             out.iter_mut().zip(constant).for_each(|(out, value)| *out = [*value; L]);
             return;
@@ -84,39 +92,41 @@ impl SensitiveSystem {
         let n = self.axes.len();
         for lane in 0..L {
             let entry = |output: Option<usize>| {
-                output.map_or(0.0, |output| self.tape.read(output, work)[lane])
+                output.map_or(0.0, |output| self.tape.output_lanes(output, work)[lane])
             };
-            let solved = mobility(n, |i, j| entry(self.mass[i * n + j]));
+            let solved = solve_mobility(n, |i, j| entry(self.mass[i * n + j]));
             out.iter_mut().enumerate().for_each(|(k, out)| out[lane] = solved[(k / n, k % n)]);
         }
     }
 }
 
-struct Builder<'e> {
+struct SensitivityBuilder<'e> {
     equations: &'e EquationsOfMotion<'e>,
-    lowering: Lowering<'e>,
+    lowering: EquationLowering<'e>,
 }
 
 /// Coefficients and the outputs of their regressors.
-struct Regressors {
+struct RegressorOutputs {
     names: Vec<String>,
     /// Range of the coefficients of each axis.
     of_axis: Vec<Range<usize>>,
     outputs: Vec<usize>,
 }
 
-impl Builder<'_> {
-    fn build(mut self) -> Result<SensitiveSystem, PlantError> {
+impl SensitivityBuilder<'_> {
+    fn build_system(mut self) -> Result<SensitiveSystem, PlantError> {
         let (equations, axes, states) =
-            (self.equations, self.equations.axes(), self.equations.states());
-        let forces = axes.iter().map(|&axis| self.force(axis)).collect::<Result<_, _>>()?;
-        let additions = axes.iter().map(|&axis| self.addition(axis)).collect::<Result<_, _>>()?;
+            (self.equations, self.equations.axes(), self.equations.state_places());
+        let forces =
+            axes.iter().map(|&axis| self.add_axis_force(axis)).collect::<Result<_, _>>()?;
+        let additions =
+            axes.iter().map(|&axis| self.add_axis_acceleration(axis)).collect::<Result<_, _>>()?;
         let kinematics = states[axes.len()..]
             .iter()
-            .map(|&state| self.kinematic(state))
+            .map(|&state| self.add_kinematic_rate(state))
             .collect::<Result<_, _>>()?;
-        let mass = self.mass()?;
-        let Regressors { names, of_axis, outputs: regressors } = self.regressors()?;
+        let mass = self.add_constant_mass()?;
+        let RegressorOutputs { names, of_axis, outputs: regressors } = self.add_regressors()?;
         // All outputs must be on the tape before it is finished.
         let tape = self.lowering.finish();
         let constant = constant_mobility(equations, &tape, &mass)?;
@@ -138,40 +148,40 @@ impl Builder<'_> {
         })
     }
 
-    fn sloped(&mut self, expr: &Expr) -> Result<Sloped, PlantError> {
-        let value = self.lowering.output(expr)?;
+    fn add_with_gradient(&mut self, expr: &Expr) -> Result<WithGradient, PlantError> {
+        let value = self.lowering.add_output(expr)?;
         let by = |(row, &place): (usize, &usize)| {
-            Some((row, self.lowering.derivative(value, NAMES[place])?))
+            Some((row, self.lowering.add_derivative(value, STATE_NAMES[place])?))
         };
-        let slopes = self.equations.states().iter().enumerate().filter_map(by).collect();
-        Ok(Sloped { value, slopes })
+        let slopes = self.equations.state_places().iter().enumerate().filter_map(by).collect();
+        Ok(WithGradient { value, slopes })
     }
 
-    fn force(&mut self, axis: Axis) -> Result<Sloped, PlantError> {
-        let expr = self.equations.force(axis, Coefficients::Values)?;
-        self.sloped(&expr)
+    fn add_axis_force(&mut self, axis: Axis) -> Result<WithGradient, PlantError> {
+        let expr = self.equations.axis_force(axis, CoefficientBinding::Values)?;
+        self.add_with_gradient(&expr)
     }
 
-    fn addition(&mut self, axis: Axis) -> Result<Option<Sloped>, PlantError> {
-        self.equations.addition(axis).map(|sum| self.sloped(&sum)).transpose()
+    fn add_axis_acceleration(&mut self, axis: Axis) -> Result<Option<WithGradient>, PlantError> {
+        self.equations.added_acceleration(axis).map(|sum| self.add_with_gradient(&sum)).transpose()
     }
 
-    fn kinematic(&mut self, state: usize) -> Result<Sloped, PlantError> {
-        let expr = self.equations.kinematic(state, Attitude::Upright)?;
-        self.sloped(&expr)
+    fn add_kinematic_rate(&mut self, state: usize) -> Result<WithGradient, PlantError> {
+        let expr = self.equations.kinematic_rate(state, AxesAttitude::Upright)?;
+        self.add_with_gradient(&expr)
     }
 
     /// Adds the mass matrix row by row; it must not change with the motion.
-    fn mass(&mut self) -> Result<Vec<Option<usize>>, PlantError> {
-        let (axes, states) = (self.equations.axes(), self.equations.states());
+    fn add_constant_mass(&mut self) -> Result<Vec<Option<usize>>, PlantError> {
+        let (axes, states) = (self.equations.axes(), self.equations.state_places());
         let mut all = Vec::new();
         for (&row, &column) in
             axes.iter().flat_map(|row| axes.iter().map(move |column| (row, column)))
         {
-            let output = self.lowering.mass(row, column)?;
+            let output = self.lowering.add_mass_entry(row, column)?;
             // The gains of a step assume masses whose derivatives are zero.
             if output.is_some_and(|o| {
-                states.iter().any(|&s| self.lowering.derivative(o, NAMES[s]).is_some())
+                states.iter().any(|&s| self.lowering.add_derivative(o, STATE_NAMES[s]).is_some())
             }) {
                 return Err(PlantError::MovingMass(self.equations.law().name.clone()));
             }
@@ -180,13 +190,15 @@ impl Builder<'_> {
         Ok(all)
     }
 
-    fn regressors(&mut self) -> Result<Regressors, PlantError> {
-        let mut all = Regressors { names: Vec::new(), of_axis: Vec::new(), outputs: Vec::new() };
+    fn add_regressors(&mut self) -> Result<RegressorOutputs, PlantError> {
+        let mut all =
+            RegressorOutputs { names: Vec::new(), of_axis: Vec::new(), outputs: Vec::new() };
         for &axis in self.equations.axes() {
             // The coefficients of an axis form one range of columns.
             let start = all.names.len();
-            for name in self.equations.coefficients(axis) {
-                all.outputs.push(self.lowering.output(&self.equations.regressor(name)?)?);
+            for name in self.equations.axis_coefficients(axis) {
+                all.outputs
+                    .push(self.lowering.add_output(&self.equations.scaled_regressor(name)?)?);
                 all.names.push(name.clone());
             }
             all.of_axis.push(start..all.names.len());

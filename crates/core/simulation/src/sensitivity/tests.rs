@@ -1,17 +1,17 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::integrate::Method;
-use crate::plant::{MAX_INPUTS, Plant, Work};
-use crate::state::{StateVector, straight};
-use crate::tape::Lanes;
+use crate::plant::{MAX_INPUTS, Plant, PlantWorkspace};
+use crate::state::{StateVector, straight_state};
+use crate::tape::LaneValues;
 use sistership_model::{Law, Model, Zoo};
 
 const STEP_S: f64 = 0.5;
 const STEPS: usize = 120;
 
 fn ready(name: &str) -> (Model, Law) {
-    let zoo = Zoo::embedded().unwrap();
-    let model = zoo.model(name).unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = zoo.find_model(name).unwrap();
     let law = zoo.law(&model.law).unwrap();
     (model, (**law).clone())
 }
@@ -29,14 +29,14 @@ fn inputs(names: &[String], law: &Law, model: &Model, t_s: f64) -> Vec<f64> {
 
 fn plain(model: &Model, law: &Law, start: &StateVector, method: Method) -> StateVector {
     let plant = Plant::new(model, law).unwrap();
-    let mut work = Work::default();
+    let mut work = PlantWorkspace::default();
     let mut state = *start;
     for k in 0..STEPS {
-        state = method.step(&state, STEP_S, |fraction, s| {
+        state = method.advance_state(&state, STEP_S, |fraction, s| {
             let mut given = [0.0; MAX_INPUTS];
             let now = inputs(plant.input_names(), law, model, STEP_S * (k as f64 + fraction));
             given[..now.len()].copy_from_slice(&now);
-            plant.rate(s, &given, &mut work)
+            plant.state_rate(s, &given, &mut work)
         });
     }
     state
@@ -52,21 +52,21 @@ fn sensitive<'a>(
     let mut run = SensitiveRun::<2>::new(system);
     starts.iter().enumerate().for_each(|(lane, start)| run.start(lane, start));
     for k in 0..STEPS {
-        let at = |fraction: f64| -> Vec<Lanes<2>> {
+        let at = |fraction: f64| -> Vec<LaneValues<2>> {
             let t_s = STEP_S * (k as f64 + fraction);
             inputs(system.input_names(), law, model, t_s)
                 .into_iter()
                 .map(|value| [value; 2])
                 .collect()
         };
-        run.step(method, STEP_S, [&at(0.0), &at(0.5), &at(1.0)]);
+        run.advance_step(method, STEP_S, [&at(0.0), &at(0.5), &at(1.0)]);
     }
     run
 }
 
 fn starts(speed: f64) -> [StateVector; 2] {
     // Not quite straight: a law may have a kink there.
-    let (mut first, mut other) = (straight(speed), straight(0.8 * speed));
+    let (mut first, mut other) = (straight_state(speed), straight_state(0.8 * speed));
     first[1] = -0.01 * speed;
     (other[1], other[2], other[5]) = (0.02 * speed, 0.002, 0.4);
     [first, other]
@@ -88,7 +88,7 @@ fn check(name: &str, method: Method, within: f64) {
     let run = sensitive(&system, &model, &law, &starts, method);
     for (lane, start) in starts.iter().enumerate() {
         let end = plain(&model, &law, start, method);
-        for &place in system.states() {
+        for &place in system.state_places() {
             assert!(
                 (run.state(lane)[place] - end[place]).abs() < 1e-9 * (1.0 + end[place].abs()),
                 "{name} state {place}"
@@ -102,8 +102,8 @@ fn check(name: &str, method: Method, within: f64) {
             };
             let by = 1e-4 * model.coefficient(coefficient).abs().max(1e-2);
             let slope = difference(at, by);
-            for (row, &place) in system.states().iter().enumerate() {
-                let exact = run.sensitivity(lane, row)[column];
+            for (row, &place) in system.state_places().iter().enumerate() {
+                let exact = run.state_sensitivities(lane, row)[column];
                 assert!(
                     close(exact, slope[place], 1e-3 * slope.norm(), within),
                     "{name} {coefficient} {place}: {exact} {}",
@@ -111,15 +111,15 @@ fn check(name: &str, method: Method, within: f64) {
                 );
             }
         }
-        for (column, &from) in system.states().iter().enumerate() {
+        for (column, &from) in system.state_places().iter().enumerate() {
             let at = |by: f64| {
                 let mut moved = *start;
                 moved[from] += by;
                 plain(&model, &law, &moved, method)
             };
             let slope = difference(at, 1e-5);
-            for (row, &place) in system.states().iter().enumerate() {
-                let exact = run.sensitivity(lane, row)[system.names().len() + column];
+            for (row, &place) in system.state_places().iter().enumerate() {
+                let exact = run.state_sensitivities(lane, row)[system.names().len() + column];
                 assert!(
                     close(exact, slope[place], 1e-3 * slope.norm(), within),
                     "{name} start {from} {place}: {exact} {}",

@@ -2,64 +2,68 @@
 
 use sistership_formula::Function;
 
-use super::{Instruction, Lanes, Op, Slot, Slots, Tape};
-use crate::wide::{Wide, widest};
+use super::{LaneValues, ResultSlot, Tape, TapeInstruction, TapeOp, TapeResults};
+use crate::wide::{SimdKernel, dispatch_simd};
 
 impl Tape {
     /// Evaluates every operation; `work` is reused from call to call and holds the results.
     /// `inputs[i]` are the lanes of input `i`.
-    pub fn run<const N: usize>(&self, inputs: &[Lanes<N>], work: &mut Slots<N>) {
-        work.resize(self.len());
-        widest(Evaluation { tape: self, inputs, work });
+    pub fn evaluate<const N: usize>(&self, inputs: &[LaneValues<N>], work: &mut TapeResults<N>) {
+        work.resize_to(self.len());
+        dispatch_simd(TapeEvaluation { tape: self, inputs, work });
     }
 
     /// Evaluates some of the operations, in the given order; the others keep the results that
     /// `work` holds after a [`Tape::run`].
-    pub fn run_among<const N: usize>(
+    pub fn evaluate_among<const N: usize>(
         &self,
-        among: &[Slot],
-        inputs: &[Lanes<N>],
-        work: &mut Slots<N>,
+        among: &[ResultSlot],
+        inputs: &[LaneValues<N>],
+        work: &mut TapeResults<N>,
     ) {
-        widest(PartialEvaluation { tape: self, among, inputs, work });
+        dispatch_simd(PartialEvaluation { tape: self, among, inputs, work });
     }
 
     /// Returns an output after [`Tape::run`].
-    pub fn read<const N: usize>(&self, output: usize, work: &[Lanes<N>]) -> Lanes<N> {
+    pub fn output_lanes<const N: usize>(
+        &self,
+        output: usize,
+        work: &[LaneValues<N>],
+    ) -> LaneValues<N> {
         work[self.outputs[output] as usize]
     }
 
     /// Returns a reference to an output after [`Tape::run`].
     #[inline(always)]
-    pub(crate) fn at<'w, const N: usize>(
+    pub(crate) fn output_ref<'w, const N: usize>(
         &self,
         output: usize,
-        work: &'w [Lanes<N>],
-    ) -> &'w Lanes<N> {
+        work: &'w [LaneValues<N>],
+    ) -> &'w LaneValues<N> {
         &work[self.outputs[output] as usize]
     }
 
     /// Evaluates every output at one point; allocates, so that it is not for inner loops.
-    pub fn values(&self, inputs: &[f64]) -> Vec<f64> {
-        let inputs: Vec<Lanes<1>> = inputs.iter().map(|&value| [value]).collect();
-        let mut work = Slots::default();
-        self.run(&inputs, &mut work);
-        (0..self.outputs.len()).map(|output| self.read(output, &work)[0]).collect()
+    pub fn evaluate_point(&self, inputs: &[f64]) -> Vec<f64> {
+        let inputs: Vec<LaneValues<1>> = inputs.iter().map(|&value| [value]).collect();
+        let mut work = TapeResults::default();
+        self.evaluate(&inputs, &mut work);
+        (0..self.outputs.len()).map(|output| self.output_lanes(output, &work)[0]).collect()
     }
 }
 
 /// Evaluation of every instruction in order; `work` has one element for each instruction.
-struct Evaluation<'a, const N: usize> {
+struct TapeEvaluation<'a, const N: usize> {
     tape: &'a Tape,
-    inputs: &'a [Lanes<N>],
-    work: &'a mut [Lanes<N>],
+    inputs: &'a [LaneValues<N>],
+    work: &'a mut [LaneValues<N>],
 }
 
-impl<const N: usize> Wide for Evaluation<'_, N> {
+impl<const N: usize> SimdKernel for TapeEvaluation<'_, N> {
     #[inline(always)]
-    fn go(self) {
+    fn run(self) {
         for (index, instruction) in self.tape.instructions.iter().enumerate() {
-            self.work[index] = self.tape.result(instruction, self.inputs, self.work);
+            self.work[index] = self.tape.instruction_result(instruction, self.inputs, self.work);
         }
     }
 }
@@ -67,53 +71,58 @@ impl<const N: usize> Wide for Evaluation<'_, N> {
 /// Evaluation of some instructions in order.
 struct PartialEvaluation<'a, const N: usize> {
     tape: &'a Tape,
-    among: &'a [Slot],
-    inputs: &'a [Lanes<N>],
-    work: &'a mut [Lanes<N>],
+    among: &'a [ResultSlot],
+    inputs: &'a [LaneValues<N>],
+    work: &'a mut [LaneValues<N>],
 }
 
-impl<const N: usize> Wide for PartialEvaluation<'_, N> {
+impl<const N: usize> SimdKernel for PartialEvaluation<'_, N> {
     #[inline(always)]
-    fn go(self) {
+    fn run(self) {
         for &slot in self.among {
             let instruction = &self.tape.instructions[slot as usize];
-            self.work[slot as usize] = self.tape.result(instruction, self.inputs, self.work);
+            self.work[slot as usize] =
+                self.tape.instruction_result(instruction, self.inputs, self.work);
         }
     }
 }
 
 impl Tape {
     #[inline(always)]
-    fn result<const N: usize>(
+    fn instruction_result<const N: usize>(
         &self,
-        instruction: &Instruction,
-        inputs: &[Lanes<N>],
-        work: &[Lanes<N>],
-    ) -> Lanes<N> {
+        instruction: &TapeInstruction,
+        inputs: &[LaneValues<N>],
+        work: &[LaneValues<N>],
+    ) -> LaneValues<N> {
         match instruction {
-            Instruction::Op(op) => step(op, inputs, work),
-            &Instruction::Products { first, from, to } => {
-                products(first, &self.terms[from as usize..to as usize], work)
+            TapeInstruction::Op(op) => evaluate_op(op, inputs, work),
+            &TapeInstruction::Products { first, from, to } => {
+                sum_products(first, &self.terms[from as usize..to as usize], work)
             }
         }
     }
 }
 
 #[inline(always)]
-fn step<const N: usize>(op: &Op, inputs: &[Lanes<N>], work: &[Lanes<N>]) -> Lanes<N> {
+fn evaluate_op<const N: usize>(
+    op: &TapeOp,
+    inputs: &[LaneValues<N>],
+    work: &[LaneValues<N>],
+) -> LaneValues<N> {
     let at = |slot: u32| &work[slot as usize];
     match *op {
-        Op::Constant(value) => [value; N],
-        Op::Input(index) => inputs[index as usize],
-        Op::Negate(a) => each(at(a), |x| -x),
-        Op::Add(a, b) => zip(at(a), at(b), |x, y| x + y),
-        Op::Subtract(a, b) => zip(at(a), at(b), |x, y| x - y),
-        Op::Multiply(a, b) => zip(at(a), at(b), |x, y| x * y),
-        Op::Divide(a, b) => zip(at(a), at(b), |x, y| x / y),
-        Op::Power(a, b) => zip(at(a), at(b), f64::powf),
-        Op::Call1(function, a) => call(function, at(a)),
-        Op::Call2(function, a, b) => zip(at(a), at(b), |x, y| function.apply(x, y)),
-        Op::Select(comparison, a, b, c, d) => {
+        TapeOp::Constant(value) => [value; N],
+        TapeOp::Input(index) => inputs[index as usize],
+        TapeOp::Negate(a) => map_lanes(at(a), |x| -x),
+        TapeOp::Add(a, b) => zip_lanes(at(a), at(b), |x, y| x + y),
+        TapeOp::Subtract(a, b) => zip_lanes(at(a), at(b), |x, y| x - y),
+        TapeOp::Multiply(a, b) => zip_lanes(at(a), at(b), |x, y| x * y),
+        TapeOp::Divide(a, b) => zip_lanes(at(a), at(b), |x, y| x / y),
+        TapeOp::Power(a, b) => zip_lanes(at(a), at(b), f64::powf),
+        TapeOp::Call1(function, a) => call_function(function, at(a)),
+        TapeOp::Call2(function, a, b) => zip_lanes(at(a), at(b), |x, y| function.apply(x, y)),
+        TapeOp::Select(comparison, a, b, c, d) => {
             // Both alternatives are evaluated for all lanes; the comparison selects lane by lane.
             let (mut out, other) = (*at(c), at(d));
             for k in 0..N {
@@ -127,7 +136,11 @@ fn step<const N: usize>(op: &Op, inputs: &[Lanes<N>], work: &[Lanes<N>]) -> Lane
 }
 
 #[inline(always)]
-fn products<const N: usize>(first: Slot, terms: &[[Slot; 2]], work: &[Lanes<N>]) -> Lanes<N> {
+fn sum_products<const N: usize>(
+    first: ResultSlot,
+    terms: &[[ResultSlot; 2]],
+    work: &[LaneValues<N>],
+) -> LaneValues<N> {
     let mut sum = work[first as usize];
     for &[a, b] in terms {
         let (a, b) = (&work[a as usize], &work[b as usize]);
@@ -140,11 +153,11 @@ fn products<const N: usize>(first: Slot, terms: &[[Slot; 2]], work: &[Lanes<N>])
 }
 
 #[inline(always)]
-pub(super) fn zip<const N: usize>(
-    a: &Lanes<N>,
-    b: &Lanes<N>,
+pub(super) fn zip_lanes<const N: usize>(
+    a: &LaneValues<N>,
+    b: &LaneValues<N>,
     f: impl Fn(f64, f64) -> f64,
-) -> Lanes<N> {
+) -> LaneValues<N> {
     let mut out = [0.0; N];
     for k in 0..N {
         out[k] = f(a[k], b[k]);
@@ -155,7 +168,10 @@ pub(super) fn zip<const N: usize>(
 /// Applies a function to each lane. A loop, since `map` on arrays is not always inlined, and a call
 /// for each lane costs more than the function.
 #[inline(always)]
-pub(super) fn each<const N: usize>(a: &Lanes<N>, f: impl Fn(f64) -> f64) -> Lanes<N> {
+pub(super) fn map_lanes<const N: usize>(
+    a: &LaneValues<N>,
+    f: impl Fn(f64) -> f64,
+) -> LaneValues<N> {
     let mut out = [0.0; N];
     for k in 0..N {
         out[k] = f(a[k]);
@@ -166,12 +182,12 @@ pub(super) fn each<const N: usize>(a: &Lanes<N>, f: impl Fn(f64) -> f64) -> Lane
 /// Applies a function of one argument. The cheap functions are written out, so that their loops
 /// over the lanes become vector instructions.
 #[inline(always)]
-fn call<const N: usize>(function: Function, a: &Lanes<N>) -> Lanes<N> {
+fn call_function<const N: usize>(function: Function, a: &LaneValues<N>) -> LaneValues<N> {
     match function {
-        Function::Sqrt => each(a, f64::sqrt),
-        Function::Abs => each(a, f64::abs),
+        Function::Sqrt => map_lanes(a, f64::sqrt),
+        Function::Abs => map_lanes(a, f64::abs),
         // Functions without a vector form are evaluated lane by lane.
-        _ => each(a, |x| function.apply(x, 0.0)),
+        _ => map_lanes(a, |x| function.apply(x, 0.0)),
     }
 }
 
@@ -179,38 +195,38 @@ fn call<const N: usize>(function: Function, a: &Lanes<N>) -> Lanes<N> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::TapeBuilder;
-    use super::super::testing::tape;
+    use super::super::testing::parse_tape;
     use super::*;
     use sistership_formula::parse;
 
     #[test]
     fn shared_subexpressions_and_constants_cost_one_operation() {
-        assert_eq!(tape("u*v + v*u + 2*3").len(), 6);
-        assert_eq!(tape("0*u + 4").constant_output(0), Some(4.0));
+        assert_eq!(parse_tape("u*v + v*u + 2*3").len(), 6);
+        assert_eq!(parse_tape("0*u + 4").constant_output(0), Some(4.0));
     }
 
     #[test]
     fn blocks_agree_with_single_states() {
-        let tape = tape("if(u > v, sqrt(u^2 + v^2), atan2(v, u))*exp(-v)");
+        let tape = parse_tape("if(u > v, sqrt(u^2 + v^2), atan2(v, u))*exp(-v)");
         let (u, v) = ([1.0, 2.0, -1.0, 0.5], [0.3, 2.5, 0.4, 0.1]);
-        let mut work = Slots::default();
-        tape.run(&[u, v], &mut work);
+        let mut work = TapeResults::default();
+        tape.evaluate(&[u, v], &mut work);
         for k in 0..4 {
-            assert_eq!(tape.read(0, &work)[k], tape.values(&[u[k], v[k]])[0]);
+            assert_eq!(tape.output_lanes(0, &work)[k], tape.evaluate_point(&[u[k], v[k]])[0]);
         }
     }
 
     #[test]
     fn wide_instructions_round_as_plain_ones() {
-        let tape = tape(
+        let tape = parse_tape(
             "if(u > v, sqrt(u^2 + v^2), atan2(v, u))*exp(-v)/(u*v + 3) - abs(u)^2.5 + \
              tanh(u)*max(u, v)",
         );
         let lane = |from: f64| std::array::from_fn::<f64, 8, _>(|k| from + 0.37 * k as f64);
         let inputs = [lane(-1.1), lane(-0.8)];
-        let (mut wide, mut plain) = (Slots::default(), vec![[0.0; 8]; tape.len()]);
-        tape.run(&inputs, &mut wide);
-        Evaluation { tape: &tape, inputs: &inputs, work: &mut plain }.go();
+        let (mut wide, mut plain) = (TapeResults::default(), vec![[0.0; 8]; tape.len()]);
+        tape.evaluate(&inputs, &mut wide);
+        TapeEvaluation { tape: &tape, inputs: &inputs, work: &mut plain }.run();
         assert_eq!(*wide, plain);
     }
 
@@ -218,16 +234,16 @@ mod tests {
     fn a_condition_switches_by_lane_and_has_no_derivative() {
         let mut builder = TapeBuilder::new(&["u", "v"], |_| None);
         builder
-            .output(
+            .add_output(
                 &sistership_formula::parse_condition("u*v < 1")
                     .unwrap()
                     .times(parse("u^2").unwrap()),
             )
             .unwrap();
         let tape = builder.finish();
-        let mut work = Slots::default();
-        tape.run(&[[0.5, 2.0, -3.0], [1.0, 1.0, 1.0]], &mut work);
-        assert_eq!(tape.read(0, &work), [0.25, 0.0, 9.0]);
+        let mut work = TapeResults::default();
+        tape.evaluate(&[[0.5, 2.0, -3.0], [1.0, 1.0, 1.0]], &mut work);
+        assert_eq!(tape.output_lanes(0, &work), [0.25, 0.0, 9.0]);
         assert_eq!(tape.jacobian(&[0.5, 1.0])[0], [1.0, 0.0]);
         assert_eq!(tape.jacobian(&[2.0, 1.0])[0], [0.0, 0.0]);
     }

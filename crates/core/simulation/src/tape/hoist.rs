@@ -1,41 +1,45 @@
 //! Separation of the operations of a listing that depend on some inputs alone: the sine of a
 //! recorded rudder is the same for every model.
 
-use super::listing::Listing;
-use super::{Op, Slot};
+use super::listing::OperationList;
+use super::{ResultSlot, TapeOp};
 
-impl Listing {
+impl OperationList {
     /// Splits off the operations that call functions or divide and that depend on no input before
     /// `from`: the first listing calculates them from all inputs; the second has the outputs of
     /// this listing and takes the results of the first after its inputs.
-    pub fn hoisted(mut self, from: usize) -> (Self, Self) {
-        let ahead = self.ahead(from);
-        let front = Self { outputs: ahead.clone(), ..self.clone() }.needed();
+    pub fn split_hoisted(mut self, from: usize) -> (Self, Self) {
+        let ahead = self.hoisted_slots(from);
+        let front = Self { outputs: ahead.clone(), ..self.clone() }.without_unused();
         let given = self.inputs.len();
         // A hoisted operation becomes an input that takes the value calculated in advance.
         for (place, &slot) in ahead.iter().enumerate() {
-            self.ops[slot as usize] = Op::Input((given + place) as u32);
+            self.ops[slot as usize] = TapeOp::Input((given + place) as u32);
             self.inputs.push(format!("hoisted {place}"));
         }
-        (front, self.needed())
+        (front, self.without_unused())
     }
 
     /// Operations that are worth calculating in advance.
-    fn ahead(&self, from: usize) -> Vec<Slot> {
+    fn hoisted_slots(&self, from: usize) -> Vec<ResultSlot> {
         // True for operations that depend on an input before `from`, directly or through an
         // operand.
         let mut later = vec![false; self.ops.len()];
         for (index, op) in self.ops.iter().enumerate() {
             later[index] = match *op {
-                Op::Input(input) => (input as usize) < from,
+                TapeOp::Input(input) => (input as usize) < from,
                 _ => op.operands().into_iter().flatten().any(|slot| later[slot as usize]),
             };
         }
         // Cheap operations are not worth an additional input.
-        let dear =
-            |op: &Op| matches!(op, Op::Call1(..) | Op::Call2(..) | Op::Power(..) | Op::Divide(..));
+        let dear = |op: &TapeOp| {
+            matches!(
+                op,
+                TapeOp::Call1(..) | TapeOp::Call2(..) | TapeOp::Power(..) | TapeOp::Divide(..)
+            )
+        };
         let kept = self.ops.iter().enumerate().filter(|(index, op)| !later[*index] && dear(op));
-        kept.map(|(index, _)| index as Slot).collect()
+        kept.map(|(index, _)| index as ResultSlot).collect()
     }
 }
 
@@ -51,15 +55,20 @@ mod tests {
             ["u*sin(delta)/(2 + cos(u)) + n/delta", "sin(delta)*n", "u*cos(sin(delta)) + abs(n)"];
         let builder = || {
             let mut builder = TapeBuilder::new(&["u", "delta", "n"], |_| None);
-            texts.iter().for_each(|text| assert!(builder.output(&parse(text).unwrap()).is_ok()));
+            texts
+                .iter()
+                .for_each(|text| assert!(builder.add_output(&parse(text).unwrap()).is_ok()));
             builder
         };
         let tape = builder().finish();
         let (front, back) = builder().finish_hoisted(1);
         let point = [0.7, -0.3, 1.9];
-        let ahead = front.values(&point);
+        let ahead = front.evaluate_point(&point);
         assert_eq!(ahead.len(), 4, "sine, cosine of it, quotient and modulus");
-        assert_eq!(back.values(&[&point[..], &ahead].concat()), tape.values(&point));
+        assert_eq!(
+            back.evaluate_point(&[&point[..], &ahead].concat()),
+            tape.evaluate_point(&point)
+        );
         assert!(back.len() < tape.len() + ahead.len());
     }
 }

@@ -1,18 +1,18 @@
 //! List of operations before it is made a tape.
 
-use super::{Op, Slot};
+use super::{ResultSlot, TapeOp};
 
 /// Operations with named inputs and numbered outputs; each reads results of earlier ones.
 #[derive(Debug, Clone)]
-pub(super) struct Listing {
+pub(super) struct OperationList {
     pub inputs: Vec<String>,
-    pub ops: Vec<Op>,
-    pub outputs: Vec<Slot>,
+    pub ops: Vec<TapeOp>,
+    pub outputs: Vec<ResultSlot>,
 }
 
-impl Listing {
+impl OperationList {
     /// Returns the listing without operations that no output needs.
-    pub fn needed(&self) -> Self {
+    pub fn without_unused(&self) -> Self {
         let Self { inputs, ops, outputs } = self;
         let mut wanted = vec![false; ops.len()];
         outputs.iter().for_each(|&slot| wanted[slot as usize] = true);
@@ -26,8 +26,8 @@ impl Listing {
         let mut place = vec![0; ops.len()];
         let mut kept = Vec::new();
         for (index, op) in ops.iter().enumerate().filter(|(index, _)| wanted[*index]) {
-            place[index] = kept.len() as Slot;
-            kept.push(op.moved(&|slot| place[slot as usize]));
+            place[index] = kept.len() as ResultSlot;
+            kept.push(op.remap_operands(&|slot| place[slot as usize]));
         }
         let outputs = outputs.iter().map(|&slot| place[slot as usize]).collect();
         Self { inputs: inputs.clone(), ops: kept, outputs }

@@ -17,8 +17,8 @@ mod tangent;
 #[cfg(test)]
 mod testing;
 
-pub use instruction::{Instruction, Tape};
-pub use lower::{Binding, TapeBuilder, Unbound};
-pub use op::{Op, Slot};
-pub use slots::{Lanes, Slots};
-pub use tangent::{Direction, Slopes};
+pub use instruction::{Tape, TapeInstruction};
+pub use lower::{NameBinding, TapeBuilder, UnboundName};
+pub use op::{ResultSlot, TapeOp};
+pub use slots::{LaneValues, TapeResults};
+pub use tangent::{InputDirection, LocalSlopes};

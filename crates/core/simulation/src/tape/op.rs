@@ -3,38 +3,38 @@
 use sistership_formula::{Comparison, Function};
 
 /// Index of an operation's result.
-pub type Slot = u32;
+pub type ResultSlot = u32;
 
 /// Operation on earlier results.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Op {
+pub enum TapeOp {
     /// A number.
     Constant(f64),
     /// An input, by its index.
     Input(u32),
     /// `-a`
-    Negate(Slot),
+    Negate(ResultSlot),
     /// `a + b`
-    Add(Slot, Slot),
+    Add(ResultSlot, ResultSlot),
     /// `a - b`
-    Subtract(Slot, Slot),
+    Subtract(ResultSlot, ResultSlot),
     /// `a b`
-    Multiply(Slot, Slot),
+    Multiply(ResultSlot, ResultSlot),
     /// `a / b`
-    Divide(Slot, Slot),
+    Divide(ResultSlot, ResultSlot),
     /// `a^b`
-    Power(Slot, Slot),
+    Power(ResultSlot, ResultSlot),
     /// A function of one argument.
-    Call1(Function, Slot),
+    Call1(Function, ResultSlot),
     /// A function of two arguments.
-    Call2(Function, Slot, Slot),
+    Call2(Function, ResultSlot, ResultSlot),
     /// The third operand where the comparison of the first with the second holds, else the fourth.
-    Select(Comparison, Slot, Slot, Slot, Slot),
+    Select(Comparison, ResultSlot, ResultSlot, ResultSlot, ResultSlot),
 }
 
-impl Op {
+impl TapeOp {
     /// Slots of the operands.
-    pub fn operands(&self) -> [Option<Slot>; 4] {
+    pub fn operands(&self) -> [Option<ResultSlot>; 4] {
         match *self {
             Self::Constant(_) | Self::Input(_) => [None; 4],
             Self::Negate(a) | Self::Call1(_, a) => [Some(a), None, None, None],
@@ -47,7 +47,7 @@ impl Op {
     }
 
     /// Operands on whose derivatives the derivative depends: all but those of a comparison.
-    pub(crate) fn differentiated(&self) -> [Option<Slot>; 4] {
+    pub(crate) fn differentiated_operands(&self) -> [Option<ResultSlot>; 4] {
         match *self {
             Self::Select(_, _, _, c, d) => [Some(c), Some(d), None, None],
             _ => self.operands(),
@@ -55,7 +55,7 @@ impl Op {
     }
 
     /// Returns the operation with its operands mapped to other slots.
-    pub(crate) fn moved(self, to: &dyn Fn(Slot) -> Slot) -> Self {
+    pub(crate) fn remap_operands(self, to: &dyn Fn(ResultSlot) -> ResultSlot) -> Self {
         match self {
             Self::Constant(_) | Self::Input(_) => self,
             Self::Negate(a) => Self::Negate(to(a)),
@@ -73,7 +73,7 @@ impl Op {
     }
 
     /// Value of the operation for given operands; NaN for an input.
-    pub(crate) fn apply(&self, [a, b, c, d]: [f64; 4]) -> f64 {
+    pub(crate) fn apply_values(&self, [a, b, c, d]: [f64; 4]) -> f64 {
         match *self {
             Self::Constant(value) => value,
             Self::Input(_) => f64::NAN,
@@ -95,7 +95,7 @@ impl Op {
     }
 
     /// Key that equal operations share; sums and products also with exchanged operands.
-    pub(crate) fn key(&self) -> [u64; 6] {
+    pub(crate) fn identity_key(&self) -> [u64; 6] {
         let slots = self.operands().map(|slot| slot.map_or(u64::MAX, u64::from));
         let ordered = |mut pair: [u64; 2]| {
             pair.sort_unstable();

@@ -6,8 +6,8 @@ use sistership_formula::parse;
 use super::{Tape, TapeBuilder};
 
 /// Tape of one formula of `u` and `v`.
-pub(super) fn tape(text: &str) -> Tape {
+pub(super) fn parse_tape(text: &str) -> Tape {
     let mut builder = TapeBuilder::new(&["u", "v"], |_| None);
-    builder.output(&parse(text).unwrap()).unwrap();
+    builder.add_output(&parse(text).unwrap()).unwrap();
     builder.finish()
 }

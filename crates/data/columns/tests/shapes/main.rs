@@ -12,7 +12,7 @@ mod source;
 use std::collections::BTreeMap;
 
 use shape::{Shape, Truth, shape};
-use sistership_columns::{IdentifiedColumn, Role, identify};
+use sistership_columns::{IdentifiedColumn, Role, identify_columns};
 
 /// Counts of columns.
 #[derive(Debug, Default, Clone, Copy)]
@@ -53,7 +53,7 @@ fn is_right(found: &IdentifiedColumn, truth: Truth) -> bool {
 }
 
 fn judged(shape: &Shape) -> Score {
-    let found = identify(&shape.sample, &[]);
+    let found = identify_columns(&shape.sample, &[]);
     let mut score = Score::default();
     for (column, truth) in found.columns.iter().zip(&shape.truths) {
         let right = is_right(column, *truth);

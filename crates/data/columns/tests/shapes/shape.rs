@@ -2,7 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sistership_columns::{ColumnData, Kind, RecordingSample, Role, Unit};
+use sistership_columns::{ColumnData, QuantityKind, RecordingSample, Role, Unit};
 
 use crate::names::NAMINGS;
 use crate::source::Source;
@@ -126,18 +126,24 @@ impl Maker {
     }
 
     /// The unit of each kind in this recording.
-    fn unit_system(&mut self) -> Vec<(Kind, Unit)> {
-        let kinds =
-            [Kind::Time, Kind::Length, Kind::Speed, Kind::Angle, Kind::Rate, Kind::Revolutions];
+    fn unit_system(&mut self) -> Vec<(QuantityKind, Unit)> {
+        let kinds = [
+            QuantityKind::Time,
+            QuantityKind::Length,
+            QuantityKind::Speed,
+            QuantityKind::Angle,
+            QuantityKind::Rate,
+            QuantityKind::Revolutions,
+        ];
         kinds
             .into_iter()
             .map(|kind| {
                 let most = match kind {
-                    Kind::Time => 2,
-                    Kind::Length => 1,
-                    kind => kind.units().len(),
+                    QuantityKind::Time => 2,
+                    QuantityKind::Length => 1,
+                    kind => kind.known_units().len(),
                 };
-                (kind, kind.units()[self.below(most)])
+                (kind, kind.known_units()[self.below(most)])
             })
             .collect()
     }
@@ -146,13 +152,13 @@ impl Maker {
         &mut self,
         (role, header): (Role, &str),
         values: &[f64],
-        units: &[(Kind, Unit)],
+        units: &[(QuantityKind, Unit)],
         style: usize,
     ) -> (ColumnData, Truth) {
         let unit = units.iter().find(|(kind, _)| *kind == role.kind()).map(|row| row.1);
         let mut unit = unit.expect("a unit");
         if matches!(role, Role::Latitude | Role::Longitude) {
-            unit = Kind::Angle.units()[0];
+            unit = QuantityKind::Angle.known_units()[0];
         }
         let is_rudder = matches!(role, Role::Delta | Role::DeltaS | Role::DeltaP);
         let reversed = is_rudder && self.is_port;

@@ -9,19 +9,19 @@ use zip::write::SimpleFileOptions;
 use crate::error::ExportError;
 
 /// File of the archive.
-pub struct Entry {
+pub struct ArchiveEntry {
     place: Cow<'static, str>,
     bytes: Cow<'static, [u8]>,
 }
 
-impl Entry {
+impl ArchiveEntry {
     /// Creates a file with a path and its bytes.
     pub fn new(place: impl Into<Cow<'static, str>>, bytes: impl Into<Cow<'static, [u8]>>) -> Self {
         Self { place: place.into(), bytes: bytes.into() }
     }
 
     /// Creates a file of the library's sources.
-    pub fn source(&(name, text): &(&'static str, &'static str)) -> Self {
+    pub fn source_entry(&(name, text): &(&'static str, &'static str)) -> Self {
         Self::new(format!("sources/{name}"), text.as_bytes())
     }
 }
@@ -44,13 +44,13 @@ pub const SOURCES: [(&str, &str); 10] = [
 ///
 /// # Errors
 /// Returns an error if it cannot be packed.
-pub fn packed(entries: &[Entry]) -> Result<Vec<u8>, ExportError> {
+pub fn pack_archive(entries: &[ArchiveEntry]) -> Result<Vec<u8>, ExportError> {
     let pack = || -> zip::result::ZipResult<Vec<u8>> {
         let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
         // Fixed times, so that the bytes do not depend on the clock.
         let time = zip::DateTime::default();
         let plain = SimpleFileOptions::default().last_modified_time(time).unix_permissions(0o644);
-        for Entry { place, bytes } in entries {
+        for ArchiveEntry { place, bytes } in entries {
             // Shared libraries are executable.
             let mode = if place.ends_with(".so") { 0o755 } else { 0o644 };
             writer.start_file(place.as_ref(), plain.unix_permissions(mode))?;

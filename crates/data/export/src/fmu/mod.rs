@@ -12,22 +12,22 @@ mod version3;
 mod xml;
 
 use crate::error::ExportError;
-use crate::format::Format;
-use crate::plan::Plan;
-use archive::{Entry, SOURCES, packed};
+use crate::format::ModelFormat;
+use crate::plan::ExportPlan;
+use archive::{ArchiveEntry, SOURCES, pack_archive};
 
 /// FMU for FMI 2.0.
 #[derive(Debug)]
-pub struct Fmu2;
+pub struct Fmi2Format;
 
 /// FMU for FMI 3.0.
 #[derive(Debug)]
-pub struct Fmu3;
+pub struct Fmi3Format;
 
 static LIBRARY_2: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/fmi2.so"));
 static LIBRARY_3: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/fmi3.so"));
 
-impl Format for Fmu2 {
+impl ModelFormat for Fmi2Format {
     fn name(&self) -> &'static str {
         "fmu2"
     }
@@ -36,20 +36,24 @@ impl Format for Fmu2 {
         "fmu"
     }
 
-    fn write(&self, plan: &Plan) -> Result<Vec<u8>, ExportError> {
-        let mut entries = common(plan, version2::description(plan));
+    fn write(&self, plan: &ExportPlan) -> Result<Vec<u8>, ExportError> {
+        let mut entries = common_entries(plan, version2::model_description(plan));
         // Empty for other targets: such an FMU has only the sources of its library.
         if !LIBRARY_2.is_empty() {
             let place = format!("binaries/linux64/{}.so", plan.identifier);
-            entries.push(Entry::new(place, LIBRARY_2));
+            entries.push(ArchiveEntry::new(place, LIBRARY_2));
         }
-        entries
-            .extend(SOURCES.iter().filter(|(name, _)| !name.contains("fmi3")).map(Entry::source));
-        packed(&entries)
+        entries.extend(
+            SOURCES
+                .iter()
+                .filter(|(name, _)| !name.contains("fmi3"))
+                .map(ArchiveEntry::source_entry),
+        );
+        pack_archive(&entries)
     }
 }
 
-impl Format for Fmu3 {
+impl ModelFormat for Fmi3Format {
     fn name(&self) -> &'static str {
         "fmu3"
     }
@@ -58,26 +62,32 @@ impl Format for Fmu3 {
         "fmu"
     }
 
-    fn write(&self, plan: &Plan) -> Result<Vec<u8>, ExportError> {
-        let mut entries = common(plan, version3::description(plan));
+    fn write(&self, plan: &ExportPlan) -> Result<Vec<u8>, ExportError> {
+        let mut entries = common_entries(plan, version3::model_description(plan));
         if !LIBRARY_3.is_empty() {
             let place = format!("binaries/x86_64-linux/{}.so", plan.identifier);
-            entries.push(Entry::new(place, LIBRARY_3));
+            entries.push(ArchiveEntry::new(place, LIBRARY_3));
         }
-        entries
-            .extend(SOURCES.iter().filter(|(name, _)| !name.contains("fmi2")).map(Entry::source));
-        entries
-            .push(Entry::new("sources/buildDescription.xml", version3::build(plan).into_bytes()));
-        packed(&entries)
+        entries.extend(
+            SOURCES
+                .iter()
+                .filter(|(name, _)| !name.contains("fmi2"))
+                .map(ArchiveEntry::source_entry),
+        );
+        entries.push(ArchiveEntry::new(
+            "sources/buildDescription.xml",
+            version3::build_description(plan).into_bytes(),
+        ));
+        pack_archive(&entries)
     }
 }
 
 /// Files that both versions have.
-fn common(plan: &Plan, description: String) -> Vec<Entry> {
+fn common_entries(plan: &ExportPlan, description: String) -> Vec<ArchiveEntry> {
     vec![
-        Entry::new("modelDescription.xml", description.into_bytes()),
-        Entry::new("resources/model.txt", resource::text(plan).into_bytes()),
-        Entry::new("documentation/index.html", xml::documentation(plan).into_bytes()),
+        ArchiveEntry::new("modelDescription.xml", description.into_bytes()),
+        ArchiveEntry::new("resources/model.txt", resource::resource_text(plan).into_bytes()),
+        ArchiveEntry::new("documentation/index.html", xml::documentation_page(plan).into_bytes()),
     ]
 }
 
@@ -85,17 +95,18 @@ fn common(plan: &Plan, description: String) -> Vec<Entry> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::subject::Subject;
+    use crate::subject::ExportSubject;
     use sistership_model::Zoo;
 
     #[test]
     fn an_fmu_of_a_model_is_the_same_bytes_each_time() {
-        let zoo = Zoo::embedded().unwrap();
-        let model = zoo.model("kvlcc2").unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let model = zoo.find_model("kvlcc2").unwrap();
         let law = zoo.law(&model.law).unwrap();
         let sha256 = "0".repeat(64);
-        let plan = Plan::new(&Subject { model: &model, law, version: None, sha256 }).unwrap();
-        for format in [&Fmu2 as &dyn Format, &Fmu3] {
+        let plan =
+            ExportPlan::new(&ExportSubject { model: &model, law, version: None, sha256 }).unwrap();
+        for format in [&Fmi2Format as &dyn ModelFormat, &Fmi3Format] {
             let bytes = format.write(&plan).unwrap();
             assert!(bytes.len() > 10_000 && bytes == format.write(&plan).unwrap());
         }

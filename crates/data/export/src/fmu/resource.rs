@@ -3,37 +3,41 @@
 use std::fmt::Write;
 
 use sistership_formula::{Comparison, Function};
-use sistership_simulation::tape::{Instruction, Op, Slot};
+use sistership_simulation::tape::{ResultSlot, TapeInstruction, TapeOp};
 
 use super::variables::{self, FIRST_OUTSIDE, FIRST_STATE, distance_reference};
-use crate::plan::{Operand, Plan};
+use crate::plan::{ExportPlan, TapeOperand};
 
 /// Content of the file: whole numbers, and the bits of doubles.
-pub fn text(plan: &Plan) -> String {
-    let listed = plan.listed();
-    let (tape, moving) = (listed.tape, plan.states().collect::<Vec<_>>());
-    let starts = variables::starts(plan);
+pub fn resource_text(plan: &ExportPlan) -> String {
+    let listed = plan.listed_operations();
+    let (tape, moving) = (listed.tape, plan.moving_states().collect::<Vec<_>>());
+    let starts = variables::start_values(plan);
     // The sizes come first, so that the library can allocate its memory.
-    let counts = [starts.len(), tape.len(), tape.terms().len(), moving.len()];
-    let mut lines = vec![format!("sistership-fmu-2 {}", plan.sha256), whole(counts), whole(moving)];
-    lines.push(bits(&starts));
-    lines.extend(tape.instructions().iter().map(|one| instruction(plan, one)));
-    lines.push(whole(tape.terms().iter().flatten().copied()));
-    lines.push(places(&listed.forces));
-    lines.push(places(listed.mass.as_flattened()));
-    lines.push(places(&listed.accelerations));
-    lines.push(places(&listed.kinematics));
-    lines.push(places(&[listed.distance, distance_reference(plan)]));
+    let counts = [starts.len(), tape.len(), tape.product_terms().len(), moving.len()];
+    let mut lines = vec![
+        format!("sistership-fmu-2 {}", plan.sha256),
+        join_integers(counts),
+        join_integers(moving),
+    ];
+    lines.push(double_bits(&starts));
+    lines.extend(tape.instructions().iter().map(|one| instruction_line(plan, one)));
+    lines.push(join_integers(tape.product_terms().iter().flatten().copied()));
+    lines.push(slot_numbers(&listed.forces));
+    lines.push(slot_numbers(listed.mass.as_flattened()));
+    lines.push(slot_numbers(&listed.accelerations));
+    lines.push(slot_numbers(&listed.kinematics));
+    lines.push(slot_numbers(&[listed.distance, distance_reference(plan)]));
     // Gear, roll and constant mass matrix.
     let flags = [plan.gear.is_some(), plan.has_roll, listed.mobility.is_some()];
-    lines.push(whole(flags.map(usize::from)));
-    lines.push(bits(listed.mobility.unwrap_or_default().as_flattened()));
-    lines.push(bits(&figures(plan)));
+    lines.push(join_integers(flags.map(usize::from)));
+    lines.push(double_bits(listed.mobility.unwrap_or_default().as_flattened()));
+    lines.push(double_bits(&gear_and_limits(plan)));
     lines.join("\n") + "\n"
 }
 
 /// Figures of the steering gear and of the physical range, in the order of `runtime/model.c`.
-fn figures(plan: &Plan) -> [f64; 7] {
+fn gear_and_limits(plan: &ExportPlan) -> [f64; 7] {
     let gear = plan
         .gear
         .map_or([0.0; 3], |gear| [gear.limit_rad(), gear.rate_rad_s(), gear.time_constant_s()]);
@@ -42,12 +46,12 @@ fn figures(plan: &Plan) -> [f64; 7] {
     [gear[0], gear[1], gear[2], most[0], most[1], most[2], plan.band_rad]
 }
 
-fn whole<T: ToString>(numbers: impl IntoIterator<Item = T>) -> String {
+fn join_integers<T: ToString>(numbers: impl IntoIterator<Item = T>) -> String {
     numbers.into_iter().map(|number| number.to_string()).collect::<Vec<_>>().join(" ")
 }
 
 /// Bits of doubles in hexadecimal, so that none is rounded.
-fn bits(numbers: &[f64]) -> String {
+fn double_bits(numbers: &[f64]) -> String {
     numbers.iter().fold(String::new(), |mut text, number| {
         let _ = write!(text, "{:x} ", number.to_bits());
         text
@@ -55,57 +59,62 @@ fn bits(numbers: &[f64]) -> String {
 }
 
 /// Slots as numbers, -1 for none.
-fn places(slots: &[Option<Slot>]) -> String {
-    whole(slots.iter().map(|slot| slot.map_or(-1, i64::from)))
+fn slot_numbers(slots: &[Option<ResultSlot>]) -> String {
+    join_integers(slots.iter().map(|slot| slot.map_or(-1, i64::from)))
 }
 
 /// Instruction as a code, four operands and a number.
-fn instruction(plan: &Plan, one: &Instruction) -> String {
+fn instruction_line(plan: &ExportPlan, one: &TapeInstruction) -> String {
     let (code, operands, number) = match *one {
         // Codes and order of the operands are those of `runtime/model.c`.
-        Instruction::Products { first, from, to } => (25, [first, from, to, 0], 0.0),
-        Instruction::Op(Op::Constant(number)) => (0, [0; 4], number),
-        Instruction::Op(Op::Input(input)) => (1, [variable(plan, input), 0, 0, 0], 0.0),
-        Instruction::Op(op) => (code(op), operands(op), 0.0),
+        TapeInstruction::Products { first, from, to } => (25, [first, from, to, 0], 0.0),
+        TapeInstruction::Op(TapeOp::Constant(number)) => (0, [0; 4], number),
+        TapeInstruction::Op(TapeOp::Input(input)) => {
+            (1, [value_reference(plan, input), 0, 0, 0], 0.0)
+        }
+        TapeInstruction::Op(op) => (operation_code(op), operand_slots(op), 0.0),
     };
-    format!("{code} {} {:x}", whole(operands), f64::to_bits(number))
+    format!("{code} {} {:x}", join_integers(operands), f64::to_bits(number))
 }
 
-fn operands(op: Op) -> [Slot; 4] {
+fn operand_slots(op: TapeOp) -> [ResultSlot; 4] {
     match op {
-        Op::Constant(_) | Op::Input(_) => [0; 4],
-        Op::Negate(a) | Op::Call1(_, a) => [a, 0, 0, 0],
-        Op::Add(a, b) | Op::Subtract(a, b) | Op::Multiply(a, b) | Op::Divide(a, b) => [a, b, 0, 0],
-        Op::Power(a, b) | Op::Call2(_, a, b) => [a, b, 0, 0],
-        Op::Select(_, a, b, c, d) => [a, b, c, d],
+        TapeOp::Constant(_) | TapeOp::Input(_) => [0; 4],
+        TapeOp::Negate(a) | TapeOp::Call1(_, a) => [a, 0, 0, 0],
+        TapeOp::Add(a, b)
+        | TapeOp::Subtract(a, b)
+        | TapeOp::Multiply(a, b)
+        | TapeOp::Divide(a, b) => [a, b, 0, 0],
+        TapeOp::Power(a, b) | TapeOp::Call2(_, a, b) => [a, b, 0, 0],
+        TapeOp::Select(_, a, b, c, d) => [a, b, c, d],
     }
 }
 
 /// Value reference of an input of the tape.
-fn variable(plan: &Plan, input: u32) -> u32 {
+fn value_reference(plan: &ExportPlan, input: u32) -> u32 {
     match plan.operands[input as usize] {
-        Operand::State(place) => FIRST_STATE + place as u32,
-        Operand::Outside(place) => FIRST_OUTSIDE + place as u32,
-        Operand::Coefficient(place) => FIRST_OUTSIDE + (plan.outside.len() + place) as u32,
+        TapeOperand::State(place) => FIRST_STATE + place as u32,
+        TapeOperand::Outside(place) => FIRST_OUTSIDE + place as u32,
+        TapeOperand::Coefficient(place) => FIRST_OUTSIDE + (plan.outside.len() + place) as u32,
     }
 }
 
 /// Operation code, in the order of the enumeration of `runtime/model.c`.
-fn code(op: Op) -> u32 {
+fn operation_code(op: TapeOp) -> u32 {
     match op {
-        Op::Constant(_) => 0,
-        Op::Input(_) => 1,
-        Op::Negate(_) => 2,
-        Op::Add(..) => 3,
-        Op::Subtract(..) => 4,
-        Op::Multiply(..) => 5,
-        Op::Divide(..) => 6,
-        Op::Power(..) => 7,
-        Op::Call1(function, _) | Op::Call2(function, ..) => function_code(function),
-        Op::Select(Comparison::Less, ..) => 21,
-        Op::Select(Comparison::LessOrEqual, ..) => 22,
-        Op::Select(Comparison::Greater, ..) => 23,
-        Op::Select(Comparison::GreaterOrEqual, ..) => 24,
+        TapeOp::Constant(_) => 0,
+        TapeOp::Input(_) => 1,
+        TapeOp::Negate(_) => 2,
+        TapeOp::Add(..) => 3,
+        TapeOp::Subtract(..) => 4,
+        TapeOp::Multiply(..) => 5,
+        TapeOp::Divide(..) => 6,
+        TapeOp::Power(..) => 7,
+        TapeOp::Call1(function, _) | TapeOp::Call2(function, ..) => function_code(function),
+        TapeOp::Select(Comparison::Less, ..) => 21,
+        TapeOp::Select(Comparison::LessOrEqual, ..) => 22,
+        TapeOp::Select(Comparison::Greater, ..) => 23,
+        TapeOp::Select(Comparison::GreaterOrEqual, ..) => 24,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Variables of an FMU, in the order of their value references.
 
-use crate::header::remark;
-use crate::plan::{Coefficient, DELTA, Plan, STATES};
+use crate::header::coefficient_remark;
+use crate::plan::{DELTA, ExportCoefficient, ExportPlan, STATES};
 use crate::range;
 
 /// Value reference of the first state; that of time is zero.
@@ -18,7 +18,7 @@ const DEEP_M: f64 = 1e9;
 
 /// Role of a variable in an FMU.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
+pub enum VariableRole {
     /// State, whose start value can be set; also an output.
     State,
     /// Rate of a state.
@@ -33,7 +33,7 @@ pub enum Role {
 
 /// Variable of an FMU.
 #[derive(Debug, Clone)]
-pub struct Variable {
+pub struct FmuVariable {
     /// Value reference.
     pub reference: u32,
     /// Name of the variable.
@@ -43,7 +43,7 @@ pub struct Variable {
     /// Description of the variable.
     pub description: String,
     /// Role in the FMU.
-    pub role: Role,
+    pub role: VariableRole,
     /// Start value; rates and computed outputs have none.
     pub start: Option<f64>,
     /// Smallest and largest value, if limited.
@@ -63,83 +63,84 @@ pub const UNITS: [(&str, [i32; 4]); 8] = [
 ];
 
 /// Returns all variables.
-pub fn all(plan: &Plan) -> Vec<Variable> {
-    let mut all: Vec<Variable> = plan.states().map(|place| state(plan, place)).collect();
-    all.extend(plan.states().map(rate));
-    all.extend(order(plan));
-    all.extend(plan.outside.iter().zip(FIRST_OUTSIDE..).map(|(outside, reference)| Variable {
+pub fn fmu_variables(plan: &ExportPlan) -> Vec<FmuVariable> {
+    let mut all: Vec<FmuVariable> =
+        plan.moving_states().map(|place| state_variable(plan, place)).collect();
+    all.extend(plan.moving_states().map(rate_variable));
+    all.extend(order_variable(plan));
+    all.extend(plan.outside.iter().zip(FIRST_OUTSIDE..).map(|(outside, reference)| FmuVariable {
         reference,
         name: outside.identifier.clone(),
-        unit: known(&outside.unit),
+        unit: listed_unit(&outside.unit),
         description: outside.meaning.clone(),
-        role: Role::Input,
+        role: VariableRole::Input,
         start: Some(outside.default.min(DEEP_M)),
         range: outside.range,
     }));
     let first = FIRST_OUTSIDE + plan.outside.len() as u32;
-    all.extend(plan.coefficients.iter().zip(first..).map(coefficient));
+    all.extend(plan.coefficients.iter().zip(first..).map(coefficient_variable));
     // The references are without gaps: inputs, coefficients, distance if any, step.
     let last = first + plan.coefficients.len() as u32;
     if let Some(distance) = distance_reference(plan) {
         all.push(distance_variable(distance));
-        all.push(step(plan, last + 1));
+        all.push(step_variable(plan, last + 1));
     } else {
-        all.push(step(plan, last));
+        all.push(step_variable(plan, last));
     }
     all
 }
 
 /// Value reference of the distance outside the range covered by trials; `None` if that range is not
 /// known.
-pub fn distance_reference(plan: &Plan) -> Option<u32> {
-    plan.listed().distance?;
+pub fn distance_reference(plan: &ExportPlan) -> Option<u32> {
+    plan.listed_operations().distance?;
     Some(FIRST_OUTSIDE + (plan.outside.len() + plan.coefficients.len()) as u32)
 }
 
-fn distance_variable(reference: u32) -> Variable {
-    Variable {
+fn distance_variable(reference: u32) -> FmuVariable {
+    FmuVariable {
         reference,
         name: range::NAME.to_owned(),
         unit: None,
         description: range::MEANING.to_owned(),
-        role: Role::Output,
+        role: VariableRole::Output,
         start: None,
         range: [None, None],
     }
 }
 
 /// Start values of all variables, by value reference.
-pub fn starts(plan: &Plan) -> Vec<f64> {
+pub fn start_values(plan: &ExportPlan) -> Vec<f64> {
     let distance = usize::from(distance_reference(plan).is_some());
     let count =
         // One more for the largest step.
         FIRST_OUTSIDE as usize + plan.outside.len() + plan.coefficients.len() + distance + 1;
     let mut starts = vec![0.0; count];
-    for variable in all(plan) {
+    for variable in fmu_variables(plan) {
         starts[variable.reference as usize] = variable.start.unwrap_or(0.0);
     }
     starts
 }
 
 /// Unit, if it is in the list of units.
-fn known(unit: &str) -> Option<String> {
+fn listed_unit(unit: &str) -> Option<String> {
     UNITS.iter().any(|(known, _)| *known == unit).then(|| unit.to_owned())
 }
 
-fn state(plan: &Plan, place: usize) -> Variable {
+fn state_variable(plan: &ExportPlan, place: usize) -> FmuVariable {
     let (name, unit, meaning) = STATES[place];
-    Variable {
+    FmuVariable {
         reference: FIRST_STATE + place as u32,
         name: name.to_owned(),
-        unit: known(unit),
+        unit: listed_unit(unit),
         description: meaning.to_owned(),
-        role: Role::State,
+        role: VariableRole::State,
         start: Some(if place == 0 { plan.speed_m_s } else { 0.0 }),
         range: [None, None],
     }
 }
 
-fn rate(place: usize) -> Variable {
+fn rate_variable(place: usize) -> FmuVariable {
     let (name, unit, meaning) = STATES[place];
     // Unit of the time derivative; angles and unknown units become rad/s.
     let unit = match unit {
@@ -148,52 +149,52 @@ fn rate(place: usize) -> Variable {
         "m" => "m/s",
         _ => "rad/s",
     };
-    Variable {
+    FmuVariable {
         reference: FIRST_RATE + place as u32,
         name: format!("{name}_dot"),
-        unit: known(unit),
+        unit: listed_unit(unit),
         description: format!("rate of change of {name}: {meaning}"),
-        role: Role::Rate,
+        role: VariableRole::Rate,
         start: None,
         range: [None, None],
     }
 }
 
-fn order(plan: &Plan) -> Option<Variable> {
+fn order_variable(plan: &ExportPlan) -> Option<FmuVariable> {
     let limit = plan.gear?.limit_rad();
-    Some(Variable {
+    Some(FmuVariable {
         reference: ORDER,
         name: "delta_order".to_owned(),
-        unit: known(STATES[DELTA].1),
+        unit: listed_unit(STATES[DELTA].1),
         description: "ordered rudder, positive turns the ship to starboard".to_owned(),
-        role: Role::Input,
+        role: VariableRole::Input,
         start: Some(0.0),
         range: [Some(-limit), Some(limit)],
     })
 }
 
-fn coefficient((coefficient, reference): (&Coefficient, u32)) -> Variable {
-    Variable {
+fn coefficient_variable((coefficient, reference): (&ExportCoefficient, u32)) -> FmuVariable {
+    FmuVariable {
         reference,
         name: coefficient.identifier.clone(),
         unit: None,
-        description: format!("coefficient {}", remark(coefficient)),
-        role: Role::Parameter,
+        description: format!("coefficient {}", coefficient_remark(coefficient)),
+        role: VariableRole::Parameter,
         start: Some(coefficient.value),
         range: [None, None],
     }
 }
 
-fn step(plan: &Plan, reference: u32) -> Variable {
-    Variable {
+fn step_variable(plan: &ExportPlan, reference: u32) -> FmuVariable {
+    FmuVariable {
         reference,
         name: "step_s".to_owned(),
-        unit: known("s"),
+        unit: listed_unit("s"),
         description:
             "longest step of the integration, and the time in which a steering gear without \
                       time constant reaches its order"
                 .to_owned(),
-        role: Role::Parameter,
+        role: VariableRole::Parameter,
         start: Some(plan.step_s()),
         range: [Some(1e-6), None],
     }

@@ -2,22 +2,23 @@
 
 use sistership_model::version::code_revision;
 
-use super::variables::{Role, Variable, all};
-use super::xml::{attributes, escaped, summary, units};
-use crate::plan::Plan;
+use super::variables::{FmuVariable, VariableRole, fmu_variables};
+use super::xml::{escape_xml, model_summary, unit_elements, variable_attributes};
+use crate::plan::ExportPlan;
 
 /// Returns the model description.
-pub fn description(plan: &Plan) -> String {
-    let variables = all(plan);
-    let listed: String = variables.iter().map(|one| variable(one, &variables)).collect();
-    let places = |roles: &[Role]| -> String {
+pub fn model_description(plan: &ExportPlan) -> String {
+    let variables = fmu_variables(plan);
+    let listed: String = variables.iter().map(|one| variable_element(one, &variables)).collect();
+    let places = |roles: &[VariableRole]| -> String {
         // FMI 2.0 refers to variables by their position, from 1.
         let of = variables.iter().zip(1..).filter(|(variable, _)| roles.contains(&variable.role));
         of.map(|(_, index)| format!("      <Unknown index=\"{index}\"/>\n")).collect()
     };
-    let (outputs, rates) = (places(&[Role::State, Role::Output]), places(&[Role::Rate]));
-    let unknown = places(&[Role::Rate, Role::Output]);
-    let (name, model, summary) = (escaped(&plan.name), &plan.identifier, summary(plan));
+    let (outputs, rates) =
+        (places(&[VariableRole::State, VariableRole::Output]), places(&[VariableRole::Rate]));
+    let unknown = places(&[VariableRole::Rate, VariableRole::Output]);
+    let (name, model, summary) = (escape_xml(&plan.name), &plan.identifier, model_summary(plan));
     let sources = "<SourceFiles><File name=\"model.c\"/><File name=\"fmi2.c\"/></SourceFiles>";
     let can = "canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" \
                canSerializeFMUstate=\"true\"";
@@ -30,7 +31,7 @@ pub fn description(plan: &Plan) -> String {
          <ModelExchange modelIdentifier=\"{model}\" {can}>{sources}</ModelExchange>\n  \
          <CoSimulation modelIdentifier=\"{model}\" canHandleVariableCommunicationStepSize=\"true\" \
          {can}>{sources}</CoSimulation>\n  \
-         <UnitDefinitions>\n{units}  </UnitDefinitions>\n  \
+         <UnitDefinitions>\n{unit_elements}  </UnitDefinitions>\n  \
          <LogCategories><Category name=\"logStatusError\"/></LogCategories>\n  \
          <DefaultExperiment startTime=\"0.0\" stopTime=\"600.0\" stepSize=\"{step:?}\"/>\n  \
          <ModelVariables>\n{listed}  </ModelVariables>\n  \
@@ -40,21 +41,27 @@ pub fn description(plan: &Plan) -> String {
          </fmiModelDescription>\n",
         guid = plan.sha256,
         tool = code_revision(),
-        units = units(),
+        units = unit_elements(),
         step = plan.step_s(),
     )
 }
 
-fn variable(variable: &Variable, all: &[Variable]) -> String {
+fn variable_element(variable: &FmuVariable, all: &[FmuVariable]) -> String {
     let kind = match variable.role {
-        Role::State => "causality=\"output\" variability=\"continuous\" initial=\"exact\"",
-        Role::Rate => "causality=\"local\" variability=\"continuous\" initial=\"calculated\"",
-        Role::Input => "causality=\"input\" variability=\"continuous\"",
-        Role::Parameter => "causality=\"parameter\" variability=\"fixed\" initial=\"exact\"",
-        Role::Output => "causality=\"output\" variability=\"continuous\" initial=\"calculated\"",
+        VariableRole::State => "causality=\"output\" variability=\"continuous\" initial=\"exact\"",
+        VariableRole::Rate => {
+            "causality=\"local\" variability=\"continuous\" initial=\"calculated\""
+        }
+        VariableRole::Input => "causality=\"input\" variability=\"continuous\"",
+        VariableRole::Parameter => {
+            "causality=\"parameter\" variability=\"fixed\" initial=\"exact\""
+        }
+        VariableRole::Output => {
+            "causality=\"output\" variability=\"continuous\" initial=\"calculated\""
+        }
     };
     let derivative = match variable.role {
-        Role::Rate => {
+        VariableRole::Rate => {
             let state = variable.name.trim_end_matches("_dot");
             let index = all.iter().position(|one| one.name == state).map_or(0, |place| place + 1);
             format!(" derivative=\"{index}\"")
@@ -66,7 +73,7 @@ fn variable(variable: &Variable, all: &[Variable]) -> String {
          <Real{}{derivative}/></ScalarVariable>\n",
         variable.name,
         variable.reference,
-        escaped(&variable.description),
-        attributes(variable)
+        escape_xml(&variable.description),
+        variable_attributes(variable)
     )
 }

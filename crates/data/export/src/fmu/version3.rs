@@ -2,20 +2,20 @@
 
 use sistership_model::version::code_revision;
 
-use super::variables::{Role, Variable, all};
-use super::xml::{attributes, escaped, summary, units};
-use crate::plan::Plan;
+use super::variables::{FmuVariable, VariableRole, fmu_variables};
+use super::xml::{escape_xml, model_summary, unit_elements, variable_attributes};
+use crate::plan::ExportPlan;
 
 /// Returns the model description.
-pub fn description(plan: &Plan) -> String {
-    let variables = all(plan);
-    let listed: String = variables.iter().map(|one| variable(one, &variables)).collect();
-    let structure = |roles: &[Role], element: &str| -> String {
+pub fn model_description(plan: &ExportPlan) -> String {
+    let variables = fmu_variables(plan);
+    let listed: String = variables.iter().map(|one| variable_element(one, &variables)).collect();
+    let structure = |roles: &[VariableRole], element: &str| -> String {
         let of = variables.iter().filter(|variable| roles.contains(&variable.role));
         // FMI 3.0 refers to variables by their value reference.
         of.map(|one| format!("    <{element} valueReference=\"{}\"/>\n", one.reference)).collect()
     };
-    let (name, model, summary) = (escaped(&plan.name), &plan.identifier, summary(plan));
+    let (name, model, summary) = (escape_xml(&plan.name), &plan.identifier, model_summary(plan));
     let can = "canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\"";
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
@@ -25,7 +25,7 @@ pub fn description(plan: &Plan) -> String {
          <ModelExchange modelIdentifier=\"{model}\" {can}/>\n  \
          <CoSimulation modelIdentifier=\"{model}\" canHandleVariableCommunicationStepSize=\"true\" \
          {can}/>\n  \
-         <UnitDefinitions>\n{units}  </UnitDefinitions>\n  \
+         <UnitDefinitions>\n{unit_elements}  </UnitDefinitions>\n  \
          <LogCategories><Category name=\"logStatusError\"/></LogCategories>\n  \
          <DefaultExperiment startTime=\"0.0\" stopTime=\"600.0\" stepSize=\"{step:?}\"/>\n  \
          <ModelVariables>\n    \
@@ -35,24 +35,30 @@ pub fn description(plan: &Plan) -> String {
          </fmiModelDescription>\n",
         token = plan.sha256,
         tool = code_revision(),
-        units = units(),
+        units = unit_elements(),
         step = plan.step_s(),
-        outputs = structure(&[Role::State, Role::Output], "Output"),
-        rates = structure(&[Role::Rate], "ContinuousStateDerivative"),
-        unknown = structure(&[Role::Rate, Role::Output], "InitialUnknown"),
+        outputs = structure(&[VariableRole::State, VariableRole::Output], "Output"),
+        rates = structure(&[VariableRole::Rate], "ContinuousStateDerivative"),
+        unknown = structure(&[VariableRole::Rate, VariableRole::Output], "InitialUnknown"),
     )
 }
 
-fn variable(variable: &Variable, all: &[Variable]) -> String {
+fn variable_element(variable: &FmuVariable, all: &[FmuVariable]) -> String {
     let kind = match variable.role {
-        Role::State => "causality=\"output\" variability=\"continuous\" initial=\"exact\"",
-        Role::Rate => "causality=\"local\" variability=\"continuous\" initial=\"calculated\"",
-        Role::Input => "causality=\"input\" variability=\"continuous\"",
-        Role::Parameter => "causality=\"parameter\" variability=\"fixed\" initial=\"exact\"",
-        Role::Output => "causality=\"output\" variability=\"continuous\" initial=\"calculated\"",
+        VariableRole::State => "causality=\"output\" variability=\"continuous\" initial=\"exact\"",
+        VariableRole::Rate => {
+            "causality=\"local\" variability=\"continuous\" initial=\"calculated\""
+        }
+        VariableRole::Input => "causality=\"input\" variability=\"continuous\"",
+        VariableRole::Parameter => {
+            "causality=\"parameter\" variability=\"fixed\" initial=\"exact\""
+        }
+        VariableRole::Output => {
+            "causality=\"output\" variability=\"continuous\" initial=\"calculated\""
+        }
     };
     let state = variable.name.trim_end_matches("_dot");
-    let of = all.iter().find(|one| variable.role == Role::Rate && one.name == state);
+    let of = all.iter().find(|one| variable.role == VariableRole::Rate && one.name == state);
     let derivative =
         of.map_or(String::new(), |state| format!(" derivative=\"{}\"", state.reference));
     format!(
@@ -60,13 +66,13 @@ fn variable(variable: &Variable, all: &[Variable]) -> String {
          {kind}{}{derivative}/>\n",
         variable.name,
         variable.reference,
-        escaped(&variable.description),
-        attributes(variable)
+        escape_xml(&variable.description),
+        variable_attributes(variable)
     )
 }
 
 /// Returns the build description, for compiling the library from its sources.
-pub fn build(plan: &Plan) -> String {
+pub fn build_description(plan: &ExportPlan) -> String {
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
          <fmiBuildDescription fmiVersion=\"3.0\">\n  \

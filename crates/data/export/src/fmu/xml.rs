@@ -1,11 +1,11 @@
 //! XML elements that both versions have.
 
-use super::variables::{UNITS, Variable};
+use super::variables::{FmuVariable, UNITS};
 use crate::header;
-use crate::plan::Plan;
+use crate::plan::ExportPlan;
 
 /// Text escaped for an attribute or content, on one line.
-pub fn escaped(text: &str) -> String {
+pub fn escape_xml(text: &str) -> String {
     // The ampersand first, as the other replacements contain it.
     let marked = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
     let marked = marked.replace('"', "&quot;");
@@ -13,7 +13,7 @@ pub fn escaped(text: &str) -> String {
 }
 
 /// Elements of the units, with their base units.
-pub fn units() -> String {
+pub fn unit_elements() -> String {
     let unit = |(name, exponents): (&str, [i32; 4])| {
         let of = ["kg", "m", "s", "rad"].into_iter().zip(exponents);
         let of: String =
@@ -24,7 +24,7 @@ pub fn units() -> String {
 }
 
 /// Unit, range and start value of a variable as attributes.
-pub fn attributes(variable: &Variable) -> String {
+pub fn variable_attributes(variable: &FmuVariable) -> String {
     let [low, high] = variable.range;
     let numbers = [("min", low), ("max", high), ("start", variable.start)];
     let unit = variable.unit.iter().map(|unit| format!(" unit=\"{unit}\""));
@@ -35,14 +35,15 @@ pub fn attributes(variable: &Variable) -> String {
 }
 
 /// Summary of the model in one line.
-pub fn summary(plan: &Plan) -> String {
-    escaped(&plan.provenance.iter().take(4).cloned().collect::<Vec<_>>().join(". "))
+pub fn model_summary(plan: &ExportPlan) -> String {
+    escape_xml(&plan.provenance.iter().take(4).cloned().collect::<Vec<_>>().join(". "))
 }
 
 /// HTML page with the header of the export.
-pub fn documentation(plan: &Plan) -> String {
-    let lines: String = header::lines(plan).iter().map(|line| escaped(line) + "\n").collect();
-    let name = escaped(&plan.name);
+pub fn documentation_page(plan: &ExportPlan) -> String {
+    let lines: String =
+        header::header_lines(plan).iter().map(|line| escape_xml(line) + "\n").collect();
+    let name = escape_xml(&plan.name);
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta \
          charset=\"utf-8\"><title>{name}</title></head>\n<body><h1>{name}</h1>\n<pre>\n{lines}</pre></body></html>\n"

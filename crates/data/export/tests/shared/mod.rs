@@ -3,10 +3,10 @@
 
 pub mod programs;
 
-use sistership_export::{Plan, Subject, by_name};
+use sistership_export::{ExportPlan, ExportSubject, by_name};
 use sistership_model::{Model, Zoo};
-use sistership_simulation::state::straight;
-use sistership_simulation::{Method, Order, Run, Ship, Trajectory};
+use sistership_simulation::state::straight_state;
+use sistership_simulation::{HelmOrder, Method, RunSettings, Ship, Trajectory};
 
 /// A turning circle: rudder, duration and step, and what differences are measured by.
 #[derive(Debug, Clone)]
@@ -21,7 +21,7 @@ pub struct Circle {
 impl Circle {
     /// Over some ship lengths.
     pub fn of(zoo: &Zoo, name: &str, lengths: f64) -> Self {
-        let ship = ship(zoo, &zoo.model(name).unwrap());
+        let ship = ship(zoo, &zoo.find_model(name).unwrap());
         let (lpp_m, speed_m_s) = (ship.lpp_m(), ship.approach_speed_m_s());
         let step_s = 0.1_f64.min(0.02 * lpp_m / speed_m_s);
         let duration_s = (lengths * lpp_m / speed_m_s / step_s).round() * step_s;
@@ -67,34 +67,34 @@ pub fn ship(zoo: &Zoo, model: &Model) -> Ship {
     Ship::new(model, zoo.law(&model.law).unwrap()).unwrap()
 }
 
-pub fn plan(zoo: &Zoo, model: &Model) -> Plan {
+pub fn plan(zoo: &Zoo, model: &Model) -> ExportPlan {
     let law = zoo.law(&model.law).unwrap();
-    Plan::new(&Subject { model, law, version: None, sha256: "0".repeat(64) }).unwrap()
+    ExportPlan::new(&ExportSubject { model, law, version: None, sha256: "0".repeat(64) }).unwrap()
 }
 
 pub fn identifier(zoo: &Zoo, name: &str) -> String {
-    plan(zoo, &zoo.model(name).unwrap()).identifier
+    plan(zoo, &zoo.find_model(name).unwrap()).identifier
 }
 
 pub fn exported(zoo: &Zoo, name: &str, format: &str) -> Vec<u8> {
-    by_name(format).unwrap().write(&plan(zoo, &zoo.model(name).unwrap())).unwrap()
+    by_name(format).unwrap().write(&plan(zoo, &zoo.find_model(name).unwrap())).unwrap()
 }
 
 /// Our own simulation of it; what was sailed until it left the physical range.
 pub fn own(zoo: &Zoo, name: &str, circle: &Circle) -> Track {
-    sailed(&ship(zoo, &zoo.model(name).unwrap()), circle)
+    sailed(&ship(zoo, &zoo.find_model(name).unwrap()), circle)
 }
 
 pub fn sailed(ship: &Ship, circle: &Circle) -> Track {
     let Circle { duration_s, step_s, .. } = *circle;
-    let start = straight(circle.speed_m_s);
-    let order = Order {
+    let start = straight_state(circle.speed_m_s);
+    let order = HelmOrder {
         delta_rad: circle.rudder_deg.to_radians(),
         n_rps: ship.revolutions_at(circle.speed_m_s),
     };
     let mut track = Trajectory::default();
-    let run = Run { start, duration_s, step_s, method: Method::Rk4 };
-    let _ = ship.sail(run, &mut track, |_, _| Some(order));
+    let run = RunSettings { start, duration_s, step_s, method: Method::Rk4 };
+    let _ = ship.simulate_orders(run, &mut track, |_, _| Some(order));
     Track::of(&track)
 }
 

@@ -7,7 +7,7 @@ use sistership_model::trial::Channel;
 
 use crate::findings::{Findings, Severity};
 use crate::recording::Recording;
-use crate::stats::quantile;
+use crate::stats::nearest_quantile;
 
 /// m/s; faster than any ship.
 const MAX_SPEED: f64 = 40.0;
@@ -23,29 +23,29 @@ const ACCELERATION: f64 = 2.0;
 /// Multiple of the usual position step from which a step is reported.
 const UNUSUAL: f64 = 10.0;
 
-pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
-    position(recording, findings);
-    heading(recording, findings);
+pub(crate) fn check_jumps(recording: &Recording, findings: &mut Findings) {
+    check_position(recording, findings);
+    check_heading(recording, findings);
     for channel in [Channel::U, Channel::V, Channel::UWater, Channel::VWater] {
-        speed(recording, channel, findings);
+        check_speed(recording, channel, findings);
     }
 }
 
-fn position(recording: &Recording, findings: &mut Findings) {
+fn check_position(recording: &Recording, findings: &mut Findings) {
     let (Some(x), Some(y)) = (recording.channel(Channel::X), recording.channel(Channel::Y)) else {
         return;
     };
-    let (t, header) = (recording.time(), recording.header(Channel::X));
+    let (t, header) = (recording.time(), recording.column_header(Channel::X));
     let step = |k: usize| (x[k] - x[k - 1]).hypot(y[k] - y[k - 1]);
     let jumps = |k: usize| step(k) > FIX_STEP + MAX_SPEED * (t[k] - t[k - 1]);
     // A jump across a gap is only a warning: segments begin there, and nothing is fitted across it.
     let begins = |k: usize| recording.segments.iter().any(|segment| segment.start == k);
-    let gaps = recording.hits(1..t.len(), |k| jumps(k) && begins(k));
-    findings.rows(Severity::Warning, header, &gaps, |k| {
+    let gaps = recording.find_samples(1..t.len(), |k| jumps(k) && begins(k));
+    findings.report_rows(Severity::Warning, header, &gaps, |k| {
         format!("the position jumps {:.1} m across a gap; nothing is fitted across it", step(k))
     });
-    let hits = recording.hits(1..t.len(), |k| jumps(k) && !begins(k));
-    findings.rows(Severity::Error, header, &hits, |k| {
+    let hits = recording.find_samples(1..t.len(), |k| jumps(k) && !begins(k));
+    findings.report_rows(Severity::Error, header, &hits, |k| {
         format!(
             "the position jumps {:.1} m in {:.3} s; remove the faulty fix, or split the file there",
             step(k),
@@ -53,14 +53,18 @@ fn position(recording: &Recording, findings: &mut Findings) {
         )
     });
     if hits.is_empty() {
-        unusual(recording, step, findings);
+        report_unusual_steps(recording, step, findings);
     }
 }
 
 /// Reports steps of a satellite fix, which are kept: the largest and their number.
-fn unusual(recording: &Recording, step: impl Fn(usize) -> f64, findings: &mut Findings) {
+fn report_unusual_steps(
+    recording: &Recording,
+    step: impl Fn(usize) -> f64,
+    findings: &mut Findings,
+) {
     // The 95 % quantile is the usual step; only steps within segments are reported.
-    let typical = quantile((1..recording.trial.len()).map(&step), 0.95);
+    let typical = nearest_quantile((1..recording.trial.len()).map(&step), 0.95);
     let steady = recording.segments.iter().flat_map(|segment| segment.start + 1..segment.end);
     let unusual = steady.filter(|&k| step(k) > UNUSUAL * typical && typical > 0.0);
     let mut count = 0;
@@ -72,18 +76,23 @@ fn unusual(recording: &Recording, step: impl Fn(usize) -> f64, findings: &mut Fi
              such steps); satellite fixes do so",
             step(largest)
         );
-        findings.warning(Some(recording.row(largest)), Some(recording.header(Channel::X)), message);
+        findings.warning(
+            Some(recording.row_number(largest)),
+            Some(recording.column_header(Channel::X)),
+            message,
+        );
     }
 }
 
-fn heading(recording: &Recording, findings: &mut Findings) {
+fn check_heading(recording: &Recording, findings: &mut Findings) {
     let Some(psi) = recording.channel(Channel::Psi) else { return };
-    let (t, header) = (recording.time(), recording.header(Channel::Psi));
+    let (t, header) = (recording.time(), recording.column_header(Channel::Psi));
     // Steps across gaps are not checked.
     let within = |k: usize| !recording.segments.iter().any(|segment| segment.start == k);
     let limit = |k: usize| HEADING_STEP.max(HEADING_RATE * (t[k] - t[k - 1]));
-    let hits = recording.hits(1..t.len(), |k| (psi[k] - psi[k - 1]).abs() > limit(k) && within(k));
-    findings.rows(Severity::Error, header, &hits, |k| {
+    let hits =
+        recording.find_samples(1..t.len(), |k| (psi[k] - psi[k - 1]).abs() > limit(k) && within(k));
+    findings.report_rows(Severity::Error, header, &hits, |k| {
         let degrees = (psi[k] - psi[k - 1]) * 180.0 / PI;
         format!(
             "the heading steps {degrees:.0} deg in {:.3} s; if its unit is degrees declare `deg`, \
@@ -93,13 +102,14 @@ fn heading(recording: &Recording, findings: &mut Findings) {
     });
 }
 
-fn speed(recording: &Recording, channel: Channel, findings: &mut Findings) {
+fn check_speed(recording: &Recording, channel: Channel, findings: &mut Findings) {
     let Some(values) = recording.channel(channel) else { return };
-    let (t, header) = (recording.time(), recording.header(channel));
+    let (t, header) = (recording.time(), recording.column_header(channel));
     let step = |k: usize| values[k] - values[k - 1];
-    let hits = recording
-        .hits(1..t.len(), |k| step(k).abs() > SPEED_STEP + ACCELERATION * (t[k] - t[k - 1]));
-    findings.rows(Severity::Error, header, &hits, |k| {
+    let hits = recording.find_samples(1..t.len(), |k| {
+        step(k).abs() > SPEED_STEP + ACCELERATION * (t[k] - t[k - 1])
+    });
+    findings.report_rows(Severity::Error, header, &hits, |k| {
         format!(
             "the speed steps {:.2} m/s in {:.3} s, which no ship does; remove the faulty row",
             step(k),
@@ -111,22 +121,22 @@ fn speed(recording: &Recording, channel: Channel, findings: &mut Findings) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{recording, said, zigzag};
+    use crate::testing::{check_messages, test_recording, zigzag_channels};
 
     #[test]
     fn a_steady_run_passes() {
-        assert_eq!(said(&recording(&zigzag()), check), "");
+        assert_eq!(check_messages(&test_recording(&zigzag_channels()), check_jumps), "");
     }
 
     #[test]
     fn impossible_steps_name_their_row() {
         let broken = |channel: Channel, by: f64| {
-            let mut channels = zigzag();
+            let mut channels = zigzag_channels();
             channels
                 .iter_mut()
                 .filter(|(name, _)| *name == channel)
                 .for_each(|(_, values)| values[100] += by);
-            said(&recording(&channels), check)
+            check_messages(&test_recording(&channels), check_jumps)
         };
         assert!(
             broken(Channel::X, 60.0)

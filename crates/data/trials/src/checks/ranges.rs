@@ -6,7 +6,7 @@ use sistership_model::trial::Channel;
 
 use crate::findings::{Findings, Severity};
 use crate::recording::Recording;
-use crate::stats::quantile;
+use crate::stats::nearest_quantile;
 
 /// Channel, largest magnitude, and advice where it is exceeded.
 ///
@@ -43,12 +43,12 @@ const LIMITS: [(Channel, f64, &str); 11] = [
     (Channel::ApparentWindSpeed, 100.0, "no wind blows that fast; check the column and its unit"),
 ];
 
-pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
+pub(crate) fn check_ranges(recording: &Recording, findings: &mut Findings) {
     for (channel, limit, advice) in LIMITS {
-        beyond(recording, channel, |value| value.abs() > limit, advice, findings);
+        report_beyond(recording, channel, |value| value.abs() > limit, advice, findings);
     }
     for channel in [Channel::WindSpeed, Channel::ApparentWindSpeed] {
-        beyond(
+        report_beyond(
             recording,
             channel,
             |value| value < 0.0,
@@ -56,7 +56,7 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
             findings,
         );
     }
-    beyond(
+    report_beyond(
         recording,
         Channel::Depth,
         |value| value <= 0.0,
@@ -67,7 +67,7 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
     fast_propeller(recording, findings);
 }
 
-fn beyond(
+fn report_beyond(
     recording: &Recording,
     channel: Channel,
     wrong: impl Fn(f64) -> bool,
@@ -75,25 +75,26 @@ fn beyond(
     findings: &mut Findings,
 ) {
     let Some(values) = recording.channel(channel) else { return };
-    let hits = recording.hits(0..values.len(), |k| wrong(values[k]));
+    let hits = recording.find_samples(0..values.len(), |k| wrong(values[k]));
     let unit = recording.canonical_unit(channel);
     // The value is in canonical units: name the declared one if it differs.
-    let note = converted(recording, channel, unit);
-    findings.rows(Severity::Error, recording.header(channel), &hits, |k| {
+    let note = conversion_note(recording, channel, unit);
+    findings.report_rows(Severity::Error, recording.column_header(channel), &hits, |k| {
         format!("{:.4} {unit}{note}: {advice}", values[k])
     });
 }
 
-fn converted(recording: &Recording, channel: Channel, canonical: &str) -> String {
-    let declared = recording.unit(channel);
+fn conversion_note(recording: &Recording, channel: Channel, canonical: &str) -> String {
+    let declared = recording.declared_unit(channel);
     let same = declared.is_empty() || declared == canonical;
     if same { String::new() } else { format!(" (converted from {declared})") }
 }
 
 /// Warns of a rudder that never exceeds a degree: it is probably recorded in radians.
 fn tiny_rudder(recording: &Recording, findings: &mut Findings) {
-    let Some(values) =
-        recording.channel(Channel::Delta).filter(|_| recording.unit(Channel::Delta) == "deg")
+    let Some(values) = recording
+        .channel(Channel::Delta)
+        .filter(|_| recording.declared_unit(Channel::Delta) == "deg")
     else {
         return;
     };
@@ -102,30 +103,30 @@ fn tiny_rudder(recording: &Recording, findings: &mut Findings) {
     if (0.03..1.0).contains(&most) {
         let message =
             format!("the rudder never exceeds {most:.2} deg; if these are radians declare `rad`");
-        findings.warning(None, Some(recording.header(Channel::Delta)), message);
+        findings.warning(None, Some(recording.column_header(Channel::Delta)), message);
     }
 }
 
 fn fast_propeller(recording: &Recording, findings: &mut Findings) {
     let Some(values) = recording.channel(Channel::N) else { return };
     // The median, as single values may be faults.
-    let typical = quantile(values.iter().map(|value| value.abs()), 0.5);
+    let typical = nearest_quantile(values.iter().map(|value| value.abs()), 0.5);
     if typical > 40.0 {
         let message = format!(
             "the propeller typically makes {typical:.0} turns per second; if these are per minute \
              declare `rpm`"
         );
-        findings.warning(None, Some(recording.header(Channel::N)), message);
+        findings.warning(None, Some(recording.column_header(Channel::N)), message);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{recording, said};
+    use crate::testing::{check_messages, test_recording};
 
     fn of(channel: Channel, values: &[f64]) -> String {
-        said(&recording(&[(channel, values.to_vec())]), check)
+        check_messages(&test_recording(&[(channel, values.to_vec())]), check_ranges)
     }
 
     #[test]
@@ -164,10 +165,10 @@ mod tests {
 
     #[test]
     fn radians_taken_for_degrees_are_remarked() {
-        let mut recording = recording(&[(Channel::Delta, vec![0.0, 0.17 * PI / 180.0])]);
+        let mut recording = test_recording(&[(Channel::Delta, vec![0.0, 0.17 * PI / 180.0])]);
         if let Some(column) = recording.columns.get_mut(&Channel::Delta) {
             column.unit = "deg".into();
         }
-        assert!(said(&recording, check).contains("declare `rad`"));
+        assert!(check_messages(&recording, check_ranges).contains("declare `rad`"));
     }
 }

@@ -11,7 +11,7 @@ use sistership_model::trial::Channel;
 
 use crate::findings::Findings;
 use crate::recording::Recording;
-use crate::stats::{Block, blocks, correlation, quantile, spread};
+use crate::stats::{SampleBlock, iter_range, nearest_quantile, pearson_correlation, sample_blocks};
 
 /// rad; with less rudder or less swing the ship keeps its course, and the rudder follows the yaw
 /// rate.
@@ -25,42 +25,43 @@ const LAGS: [f64; 4] = [0.0, 0.005, 0.01, 0.02];
 const EACH: f64 = 0.25;
 const BOTH: f64 = -0.6;
 
-pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
+pub(crate) fn check_rudder(recording: &Recording, findings: &mut Findings) {
     let (Some(r), Some(delta)) = (recording.channel(Channel::R), recording.channel(Channel::Delta))
     else {
         return;
     };
-    let ahead = ahead(recording);
-    let blocks: Vec<Block> = blocks(recording)
+    let ahead = ahead_samples(recording);
+    let blocks: Vec<SampleBlock> = sample_blocks(recording)
         .into_iter()
         .filter(|block| (block.first..=block.last).all(|k| ahead[k]))
         .collect();
-    if blocks.len() < ENOUGH || !manoeuvres(recording, r, delta) {
+    if blocks.len() < ENOUGH || !has_manoeuvres(recording, r, delta) {
         return;
     }
-    let (lagged, fitted) = (lagged(r, delta, &ahead), fitted(recording, &blocks, r, delta));
+    let (lagged, fitted) =
+        (lagged_correlation(r, delta, &ahead), nomoto_correlation(recording, &blocks, r, delta));
     if lagged < EACH && fitted < EACH && lagged + fitted < BOTH {
         let message = format!(
             "positive rudder turns the ship to port in this file (the yaw rate correlates with it \
              by {lagged:.2}); set `rudder_positive: port_turn` in the manifest's conventions, or \
              starboard_turn if port_turn is set"
         );
-        findings.error(None, Some(recording.header(Channel::Delta)), message);
+        findings.error(None, Some(recording.column_header(Channel::Delta)), message);
     }
 }
 
 /// Flags the samples with way ahead: a ship going astern responds to its rudder with the other sign
 /// or not at all.
-fn ahead(recording: &Recording) -> Vec<bool> {
+fn ahead_samples(recording: &Recording) -> Vec<bool> {
     let all = vec![true; recording.trial.len()];
     let Some(u) = recording.channel(Channel::U) else { return all };
     // Slow parts of the recording are excluded as well.
-    let enough = 0.5 * quantile(u.iter().copied(), 0.95);
+    let enough = 0.5 * nearest_quantile(u.iter().copied(), 0.95);
     let n = recording.channel(Channel::N);
     (0..u.len()).map(|k| u[k] > 0.0 && u[k] > enough && n.is_none_or(|n| n[k] > 0.0)).collect()
 }
 
-fn manoeuvres(recording: &Recording, r: &[f64], delta: &[f64]) -> bool {
+fn has_manoeuvres(recording: &Recording, r: &[f64], delta: &[f64]) -> bool {
     let mut heading = 0.0;
     let t = recording.time();
     let swing = (1..t.len()).map(|k| {
@@ -68,28 +69,38 @@ fn manoeuvres(recording: &Recording, r: &[f64], delta: &[f64]) -> bool {
         heading += r[k] * (t[k] - t[k - 1]);
         heading
     });
-    spread(swing) > SWING && quantile(delta.iter().map(|value| value.abs()), 0.95) > RUDDER
+    iter_range(swing) > SWING
+        && nearest_quantile(delta.iter().map(|value| value.abs()), 0.95) > RUDDER
 }
 
 /// Returns the correlation that is largest in magnitude among the lags.
-fn lagged(r: &[f64], delta: &[f64], ahead: &[bool]) -> f64 {
+fn lagged_correlation(r: &[f64], delta: &[f64], ahead: &[bool]) -> f64 {
     let at = |part: &f64| {
         let lag = (part * r.len() as f64) as usize;
         let both = (0..r.len() - lag).filter(|&k| ahead[k] && ahead[k + lag]);
-        correlation(both.map(|k| (delta[k], r[k + lag])))
+        pearson_correlation(both.map(|k| (delta[k], r[k + lag])))
     };
     LAGS.iter().map(at).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
 }
 
 /// Returns the partial correlation of rudder and yaw acceleration: b of Nomoto's model divided by
 /// its standard error, scaled to -1 to 1.
-fn fitted(recording: &Recording, blocks: &[Block], r: &[f64], delta: &[f64]) -> f64 {
+fn nomoto_correlation(
+    recording: &Recording,
+    blocks: &[SampleBlock],
+    r: &[f64],
+    delta: &[f64],
+) -> f64 {
     let t = recording.time();
-    let row = |block: &Block| {
-        Vector3::new(block.integral(t, |k| r[k]), block.integral(t, |k| delta[k]), block.change(t))
+    let row = |block: &SampleBlock| {
+        Vector3::new(
+            block.time_integral(t, |k| r[k]),
+            block.time_integral(t, |k| delta[k]),
+            block.total_change(t),
+        )
     };
     let rows: Vec<(Vector3<f64>, f64)> =
-        blocks.iter().map(|block| (row(block), block.change(r))).collect();
+        blocks.iter().map(|block| (row(block), block.total_change(r))).collect();
     // Normal equations of the integrated model: change of r over a block on the integrals of r and
     // delta and on the duration.
     let gram: Matrix3<f64> = rows.iter().map(|(row, _)| row * row.transpose()).sum();
@@ -107,12 +118,12 @@ fn fitted(recording: &Recording, blocks: &[Block], r: &[f64], delta: &[f64]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{recording, said, zigzag, zigzag_with};
+    use crate::testing::{check_messages, test_recording, zigzag_channels, zigzag_with};
 
     #[test]
     fn a_rudder_of_the_other_sign_is_refused() {
-        assert_eq!(said(&recording(&zigzag()), check), "");
-        let text = said(&zigzag_with(Channel::Delta, |delta| -delta), check);
+        assert_eq!(check_messages(&test_recording(&zigzag_channels()), check_rudder), "");
+        let text = check_messages(&zigzag_with(Channel::Delta, |delta| -delta), check_rudder);
         assert!(
             text.starts_with("error None Some(\"delta_rad\")") && text.contains("port_turn"),
             "{text}"
@@ -121,7 +132,7 @@ mod tests {
 
     #[test]
     fn no_rudder_or_no_swing_says_nothing() {
-        assert_eq!(said(&zigzag_with(Channel::Delta, |_| 0.0), check), "");
-        assert_eq!(said(&zigzag_with(Channel::R, |r| -1e-3 * r), check), "");
+        assert_eq!(check_messages(&zigzag_with(Channel::Delta, |_| 0.0), check_rudder), "");
+        assert_eq!(check_messages(&zigzag_with(Channel::R, |r| -1e-3 * r), check_rudder), "");
     }
 }

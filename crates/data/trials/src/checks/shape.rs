@@ -6,14 +6,14 @@ use sistership_model::trial::Channel;
 
 use crate::findings::Findings;
 use crate::recording::Recording;
-use crate::stats::range;
+use crate::stats::value_range;
 
 /// Minimum number of samples of a trial.
 const FEWEST: usize = 3;
 /// Fraction of a full turn that counts as a full turn.
 const ALMOST: f64 = 0.98;
 
-pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
+pub(crate) fn check_shape(recording: &Recording, findings: &mut Findings) {
     if recording.trial.len() < FEWEST {
         let message = format!(
             "{} usable rows are no trial; at least {FEWEST} are needed",
@@ -22,17 +22,17 @@ pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
         findings.error(None, None, message);
         return;
     }
-    constant(recording, findings);
+    report_constant(recording, findings);
     short_turn(recording, findings);
 }
 
 /// Warns of a channel that never changes, a dead sensor or a placeholder; depth may be constant.
-fn constant(recording: &Recording, findings: &mut Findings) {
+fn report_constant(recording: &Recording, findings: &mut Findings) {
     for (&channel, values) in &recording.trial.channels {
-        if channel != Channel::Depth && range(values) == 0.0 {
+        if channel != Channel::Depth && value_range(values) == 0.0 {
             findings.warning(
                 None,
-                Some(recording.header(channel)),
+                Some(recording.column_header(channel)),
                 format!(
                     "constant at {:.4} {} throughout",
                     values[0],
@@ -49,7 +49,7 @@ fn short_turn(recording: &Recording, findings: &mut Findings) {
         return;
     }
     let turned = match (recording.channel(Channel::Psi), recording.channel(Channel::R)) {
-        (Some(psi), _) => range(psi),
+        (Some(psi), _) => value_range(psi),
         (None, Some(r)) => {
             let t = recording.time();
             (1..r.len()).map(|k| r[k] * (t[k] - t[k - 1])).sum::<f64>().abs()
@@ -62,7 +62,7 @@ fn short_turn(recording: &Recording, findings: &mut Findings) {
              more",
             turned.to_degrees()
         );
-        findings.warning(None, Some(recording.header(Channel::Psi)), message);
+        findings.warning(None, Some(recording.column_header(Channel::Psi)), message);
     }
 }
 
@@ -76,18 +76,18 @@ fn is_turn(recording: &Recording) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{recording, said};
+    use crate::testing::{check_messages, test_recording};
 
     #[test]
     fn a_constant_channel_and_a_short_turn_are_told() {
-        let mut turn = recording(&[
+        let mut turn = test_recording(&[
             (Channel::Psi, vec![0.0, 0.5, 1.0]),
             (Channel::N, vec![2.0; 3]),
             (Channel::Depth, vec![9.0; 3]),
         ]);
-        assert!(!said(&turn, check).contains("too short"));
+        assert!(!check_messages(&turn, check_shape).contains("too short"));
         turn.trial.manoeuvre = Some("turn 35 deg".into());
-        let text = said(&turn, check);
+        let text = check_messages(&turn, check_shape);
         assert!(
             text.contains("Some(\"n_rps\") constant at 2.0000 rps")
                 && text.contains("57 deg of heading"),
@@ -98,6 +98,9 @@ mod tests {
 
     #[test]
     fn two_rows_are_no_trial() {
-        assert!(said(&recording(&[(Channel::U, vec![1.0, 2.0])]), check).starts_with("error"));
+        assert!(
+            check_messages(&test_recording(&[(Channel::U, vec![1.0, 2.0])]), check_shape)
+                .starts_with("error")
+        );
     }
 }

@@ -9,8 +9,8 @@ const GAP: f64 = 1.5;
 /// Returns true if time is strictly increasing; errors name the rows where it is not.
 pub(crate) fn in_order(recording: &Recording, findings: &mut Findings) -> bool {
     let t = recording.time();
-    let hits = recording.hits(1..t.len(), |k| t[k] <= t[k - 1]);
-    findings.rows(Severity::Error, &recording.time, &hits, |k| match t[k] == t[k - 1] {
+    let hits = recording.find_samples(1..t.len(), |k| t[k] <= t[k - 1]);
+    findings.report_rows(Severity::Error, &recording.time, &hits, |k| match t[k] == t[k - 1] {
         true => format!("time {} s stands twice; remove one of the rows", t[k]),
         false => format!(
             "time goes back from {} s to {} s; sort the rows, or split the file if two runs follow \
@@ -24,12 +24,12 @@ pub(crate) fn in_order(recording: &Recording, findings: &mut Findings) -> bool {
 
 /// Warns of gaps and of a start that is not zero. A gap left by excluded rows has been reported
 /// already.
-pub(crate) fn gaps(recording: &Recording, findings: &mut Findings) {
+pub(crate) fn report_gaps(recording: &Recording, findings: &mut Findings) {
     let (t, limit) = (recording.time(), GAP * recording.interval_s);
-    let hits = recording.hits(1..t.len(), |k| {
+    let hits = recording.find_samples(1..t.len(), |k| {
         t[k] - t[k - 1] > limit && recording.resumed.binary_search(&recording.rows[k]).is_err()
     });
-    findings.rows(Severity::Warning, &recording.time, &hits, |k| {
+    findings.report_rows(Severity::Warning, &recording.time, &hits, |k| {
         format!(
             "gap of {:.3} s (samples are {:.3} s apart); nothing is interpolated over it",
             t[k] - t[k - 1],
@@ -38,7 +38,7 @@ pub(crate) fn gaps(recording: &Recording, findings: &mut Findings) {
     });
     if let Some(&start) = t.first().filter(|start| start.abs() > 1e-9 && !recording.is_stretch) {
         findings.warning(
-            Some(recording.row(0)),
+            Some(recording.row_number(0)),
             Some(&recording.time),
             format!("time starts at {start} s, not at 0; kept as recorded"),
         );
@@ -50,17 +50,17 @@ mod tests {
     use sistership_model::trial::Channel;
 
     use super::*;
-    use crate::testing::{recording, said};
+    use crate::testing::{check_messages, test_recording};
 
     fn at(t: &[f64]) -> Recording {
-        let mut recording = recording(&[(Channel::U, vec![1.0; t.len()])]);
+        let mut recording = test_recording(&[(Channel::U, vec![1.0; t.len()])]);
         recording.trial.t_s = t.to_vec();
         recording
     }
 
     #[test]
     fn time_runs_forwards() {
-        let text = said(&at(&[0.0, 1.0, 1.0, 0.5]), |recording, findings| {
+        let text = check_messages(&at(&[0.0, 1.0, 1.0, 0.5]), |recording, findings| {
             assert!(!in_order(recording, findings))
         });
         assert!(text.contains("error Some(4) Some(\"t_s\") time 1 s stands twice"), "{text}");
@@ -71,7 +71,7 @@ mod tests {
     fn gaps_and_late_starts_are_told() {
         let mut late = at(&[7.0, 8.0, 9.0, 14.0, 15.0]);
         late.settle_time();
-        let text = said(&late, gaps);
+        let text = check_messages(&late, report_gaps);
         assert!(text.contains("warning Some(5)") && text.contains("gap of 5.000 s"), "{text}");
         assert!(text.contains("starts at 7 s"));
     }

@@ -1,19 +1,19 @@
 use super::*;
-use crate::testing::{recording, said, zigzag};
+use crate::testing::{check_messages, test_recording, zigzag_channels};
 
 /// The zigzag with channels replaced by functions of the sample (x, y, psi, u, v).
 fn changed(change: impl Fn([f64; 5]) -> [f64; 5]) -> String {
-    let mut channels = zigzag();
+    let mut channels = zigzag_channels();
     for k in 0..channels[0].1.len() {
         let sample = std::array::from_fn(|c| channels[c].1[k]);
         change(sample).into_iter().enumerate().for_each(|(c, value)| channels[c].1[k] = value);
     }
-    said(&recording(&channels), check)
+    check_messages(&test_recording(&channels), check_track)
 }
 
 #[test]
 fn declared_axes_pass() {
-    assert_eq!(said(&recording(&zigzag()), check), "");
+    assert_eq!(check_messages(&test_recording(&zigzag_channels()), check_track), "");
 }
 
 #[test]
@@ -45,8 +45,8 @@ fn speeds_in_knots_are_refused() {
 
 #[test]
 fn a_drift_is_a_remark() {
-    let mut channels = zigzag();
+    let mut channels = zigzag_channels();
     channels[0].1.iter_mut().enumerate().for_each(|(k, x)| *x += 0.3 * k as f64);
-    let text = said(&recording(&channels), check);
+    let text = check_messages(&test_recording(&channels), check_track);
     assert!(text.starts_with("warning") && text.contains("drift 0.60"), "{text}");
 }

@@ -6,7 +6,7 @@ use sistership_model::trial::Channel;
 
 use crate::findings::Findings;
 use crate::recording::Recording;
-use crate::stats::{Proportion, blocks, proportion};
+use crate::stats::{ProportionalFit, fit_proportion, sample_blocks};
 
 /// Correlation above which the ratio of two series can be trusted.
 const CERTAIN: f64 = 0.9;
@@ -17,31 +17,32 @@ const MODERATE: f64 = 0.1;
 const DEGREES: f64 = 180.0 / PI;
 
 /// Compares the change of heading over blocks of samples with the integral of the yaw rate.
-pub(crate) fn check(recording: &Recording, findings: &mut Findings) {
+pub(crate) fn check_yaw(recording: &Recording, findings: &mut Findings) {
     let (Some(psi), Some(r)) = (recording.channel(Channel::Psi), recording.channel(Channel::R))
     else {
         return;
     };
-    let pairs: Vec<(f64, f64)> = blocks(recording)
+    let pairs: Vec<(f64, f64)> = sample_blocks(recording)
         .into_iter()
-        .map(|block| (block.integral(recording.time(), |k| r[k]), block.change(psi)))
+        .map(|block| (block.time_integral(recording.time(), |k| r[k]), block.total_change(psi)))
         .collect();
-    let Some(found) = proportion(&pairs) else { return };
+    let Some(found) = fit_proportion(&pairs) else { return };
     // Without correlation (a constant heading, or noise) the slope has no meaning.
     if found.correlation.abs() < CERTAIN {
         return;
     }
-    match fault(recording, found.slope) {
-        Some(message) => findings.error(None, Some(recording.header(Channel::R)), message),
-        None => remark(recording, found, findings),
+    match unit_mistake(recording, found.slope) {
+        Some(message) => findings.error(None, Some(recording.column_header(Channel::R)), message),
+        None => report_difference(recording, found, findings),
     }
 }
 
-fn fault(recording: &Recording, slope: f64) -> Option<String> {
+fn unit_mistake(recording: &Recording, slope: f64) -> Option<String> {
     let near = |factor: f64| (slope / factor - 1.0).abs() < NEAR;
     // A factor of 57.3 between both means that one is in degrees and the other in radians.
-    let (psi, r) = (recording.header(Channel::Psi), recording.header(Channel::R));
-    let (psi_unit, r_unit) = (recording.unit(Channel::Psi), recording.unit(Channel::R));
+    let (psi, r) = (recording.column_header(Channel::Psi), recording.column_header(Channel::R));
+    let (psi_unit, r_unit) =
+        (recording.declared_unit(Channel::Psi), recording.declared_unit(Channel::R));
     if near(DEGREES) {
         return Some(format!(
             "the heading `{psi}` turns 57.3 times as fast as the yaw rate: declare `{psi}` in \
@@ -62,36 +63,40 @@ fn fault(recording: &Recording, slope: f64) -> Option<String> {
     })
 }
 
-fn remark(recording: &Recording, found: Proportion, findings: &mut Findings) {
+fn report_difference(recording: &Recording, found: ProportionalFit, findings: &mut Findings) {
     if (found.slope - 1.0).abs() > MODERATE {
-        let psi = recording.header(Channel::Psi);
+        let psi = recording.column_header(Channel::Psi);
         let message = format!(
             "the heading `{psi}` turns {:.2} times as fast as the yaw rate says; check both \
              sensors",
             found.slope
         );
-        findings.warning(None, Some(recording.header(Channel::R)), message);
+        findings.warning(None, Some(recording.column_header(Channel::R)), message);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{recording, said, zigzag, zigzag_with};
+    use crate::testing::{check_messages, test_recording, zigzag_channels, zigzag_with};
 
     #[test]
     fn degrees_and_signs_are_told_from_radians() {
-        assert_eq!(said(&recording(&zigzag()), check), "");
+        assert_eq!(check_messages(&test_recording(&zigzag_channels()), check_yaw), "");
         assert!(
-            said(&zigzag_with(Channel::R, |r| r * DEGREES), check)
+            check_messages(&zigzag_with(Channel::R, |r| r * DEGREES), check_yaw)
                 .contains("declare `r_rad_s` in `deg/s`")
         );
         assert!(
-            said(&zigzag_with(Channel::Psi, |psi| psi * DEGREES), check)
+            check_messages(&zigzag_with(Channel::Psi, |psi| psi * DEGREES), check_yaw)
                 .contains("declare `psi_rad` in `deg`")
         );
-        assert!(said(&zigzag_with(Channel::R, |r| -r), check).contains("opposite ways"));
-        assert!(said(&zigzag_with(Channel::R, |r| 1.2 * r), check).starts_with("warning"));
+        assert!(
+            check_messages(&zigzag_with(Channel::R, |r| -r), check_yaw).contains("opposite ways")
+        );
+        assert!(
+            check_messages(&zigzag_with(Channel::R, |r| 1.2 * r), check_yaw).starts_with("warning")
+        );
     }
 
     #[test]
@@ -99,7 +104,7 @@ mod tests {
         let noise = |seed: usize| {
             (0..600).map(|k| ((k * 7919 + seed) % 101) as f64 * 1e-5).collect::<Vec<f64>>()
         };
-        let straight = recording(&[(Channel::Psi, noise(3)), (Channel::R, noise(57))]);
-        assert!(!said(&straight, check).contains("error"));
+        let straight = test_recording(&[(Channel::Psi, noise(3)), (Channel::R, noise(57))]);
+        assert!(!check_messages(&straight, check_yaw).contains("error"));
     }
 }

@@ -19,7 +19,7 @@ const PIECE: usize = 64 << 10;
 
 /// Returns the unpacked size that the archive declares, bytes; a larger content is refused by
 /// [`check_archive`].
-pub fn claimed(input: &mut (impl Read + Seek)) -> Result<u64, String> {
+pub fn claimed_bytes(input: &mut (impl Read + Seek)) -> Result<u64, String> {
     let damaged = |error: zip::result::ZipError| format!("the archive is damaged: {error}");
     let mut archive = ZipArchive::new(input).map_err(damaged)?;
     let files = 0..archive.len().min(FILES);
@@ -31,7 +31,7 @@ pub fn claimed(input: &mut (impl Read + Seek)) -> Result<u64, String> {
 /// Unpacks every file of the archive without keeping it, and refuses content beyond the limits.
 ///
 /// The declared sizes are not trusted: bytes are counted while they are unpacked.
-pub fn check(input: &mut (impl Read + Seek), most: u64) -> Result<(), String> {
+pub fn check_archive(input: &mut (impl Read + Seek), most: u64) -> Result<(), String> {
     let damaged = |error: zip::result::ZipError| format!("the archive is damaged: {error}");
     let mut archive = ZipArchive::new(input).map_err(damaged)?;
     if archive.len() > FILES {
@@ -50,13 +50,14 @@ pub fn check(input: &mut (impl Read + Seek), most: u64) -> Result<(), String> {
         let of_styles = name.ends_with("styles.xml") || name.contains("theme");
         let bound = if of_styles { STYLES.min(left) } else { left };
         let is_text = name.ends_with(".xml") || name.ends_with(".rels");
-        left -= unpack(&mut file, bound, is_text).map_err(|error| format!("{name}: {error}"))?;
+        left -= count_unpacked(&mut file, bound, is_text)
+            .map_err(|error| format!("{name}: {error}"))?;
     }
     Ok(())
 }
 
 /// Returns the number of unpacked bytes of a file.
-fn unpack(file: &mut impl Read, bound: u64, is_text: bool) -> Result<u64, String> {
+fn count_unpacked(file: &mut impl Read, bound: u64, is_text: bool) -> Result<u64, String> {
     let (mut piece, mut kept, mut bytes) = (vec![0; PIECE], 0, 0);
     loop {
         // The end of the previous piece is kept in front, so that an attribute across two pieces is

@@ -24,35 +24,35 @@ pub(crate) struct FieldKind {
 
 impl FieldKind {
     /// Both truth values, 1 and 2, are of one kind.
-    pub fn is(self, kind: u8) -> bool {
+    pub fn is_kind(self, kind: u8) -> bool {
         self.kind == if kind == 2 { TRUTH } else { kind }
     }
 
-    pub fn holds(self, entries: u8) -> bool {
+    pub fn holds_entries(self, entries: u8) -> bool {
         self.entries == entries
     }
 }
 
 /// Kinds of fields by their path of field numbers; `None` for fields that the format does not
 /// define.
-pub(crate) type Format = fn(&[i16]) -> Option<FieldKind>;
+pub(crate) type FieldFormat = fn(&[i16]) -> Option<FieldKind>;
 
-fn of(kind: u8) -> Option<FieldKind> {
+fn scalar_kind(kind: u8) -> Option<FieldKind> {
     Some(FieldKind { kind, entries: 0 })
 }
 
-fn list(entries: u8) -> Option<FieldKind> {
+fn list_kind(entries: u8) -> Option<FieldKind> {
     Some(FieldKind { kind: LIST, entries })
 }
 
 /// `FileMetaData`.
-pub(crate) fn footer(path: &[i16]) -> Option<FieldKind> {
+pub(crate) fn footer_field(path: &[i16]) -> Option<FieldKind> {
     match path {
-        [1] => of(I32),
-        [2 | 4 | 5 | 7] => list(STRUCT),
-        [3] => of(I64),
-        [6 | 9] => of(BINARY),
-        [8] | [7, _] => of(STRUCT),
+        [1] => scalar_kind(I32),
+        [2 | 4 | 5 | 7] => list_kind(STRUCT),
+        [3] => scalar_kind(I64),
+        [6 | 9] => scalar_kind(BINARY),
+        [8] | [7, _] => scalar_kind(STRUCT),
         // Lists add nothing to the path: the fields of an entry follow the field of the list.
         [2, rest @ ..] => schema_element(rest),
         [4, rest @ ..] => row_group(rest),
@@ -62,18 +62,18 @@ pub(crate) fn footer(path: &[i16]) -> Option<FieldKind> {
 }
 
 fn key_value(path: &[i16]) -> Option<FieldKind> {
-    if matches!(path, [1 | 2]) { of(BINARY) } else { None }
+    if matches!(path, [1 | 2]) { scalar_kind(BINARY) } else { None }
 }
 
 /// `SchemaElement`, with its `LogicalType`.
 fn schema_element(path: &[i16]) -> Option<FieldKind> {
     match path {
-        [1 | 2 | 3 | 5 | 6 | 7 | 8 | 9] => of(I32),
-        [4] | [10, 17 | 18, 1] => of(BINARY),
-        [10] | [10, _] | [10, 7 | 8, 2] | [10, 7 | 8, 2, _] => of(STRUCT),
-        [10, 5, 1 | 2] | [10, 18, 2] => of(I32),
-        [10, 7 | 8, 1] | [10, 10, 2] => of(TRUTH),
-        [10, 10 | 16, 1] => of(BYTE),
+        [1 | 2 | 3 | 5 | 6 | 7 | 8 | 9] => scalar_kind(I32),
+        [4] | [10, 17 | 18, 1] => scalar_kind(BINARY),
+        [10] | [10, _] | [10, 7 | 8, 2] | [10, 7 | 8, 2, _] => scalar_kind(STRUCT),
+        [10, 5, 1 | 2] | [10, 18, 2] => scalar_kind(I32),
+        [10, 7 | 8, 1] | [10, 10, 2] => scalar_kind(TRUTH),
+        [10, 10 | 16, 1] => scalar_kind(BYTE),
         _ => None,
     }
 }
@@ -81,11 +81,11 @@ fn schema_element(path: &[i16]) -> Option<FieldKind> {
 /// `RowGroup`, with its `SortingColumn`s and `ColumnChunk`s.
 fn row_group(path: &[i16]) -> Option<FieldKind> {
     match path {
-        [1 | 4] => list(STRUCT),
-        [2 | 3 | 5 | 6] => of(I64),
-        [7] => of(I16),
-        [4, 1] => of(I32),
-        [4, 2 | 3] => of(TRUTH),
+        [1 | 4] => list_kind(STRUCT),
+        [2 | 3 | 5 | 6] => scalar_kind(I64),
+        [7] => scalar_kind(I16),
+        [4, 1] => scalar_kind(I32),
+        [4, 2 | 3] => scalar_kind(TRUTH),
         [1, rest @ ..] => column_chunk(rest),
         _ => None,
     }
@@ -93,10 +93,10 @@ fn row_group(path: &[i16]) -> Option<FieldKind> {
 
 fn column_chunk(path: &[i16]) -> Option<FieldKind> {
     match path {
-        [1 | 9] => of(BINARY),
-        [2 | 4 | 6] => of(I64),
-        [3 | 8] => of(STRUCT),
-        [5 | 7] => of(I32),
+        [1 | 9] => scalar_kind(BINARY),
+        [2 | 4 | 6] => scalar_kind(I64),
+        [3 | 8] => scalar_kind(STRUCT),
+        [5 | 7] => scalar_kind(I32),
         [3, rest @ ..] => column_metadata(rest),
         _ => None,
     }
@@ -105,35 +105,35 @@ fn column_chunk(path: &[i16]) -> Option<FieldKind> {
 /// `ColumnMetaData`, with its statistics.
 fn column_metadata(path: &[i16]) -> Option<FieldKind> {
     match path {
-        [1 | 4 | 15] => of(I32),
-        [2] => list(I32),
-        [3] => list(BINARY),
-        [5 | 6 | 7 | 9 | 10 | 11 | 14] | [16, 1] => of(I64),
-        [8 | 13] => list(STRUCT),
-        [12 | 16 | 17] => of(STRUCT),
+        [1 | 4 | 15] => scalar_kind(I32),
+        [2] => list_kind(I32),
+        [3] => list_kind(BINARY),
+        [5 | 6 | 7 | 9 | 10 | 11 | 14] | [16, 1] => scalar_kind(I64),
+        [8 | 13] => list_kind(STRUCT),
+        [12 | 16 | 17] => scalar_kind(STRUCT),
         [8, rest @ ..] => key_value(rest),
         [12, rest @ ..] => statistics(rest),
-        [13, 1..=3] => of(I32),
-        [16, 2 | 3] => list(I64),
+        [13, 1..=3] => scalar_kind(I32),
+        [16, 2 | 3] => list_kind(I64),
         _ => None,
     }
 }
 
 fn statistics(path: &[i16]) -> Option<FieldKind> {
     match path {
-        [1 | 2 | 5 | 6] => of(BINARY),
-        [3 | 4 | 9] => of(I64),
-        [7 | 8] => of(TRUTH),
+        [1 | 2 | 5 | 6] => scalar_kind(BINARY),
+        [3 | 4 | 9] => scalar_kind(I64),
+        [7 | 8] => scalar_kind(TRUTH),
         _ => None,
     }
 }
 
 /// `PageHeader`.
-pub(crate) fn page_header(path: &[i16]) -> Option<FieldKind> {
+pub(crate) fn page_header_field(path: &[i16]) -> Option<FieldKind> {
     match path {
-        [1..=4] | [5, 1..=4] | [7, 1 | 2] | [8, 1..=6] => of(I32),
-        [5..=8] | [5, 5] | [8, 8] => of(STRUCT),
-        [7, 3] | [8, 7] => of(TRUTH),
+        [1..=4] | [5, 1..=4] | [7, 1 | 2] | [8, 1..=6] => scalar_kind(I32),
+        [5..=8] | [5, 5] | [8, 8] => scalar_kind(STRUCT),
+        [7, 3] | [8, 7] => scalar_kind(TRUTH),
         [5, 5, rest @ ..] | [8, 8, rest @ ..] => statistics(rest),
         _ => None,
     }

@@ -2,36 +2,36 @@
 
 use std::ops::Range;
 
-use crate::segmentation::cells::Cells;
-use crate::segmentation::level::Levels;
-use crate::segmentation::thresholds::StretchThresholds;
+use crate::segmentation::cells::LogCells;
+use crate::segmentation::level::SteadyLevels;
+use crate::segmentation::thresholds::SegmentThresholds;
 
 /// Classification of single cells.
-pub(crate) struct Activity<'a> {
-    cells: &'a Cells,
-    levels: &'a Levels,
-    limits: &'a StretchThresholds,
+pub(crate) struct CellActivity<'a> {
+    cells: &'a LogCells,
+    levels: &'a SteadyLevels,
+    limits: &'a SegmentThresholds,
     /// Number of cells in which the ship travels its length.
     lag: usize,
 }
 
-impl<'a> Activity<'a> {
-    pub(crate) fn new(cells: &'a Cells, levels: &'a Levels) -> Self {
-        Self { cells, levels, limits: &cells.limits, lag: cells.count(1.0) }
+impl<'a> CellActivity<'a> {
+    pub(crate) fn new(cells: &'a LogCells, levels: &'a SteadyLevels) -> Self {
+        Self { cells, levels, limits: &cells.limits, lag: cells.cell_count(1.0) }
     }
 
     /// Returns the ranges of cells from the first movement of a control to the last response of the
     /// ship, in order.
-    pub(crate) fn manoeuvres(&self) -> Vec<Range<usize>> {
+    pub(crate) fn find_manoeuvres(&self) -> Vec<Range<usize>> {
         let mut found: Vec<Range<usize>> = Vec::new();
-        let apart = self.cells.count(self.limits.join);
+        let apart = self.cells.cell_count(self.limits.join);
         let mut at = 0;
         while at < self.cells.all.len() {
             if !self.is_moved(at) {
                 at += 1;
                 continue;
             }
-            let end = self.answered(self.run(at));
+            let end = self.response_end(self.moving_end(at));
             // Movements that follow soon after the last response belong to the same manoeuvre.
             match found
                 .last_mut()
@@ -48,30 +48,30 @@ impl<'a> Activity<'a> {
     }
 
     /// Returns the end of the cells in which controls keep moving.
-    fn run(&self, from: usize) -> usize {
-        let next = |at: &usize| self.cells.follows(*at) && self.is_moved(*at);
+    fn moving_end(&self, from: usize) -> usize {
+        let next = |at: &usize| self.cells.follows_directly(*at) && self.is_moved(*at);
         (from + 1..self.cells.all.len()).take_while(next).last().map_or(from + 1, |last| last + 1)
     }
 
     /// Returns the end of the cells in which the ship still responds.
-    fn answered(&self, from: usize) -> usize {
-        let last = (from + self.cells.count(self.limits.follow)).min(self.cells.all.len());
-        let next = |at: &usize| self.cells.follows(*at) && self.answers(*at);
+    fn response_end(&self, from: usize) -> usize {
+        let last = (from + self.cells.cell_count(self.limits.follow)).min(self.cells.all.len());
+        let next = |at: &usize| self.cells.follows_directly(*at) && self.is_responding(*at);
         (from..last).take_while(next).last().map_or(from, |last| last + 1)
     }
 
     fn is_whole(&self, from: usize, to: usize) -> bool {
-        (from..=to).all(|at| self.cells.follows(at))
+        (from..=to).all(|at| self.cells.follows_directly(at))
     }
 
     /// Returns the deviation of the rudder from its level beyond which it is moved, rad.
     pub(crate) fn rudder_limit(&self, at: usize) -> f64 {
-        (self.limits.controls * self.levels.at(at).rudder_scatter).max(self.limits.rudder_rad)
+        (self.limits.controls * self.levels.level_at(at).rudder_scatter).max(self.limits.rudder_rad)
     }
 
     /// Returns true if the rudder is off its level, or the revolutions have changed.
     fn is_moved(&self, at: usize) -> bool {
-        let (cell, steady) = (&self.cells.all[at], self.levels.at(at));
+        let (cell, steady) = (&self.cells.all[at], self.levels.level_at(at));
         (cell.rudder - steady.rudder).abs() > self.rudder_limit(at) || self.is_throttled(at)
     }
 
@@ -83,29 +83,29 @@ impl<'a> Activity<'a> {
         let (now, then) = (self.cells.all[at].revolutions, self.cells.all[before].revolutions);
         // Relative to the larger of both, so that stopping and starting count alike.
         let least = self.limits.revolutions * now.abs().max(then.abs());
-        let scatter = self.limits.controls * self.levels.at(at).revolutions_scatter;
+        let scatter = self.limits.controls * self.levels.level_at(at).revolutions_scatter;
         (now - then).abs() > least.max(scatter)
     }
 
-    fn answers(&self, at: usize) -> bool {
+    fn is_responding(&self, at: usize) -> bool {
         self.is_turning(at, self.limits.answer) || self.is_changing_speed(at, self.limits.answer)
     }
 
     /// Returns true if the yaw rate is off its level by more than the given number of scatters.
     fn is_turning(&self, at: usize, scatters: f64) -> bool {
-        let off = self.cells.all[at].yaw - self.levels.at(at).yaw;
+        let off = self.cells.all[at].yaw - self.levels.level_at(at).yaw;
         off.abs() > self.yaw_limit(at, scatters)
     }
 
     pub(crate) fn yaw_limit(&self, at: usize, scatters: f64) -> f64 {
-        let scatter = scatters * self.levels.at(at).yaw_scatter;
+        let scatter = scatters * self.levels.level_at(at).yaw_scatter;
         scatter.max(self.limits.yaw / self.cells.scale.time_s)
     }
 
     fn is_changing_speed(&self, at: usize, scatters: f64) -> bool {
         let Some(before) = at.checked_sub(self.lag) else { return false };
         let change = (self.cells.all[at].speed - self.cells.all[before].speed).abs();
-        let scatter = scatters * self.levels.at(at).speed_scatter;
+        let scatter = scatters * self.levels.level_at(at).speed_scatter;
         change > scatter.max(self.limits.speed * self.cells.scale.speed_m_s)
     }
 

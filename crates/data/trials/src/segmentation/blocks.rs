@@ -1,7 +1,7 @@
 //! Means over short intervals, whose number is bounded: when there are too many, neighbours are
 //! joined and the intervals become twice as long.
 
-use crate::segmentation::sample::Sample;
+use crate::segmentation::sample::LogSample;
 
 /// Largest number of intervals: 20 MB, and 2 s each in a log of eleven days.
 const MOST: usize = 1 << 19;
@@ -10,7 +10,7 @@ const FIRST_S: f64 = 0.25;
 
 /// Summary of an interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Block {
+pub(crate) struct LogBlock {
     /// Number of the interval, counted from the first row.
     pub at: u32,
     pub rows: u32,
@@ -28,7 +28,7 @@ pub(crate) struct Block {
 
 /// Sums over the current interval.
 #[derive(Debug, Clone, Copy, Default)]
-struct Sums {
+struct BlockSums {
     rows: u32,
     rudder: f64,
     rudder_square: f64,
@@ -41,18 +41,18 @@ struct Sums {
 
 /// Blocks of a log that is being read.
 #[derive(Debug)]
-pub(crate) struct Blocks {
-    pub done: Vec<Block>,
+pub(crate) struct LogBlocks {
+    pub done: Vec<LogBlock>,
     pub width_s: f64,
     pub first_s: f64,
     pub last_s: f64,
     pub rows: u64,
     /// Channels that any row has had.
-    pub has: Has,
+    pub has: PresentChannels,
     end_s: f64,
     /// Time between the two previous rows, s.
     step_s: f64,
-    open: Sums,
+    open: BlockSums,
     /// Last readings: a slower instrument holds its reading until the next.
     revolutions: f64,
     speed: f64,
@@ -61,13 +61,13 @@ pub(crate) struct Blocks {
 
 /// Channels that a log has.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct Has {
+pub(crate) struct PresentChannels {
     pub revolutions: bool,
     pub yaw: bool,
     pub speed: bool,
 }
 
-impl Blocks {
+impl LogBlocks {
     pub(crate) fn new() -> Self {
         Self {
             done: Vec::new(),
@@ -75,10 +75,10 @@ impl Blocks {
             first_s: f64::NAN,
             last_s: f64::NEG_INFINITY,
             rows: 0,
-            has: Has::default(),
+            has: PresentChannels::default(),
             end_s: f64::NEG_INFINITY,
             step_s: 0.0,
-            open: Sums::default(),
+            open: BlockSums::default(),
             revolutions: f64::NAN,
             speed: f64::NAN,
             heading: f64::NAN,
@@ -87,16 +87,16 @@ impl Blocks {
 
     /// Adds a row; one without a rudder angle, or not later than the last, is ignored.
     #[inline]
-    pub(crate) fn push(&mut self, sample: &Sample) {
+    pub(crate) fn push(&mut self, sample: &LogSample) {
         let t_s = sample.t_s;
         if !(sample.rudder_rad.is_finite() && t_s > self.last_s && t_s.is_finite()) {
             return;
         }
         if t_s >= self.end_s {
-            self.next(t_s);
+            self.open_block(t_s);
         }
-        self.hold(sample);
-        let (turned, rudder) = (self.turned(sample), sample.rudder_rad);
+        self.hold_readings(sample);
+        let (turned, rudder) = (self.heading_change(sample), sample.rudder_rad);
         let open = &mut self.open;
         open.rows += 1;
         open.rudder += rudder;
@@ -112,7 +112,7 @@ impl Blocks {
     }
 
     #[inline]
-    fn hold(&mut self, sample: &Sample) {
+    fn hold_readings(&mut self, sample: &LogSample) {
         if sample.revolutions_rps.is_finite() {
             self.revolutions = sample.revolutions_rps;
             self.has.revolutions = true;
@@ -126,7 +126,7 @@ impl Blocks {
     /// Returns the change of heading since the previous row: by the yaw rate where it is measured,
     /// otherwise along the shorter way.
     #[inline]
-    fn turned(&mut self, sample: &Sample) -> f64 {
+    fn heading_change(&mut self, sample: &LogSample) -> f64 {
         let rate = sample.yaw_rate_rad_s;
         if rate.is_finite() {
             self.has.yaw = true;
@@ -149,32 +149,34 @@ impl Blocks {
 
     /// Closes the current interval and opens that of a time.
     #[cold]
-    fn next(&mut self, t_s: f64) {
+    fn open_block(&mut self, t_s: f64) {
         if self.rows == 0 {
             self.first_s = t_s;
         }
-        self.close();
+        self.close_block();
         // Doubling the width at least halves the blocks of a log without gaps, so that memory stays
         // bounded.
-        while self.done.len() >= MOST || self.number(t_s) >= f64::from(u32::MAX) {
-            self.widen();
+        while self.done.len() >= MOST || self.block_number(t_s) >= f64::from(u32::MAX) {
+            self.double_width();
         }
-        self.end_s = self.first_s + (self.number(t_s) + 1.0) * self.width_s;
-        self.open = Sums { low: f64::INFINITY, high: f64::NEG_INFINITY, ..Sums::default() };
+        self.end_s = self.first_s + (self.block_number(t_s) + 1.0) * self.width_s;
+        self.open =
+            BlockSums { low: f64::INFINITY, high: f64::NEG_INFINITY, ..BlockSums::default() };
     }
 
-    fn number(&self, t_s: f64) -> f64 {
+    fn block_number(&self, t_s: f64) -> f64 {
         ((t_s - self.first_s) / self.width_s).floor()
     }
 
-    fn close(&mut self) {
-        let Sums { rows, rudder, rudder_square, revolutions, speed, low, high, turned } = self.open;
+    fn close_block(&mut self) {
+        let BlockSums { rows, rudder, rudder_square, revolutions, speed, low, high, turned } =
+            self.open;
         if rows == 0 {
             return;
         }
         let mean = |sum: f64| (sum / f64::from(rows)) as f32;
-        self.done.push(Block {
-            at: self.number(self.last_s) as u32,
+        self.done.push(LogBlock {
+            at: self.block_number(self.last_s) as u32,
             rows,
             rudder: mean(rudder),
             rudder_square: mean(rudder_square),
@@ -187,33 +189,33 @@ impl Blocks {
         self.open.rows = 0;
     }
 
-    fn widen(&mut self) {
+    fn double_width(&mut self) {
         self.width_s *= 2.0;
-        self.done = joined(&self.done, 2);
+        self.done = join_blocks(&self.done, 2);
     }
 
     /// Returns the blocks of the whole log.
-    pub(crate) fn finish(mut self) -> Self {
-        self.close();
+    pub(crate) fn finish_log(mut self) -> Self {
+        self.close_block();
         self
     }
 }
 
 /// Returns blocks that are `times` as long.
-pub(crate) fn joined(blocks: &[Block], times: u32) -> Vec<Block> {
-    let mut out: Vec<Block> = Vec::with_capacity(blocks.len() / times as usize + 1);
+pub(crate) fn join_blocks(blocks: &[LogBlock], times: u32) -> Vec<LogBlock> {
+    let mut out: Vec<LogBlock> = Vec::with_capacity(blocks.len() / times as usize + 1);
     for block in blocks {
-        let block = Block { at: block.at / times, ..*block };
+        let block = LogBlock { at: block.at / times, ..*block };
         match out.last_mut().filter(|last| last.at == block.at) {
-            Some(last) => *last = last.with(&block),
+            Some(last) => *last = last.merge_with(&block),
             None => out.push(block),
         }
     }
     out
 }
 
-impl Block {
-    fn with(&self, other: &Self) -> Self {
+impl LogBlock {
+    fn merge_with(&self, other: &Self) -> Self {
         // Means are weighted by the number of rows.
         let (own, others) = (self.rows as f32, other.rows as f32);
         // A channel that one of the blocks lacks (NaN) has the mean of the other.
@@ -240,8 +242,8 @@ impl Block {
 mod tests {
     use super::*;
 
-    fn sample(t_s: f64) -> Sample {
-        Sample {
+    fn sample(t_s: f64) -> LogSample {
+        LogSample {
             t_s,
             rudder_rad: if t_s < 50.0 { 0.1 } else { -0.1 },
             revolutions_rps: if t_s < 10.0 { 2.0 } else { f64::NAN },
@@ -253,11 +255,11 @@ mod tests {
 
     #[test]
     fn intervals_have_means_and_readings_hold() {
-        let mut blocks = Blocks::new();
+        let mut blocks = LogBlocks::new();
         (0..1000).for_each(|k| blocks.push(&sample(0.1 * f64::from(k))));
         blocks.push(&sample(3.0));
-        let blocks = blocks.finish();
-        let all = joined(&blocks.done, 400);
+        let blocks = blocks.finish_log();
+        let all = join_blocks(&blocks.done, 400);
         assert_eq!((all.len(), all[0].rows, blocks.rows), (1, 1000, 1000));
         let whole = all[0];
         assert!((whole.turned - 9.99).abs() < 1e-3, "{whole:?}");
@@ -267,10 +269,10 @@ mod tests {
 
     #[test]
     fn a_long_log_takes_no_more_memory() {
-        let mut blocks = Blocks::new();
+        let mut blocks = LogBlocks::new();
         let rows = 3 * MOST as u32;
         (0..rows).for_each(|k| blocks.push(&sample(f64::from(k))));
-        let blocks = blocks.finish();
+        let blocks = blocks.finish_log();
         assert!(blocks.done.len() <= MOST && blocks.width_s > FIRST_S);
         assert_eq!(blocks.done.iter().map(|block| block.rows).sum::<u32>(), rows);
         let turned: f64 = blocks.done.iter().map(|block| f64::from(block.turned)).sum();

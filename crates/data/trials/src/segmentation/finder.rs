@@ -2,32 +2,32 @@
 
 use std::ops::Range;
 
-use crate::segmentation::active::Activity;
-use crate::segmentation::blocks::Blocks;
-use crate::segmentation::cells::Cells;
-use crate::segmentation::level::Levels;
-use crate::segmentation::sample::Sample;
-use crate::segmentation::spans::Span;
-use crate::segmentation::stretch::Stretch;
-use crate::segmentation::thresholds::{StretchThresholds, THRESHOLDS};
+use crate::segmentation::active::CellActivity;
+use crate::segmentation::blocks::LogBlocks;
+use crate::segmentation::cells::LogCells;
+use crate::segmentation::level::SteadyLevels;
+use crate::segmentation::sample::LogSample;
+use crate::segmentation::spans::TimeSpan;
+use crate::segmentation::stretch::ManoeuvreSegment;
+use crate::segmentation::thresholds::{SegmentThresholds, THRESHOLDS};
 
 /// Finder of the segments of a log, which takes its rows in order.
 #[derive(Debug)]
-pub struct Finder {
+pub struct SegmentFinder {
     length_m: Option<f64>,
-    limits: StretchThresholds,
-    blocks: Blocks,
+    limits: SegmentThresholds,
+    blocks: LogBlocks,
 }
 
 /// Result of the segmentation of a log.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found {
+pub struct SegmentationResult {
     /// Segments in order of time, without overlap.
-    pub stretches: Vec<Stretch>,
+    pub stretches: Vec<ManoeuvreSegment>,
     /// Spans of steady course keeping between the segments.
-    pub steady: Vec<Span>,
+    pub steady: Vec<TimeSpan>,
     /// Span from the first row to the last.
-    pub whole: Span,
+    pub whole: TimeSpan,
     /// Number of rows that were used.
     pub rows: u64,
     /// Length of the ship by which time is scaled, m: as given, or from the speed.
@@ -40,7 +40,7 @@ pub struct Found {
 
 /// Reason for which a log cannot be segmented.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum NotSearched {
+pub enum SegmentationError {
     /// There is no row with a rudder angle.
     #[error("no row has a time and a rudder angle")]
     Rudder,
@@ -55,16 +55,16 @@ pub enum NotSearched {
     Still,
 }
 
-impl Finder {
+impl SegmentFinder {
     /// Creates a finder for a ship of the given length, m; without one it is estimated from the
     /// speed.
     pub fn new(length_m: Option<f64>) -> Self {
-        Self { length_m, limits: THRESHOLDS, blocks: Blocks::new() }
+        Self { length_m, limits: THRESHOLDS, blocks: LogBlocks::new() }
     }
 
     /// Adds the next row.
     #[inline]
-    pub fn push(&mut self, sample: &Sample) {
+    pub fn push(&mut self, sample: &LogSample) {
         self.blocks.push(sample);
     }
 
@@ -72,28 +72,28 @@ impl Finder {
     ///
     /// # Errors
     /// Returns an error if the log lacks a channel that is needed, or the ship never has way.
-    pub fn finish(self) -> Result<Found, NotSearched> {
-        let blocks = self.blocks.finish();
+    pub fn finish(self) -> Result<SegmentationResult, SegmentationError> {
+        let blocks = self.blocks.finish_log();
         match blocks.has {
-            _ if blocks.rows == 0 => return Err(NotSearched::Rudder),
-            has if !has.speed => return Err(NotSearched::Speed),
-            has if !has.yaw => return Err(NotSearched::Yaw),
+            _ if blocks.rows == 0 => return Err(SegmentationError::Rudder),
+            has if !has.speed => return Err(SegmentationError::Speed),
+            has if !has.yaw => return Err(SegmentationError::Yaw),
             _ => {}
         }
         // Each step needs the previous one: cells, levels, movements, spans.
-        let cells = Cells::of(&blocks, self.length_m, self.limits).ok_or(NotSearched::Still)?;
-        let levels = Levels::of(&cells);
-        let activity = Activity::new(&cells, &levels);
-        let whole = Span { from_s: blocks.first_s, to_s: blocks.last_s };
-        let ranges = activity.manoeuvres();
-        let spans = spans(&cells, &ranges, whole);
-        let stretches = ranges
-            .iter()
-            .zip(&spans)
-            .map(|(range, &span)| Stretch::of(&cells, &levels, &activity, range, span));
-        Ok(Found {
+        let cells = LogCells::from_blocks(&blocks, self.length_m, self.limits)
+            .ok_or(SegmentationError::Still)?;
+        let levels = SteadyLevels::from_cells(&cells);
+        let activity = CellActivity::new(&cells, &levels);
+        let whole = TimeSpan { from_s: blocks.first_s, to_s: blocks.last_s };
+        let ranges = activity.find_manoeuvres();
+        let spans = segment_spans(&cells, &ranges, whole);
+        let stretches = ranges.iter().zip(&spans).map(|(range, &span)| {
+            ManoeuvreSegment::from_cells(&cells, &levels, &activity, range, span)
+        });
+        Ok(SegmentationResult {
             stretches: stretches.collect(),
-            steady: Span::between(whole, &spans, cells.limits.steady * cells.scale.time_s),
+            steady: TimeSpan::gaps_between(whole, &spans, cells.limits.steady * cells.scale.time_s),
             whole,
             rows: blocks.rows,
             length_m: cells.scale.length_m,
@@ -103,7 +103,7 @@ impl Finder {
     }
 }
 
-impl Found {
+impl SegmentationResult {
     /// Returns true if the record is a log rather than a trial: much longer, and mostly steady.
     pub fn is_log(&self) -> bool {
         let long = THRESHOLDS.log * self.length_m / self.speed_m_s;
@@ -113,22 +113,22 @@ impl Found {
 
     /// Returns the time in steady course keeping, s.
     pub fn steady_s(&self) -> f64 {
-        self.steady.iter().map(Span::duration_s).sum()
+        self.steady.iter().map(TimeSpan::duration_s).sum()
     }
 }
 
 /// Returns the spans of the ranges with approach and settling time; where two would overlap, they
 /// meet halfway.
-fn spans(cells: &Cells, ranges: &[Range<usize>], whole: Span) -> Vec<Span> {
+fn segment_spans(cells: &LogCells, ranges: &[Range<usize>], whole: TimeSpan) -> Vec<TimeSpan> {
     let time_s = cells.scale.time_s;
     // A movement may begin at the end of the cell before the one in which it is detected.
     let lead_s = cells.limits.lead * time_s + cells.width_s;
     let core =
         |range: &Range<usize>| (cells.all[range.start].from_s, cells.all[range.end - 1].to_s);
-    let mut spans: Vec<Span> = ranges
+    let mut spans: Vec<TimeSpan> = ranges
         .iter()
         .map(core)
-        .map(|(from_s, to_s)| Span {
+        .map(|(from_s, to_s)| TimeSpan {
             from_s: (from_s - lead_s).max(whole.from_s),
             to_s: (to_s + cells.limits.settle * time_s).min(whole.to_s),
         })

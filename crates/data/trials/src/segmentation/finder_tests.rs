@@ -7,7 +7,7 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
 
 use super::*;
-use crate::segmentation::kind::Kind;
+use crate::segmentation::kind::SegmentKind;
 
 const LENGTH_M: f64 = 160.0;
 const SPEED_M_S: f64 = 7.7;
@@ -115,7 +115,7 @@ impl Ship {
         rudder
     }
 
-    fn step(&mut self) -> Sample {
+    fn step(&mut self) -> LogSample {
         let ordered = self.helm();
         let most = 0.04 * STEP_S;
         self.rudder += (ordered - self.rudder).clamp(-most, most);
@@ -129,7 +129,7 @@ impl Ship {
         self.u = self.u.max(0.2);
         self.t_s += STEP_S;
         let (yaw, yaw_rate) = self.wave_yaw();
-        Sample {
+        LogSample {
             t_s: self.t_s,
             rudder_rad: self.rudder + 0.002 * self.noise(),
             revolutions_rps: self.n * (1.0 + 0.005 * self.noise()),
@@ -141,7 +141,11 @@ impl Ship {
 }
 
 /// Rows of a log, and from when to when each manoeuvre was sailed.
-fn log(hours: f64, plan: &[Planned], waves: impl Fn(f64) -> f64) -> (Vec<Sample>, Vec<(f64, f64)>) {
+fn log(
+    hours: f64,
+    plan: &[Planned],
+    waves: impl Fn(f64) -> f64,
+) -> (Vec<LogSample>, Vec<(f64, f64)>) {
     let mut ship = Ship::new(waves(0.0));
     let (mut rows, mut next) = (Vec::new(), plan.iter().peekable());
     while ship.t_s < 3600.0 * hours {
@@ -154,8 +158,8 @@ fn log(hours: f64, plan: &[Planned], waves: impl Fn(f64) -> f64) -> (Vec<Sample>
     (rows, ship.ended)
 }
 
-fn found(rows: &[Sample]) -> Found {
-    let mut finder = Finder::new(Some(LENGTH_M));
+fn found(rows: &[LogSample]) -> SegmentationResult {
+    let mut finder = SegmentFinder::new(Some(LENGTH_M));
     rows.iter().for_each(|row| finder.push(row));
     finder.finish().unwrap()
 }
@@ -175,23 +179,23 @@ fn plan() -> Vec<Planned> {
     ]
 }
 
-const KINDS: [Kind; 9] = [
-    Kind::Zigzag,
-    Kind::Zigzag,
-    Kind::Turn,
-    Kind::Turn,
-    Kind::PullOut,
-    Kind::Stop,
-    Kind::SpeedChange,
-    Kind::SpeedChange,
-    Kind::CourseChange,
+const KINDS: [SegmentKind; 9] = [
+    SegmentKind::Zigzag,
+    SegmentKind::Zigzag,
+    SegmentKind::Turn,
+    SegmentKind::Turn,
+    SegmentKind::PullOut,
+    SegmentKind::Stop,
+    SegmentKind::SpeedChange,
+    SegmentKind::SpeedChange,
+    SegmentKind::CourseChange,
 ];
 
 /// The heading changes by what was sailed, whichever instrument tells it.
 #[test]
 fn figures_of_a_turn_are_those_that_were_sailed() {
     let (mut rows, _) = log(14.0, &plan()[2..3], |_| 0.004);
-    let turned = |rows: &[Sample]| found(rows).stretches[0].excitation.heading_range_deg;
+    let turned = |rows: &[LogSample]| found(rows).stretches[0].excitation.heading_range_deg;
     let by_rate = turned(&rows);
     rows.iter_mut().for_each(|row| row.yaw_rate_rad_s = f64::NAN);
     let by_heading = turned(&rows);
@@ -202,7 +206,7 @@ fn figures_of_a_turn_are_those_that_were_sailed() {
 }
 
 /// Every manoeuvre lies in a stretch of its own, and no stretch is without one.
-fn assert_whole(found: &Found, sailed: &[(f64, f64)]) {
+fn assert_whole(found: &SegmentationResult, sailed: &[(f64, f64)]) {
     let listed: Vec<_> =
         found.stretches.iter().map(|one| (one.span.from_s, one.span.to_s, one.kind)).collect();
     assert_eq!(found.stretches.len(), sailed.len(), "{listed:?}\n{sailed:?}");
@@ -218,7 +222,7 @@ fn nine_manoeuvres_are_found_whole_and_named() {
     let (rows, sailed) = log(14.0, &plan(), |_| 0.004);
     let found = found(&rows);
     assert_whole(&found, &sailed);
-    let kinds: Vec<Kind> = found.stretches.iter().map(|stretch| stretch.kind).collect();
+    let kinds: Vec<SegmentKind> = found.stretches.iter().map(|stretch| stretch.kind).collect();
     assert_eq!(kinds, KINDS, "{:#?}", found.stretches);
     assert!(found.is_log() && found.steady_s() > 0.5 * found.whole.duration_s());
 }
@@ -226,7 +230,7 @@ fn nine_manoeuvres_are_found_whole_and_named() {
 /// The test table: each constant at half and double, one at a time.
 #[test]
 fn half_and_double_find_the_same() {
-    type Field = fn(&mut StretchThresholds) -> &mut f64;
+    type Field = fn(&mut SegmentThresholds) -> &mut f64;
     let fields: [(&str, Field); 10] = [
         ("cell", |limits| &mut limits.cell),
         ("level", |limits| &mut limits.level),
@@ -243,15 +247,15 @@ fn half_and_double_find_the_same() {
     let (calm, _) = log(14.0, &[], |_| 0.004);
     for (name, field) in fields {
         for times in [0.5, 2.0] {
-            let found = |rows: &[Sample]| {
-                let mut finder = Finder::new(Some(LENGTH_M));
+            let found = |rows: &[LogSample]| {
+                let mut finder = SegmentFinder::new(Some(LENGTH_M));
                 *field(&mut finder.limits) *= times;
                 rows.iter().for_each(|row| finder.push(row));
                 finder.finish().unwrap().stretches
             };
             let (all, none) = (found(&rows), found(&calm));
             for &(from_s, to_s) in &sailed {
-                let has = |one: &Stretch| one.span.from_s < from_s && to_s < one.span.to_s;
+                let has = |one: &ManoeuvreSegment| one.span.from_s < from_s && to_s < one.span.to_s;
                 assert!(all.iter().any(has), "{name} x{times}: {from_s} {to_s} {all:#?}");
             }
             // Three scatters are exceeded by chance; that is why there are six.
@@ -291,7 +295,7 @@ fn manoeuvres_in_waves_are_found_by_rudder_and_heading_alone() {
 #[test]
 fn a_length_that_is_not_given_comes_of_the_speed() {
     let (rows, sailed) = log(14.0, &plan(), |_| 0.004);
-    let mut finder = Finder::new(None);
+    let mut finder = SegmentFinder::new(None);
     rows.iter().for_each(|row| finder.push(row));
     let found = finder.finish().unwrap();
     assert!((120.0..200.0).contains(&found.length_m), "{}", found.length_m);
@@ -319,17 +323,17 @@ fn a_rudder_that_is_tried_alongside_is_none() {
 #[test]
 fn a_log_without_what_is_needed_says_so() {
     let (rows, _) = log(0.2, &[], |_| 0.0);
-    let without = |change: fn(&mut Sample)| {
-        let mut finder = Finder::new(None);
+    let without = |change: fn(&mut LogSample)| {
+        let mut finder = SegmentFinder::new(None);
         for mut row in rows.clone() {
             change(&mut row);
             finder.push(&row);
         }
         finder.finish().unwrap_err()
     };
-    assert_eq!(without(|row| row.rudder_rad = f64::NAN), NotSearched::Rudder);
-    assert_eq!(without(|row| row.speed_m_s = f64::NAN), NotSearched::Speed);
-    assert_eq!(without(|row| row.speed_m_s = 0.0), NotSearched::Still);
+    assert_eq!(without(|row| row.rudder_rad = f64::NAN), SegmentationError::Rudder);
+    assert_eq!(without(|row| row.speed_m_s = f64::NAN), SegmentationError::Speed);
+    assert_eq!(without(|row| row.speed_m_s = 0.0), SegmentationError::Still);
     let no_yaw = without(|row| (row.yaw_rate_rad_s, row.heading_rad) = (f64::NAN, f64::NAN));
-    assert_eq!(no_yaw, NotSearched::Yaw);
+    assert_eq!(no_yaw, SegmentationError::Yaw);
 }

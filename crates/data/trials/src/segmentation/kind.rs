@@ -4,15 +4,15 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::segmentation::cells::Cell;
-use crate::segmentation::excitation::heading;
-use crate::segmentation::level::Steady;
+use crate::segmentation::cells::LogCell;
+use crate::segmentation::excitation::heading_range;
+use crate::segmentation::level::SteadyLevel;
 use crate::segmentation::thresholds::KINDS;
 
 /// Manoeuvre that a segment most resembles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum SegmentKind {
     /// The rudder goes from side to side.
     Zigzag,
     /// The rudder is held for half a turn or more.
@@ -29,7 +29,7 @@ pub enum Kind {
     RudderMovement,
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for SegmentKind {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.write_str(match self {
             Self::Zigzag => "zigzag",
@@ -45,21 +45,21 @@ impl fmt::Display for Kind {
 
 /// Cells in which the rudder is held to one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Hold {
+pub(crate) struct RudderHold {
     pub from: usize,
     pub to: usize,
     pub to_starboard: bool,
 }
 
 /// Returns the runs of cells with large rudder angles, one for each change of side.
-pub(crate) fn holds(cells: &[Cell], level: f64, limit: f64) -> Vec<Hold> {
+pub(crate) fn find_holds(cells: &[LogCell], level: f64, limit: f64) -> Vec<RudderHold> {
     let largest = cells.iter().map(|cell| (cell.rudder - level).abs()).fold(0.0, f64::max);
     if largest <= limit {
         return Vec::new();
     }
     // Small angles between two holds, such as meeting a turn, are not holds.
     let least = limit.max(KINDS.hold * largest);
-    let mut holds: Vec<Hold> = Vec::new();
+    let mut holds: Vec<RudderHold> = Vec::new();
     for (at, cell) in cells.iter().enumerate() {
         let angle = cell.rudder - level;
         if angle.abs() <= least {
@@ -68,17 +68,17 @@ pub(crate) fn holds(cells: &[Cell], level: f64, limit: f64) -> Vec<Hold> {
         let to_starboard = angle > 0.0;
         match holds.last_mut().filter(|hold| hold.to_starboard == to_starboard) {
             Some(hold) => hold.to = at + 1,
-            None => holds.push(Hold { from: at, to: at + 1, to_starboard }),
+            None => holds.push(RudderHold { from: at, to: at + 1, to_starboard }),
         }
     }
     holds
 }
 
 /// Data of a manoeuvre by which it is classified.
-pub(crate) struct Observed<'a> {
-    pub cells: &'a [Cell],
-    pub holds: &'a [Hold],
-    pub steady: Steady,
+pub(crate) struct ManoeuvreData<'a> {
+    pub cells: &'a [LogCell],
+    pub holds: &'a [RudderHold],
+    pub steady: SteadyLevel,
     /// Yaw rate above which the ship turns, rad/s.
     pub yaw_limit: f64,
     /// Angle up to which the rudder is amidships, rad.
@@ -90,28 +90,28 @@ pub(crate) struct Observed<'a> {
     pub pull_out: usize,
 }
 
-impl Observed<'_> {
-    pub(crate) fn kind(&self) -> Kind {
+impl ManoeuvreData<'_> {
+    pub(crate) fn classify_manoeuvre(&self) -> SegmentKind {
         if self.is_stop() {
-            return Kind::Stop;
+            return SegmentKind::Stop;
         }
         match self.holds.len() {
-            0 => Kind::SpeedChange,
-            holds if holds >= KINDS.zigzag => Kind::Zigzag,
-            _ => self.one_sided(),
+            0 => SegmentKind::SpeedChange,
+            holds if holds >= KINDS.zigzag => SegmentKind::Zigzag,
+            _ => self.classify_turn(),
         }
     }
 
-    fn one_sided(&self) -> Kind {
-        let turned = heading(self.cells);
+    fn classify_turn(&self) -> SegmentKind {
+        let turned = heading_range(self.cells);
         if turned > KINDS.course_rad && self.is_pull_out() {
-            Kind::PullOut
+            SegmentKind::PullOut
         } else if turned >= KINDS.turn_rad {
-            Kind::Turn
+            SegmentKind::Turn
         } else if turned >= KINDS.course_rad {
-            Kind::CourseChange
+            SegmentKind::CourseChange
         } else {
-            Kind::RudderMovement
+            SegmentKind::RudderMovement
         }
     }
 
@@ -130,7 +130,7 @@ impl Observed<'_> {
     fn is_pull_out(&self) -> bool {
         let Some(hold) = self.holds.first() else { return false };
         let side = if hold.to_starboard { 1.0 } else { -1.0 };
-        let turns_on = |cell: &&Cell| {
+        let turns_on = |cell: &&LogCell| {
             (cell.rudder - self.steady.rudder).abs() <= self.rudder_limit
                 && side * (cell.yaw - self.steady.yaw) > self.yaw_limit
         };

@@ -19,8 +19,8 @@ mod stretch;
 mod thresholds;
 
 pub use excitation::Excitation;
-pub use finder::{Finder, Found, NotSearched};
-pub use kind::Kind;
-pub use sample::Sample;
-pub use spans::Span;
-pub use stretch::Stretch;
+pub use finder::{SegmentFinder, SegmentationError, SegmentationResult};
+pub use kind::SegmentKind;
+pub use sample::LogSample;
+pub use spans::TimeSpan;
+pub use stretch::ManoeuvreSegment;

@@ -2,7 +2,7 @@
 
 /// Values of a row, in SI units and radians; NaN for missing values.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
+pub struct LogSample {
     /// Time, s.
     pub t_s: f64,
     /// Rudder angle, rad.

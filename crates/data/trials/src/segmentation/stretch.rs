@@ -2,46 +2,46 @@
 
 use serde::Serialize;
 
-use crate::segmentation::active::Activity;
-use crate::segmentation::cells::{Cell, Cells};
+use crate::segmentation::active::CellActivity;
+use crate::segmentation::cells::{LogCell, LogCells};
 use crate::segmentation::excitation::Excitation;
-use crate::segmentation::kind::{Hold, Kind, Observed, holds};
-use crate::segmentation::level::Levels;
-use crate::segmentation::spans::Span;
+use crate::segmentation::kind::{ManoeuvreData, RudderHold, SegmentKind, find_holds};
+use crate::segmentation::level::SteadyLevels;
+use crate::segmentation::spans::TimeSpan;
 use crate::segmentation::thresholds::KINDS;
 use std::ops::Range;
 
 /// Segment in which the controls move.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Stretch {
+pub struct ManoeuvreSegment {
     /// Span with a steady approach, until the ship is steady again.
     #[serde(flatten)]
-    pub span: Span,
+    pub span: TimeSpan,
     /// Most likely manoeuvre.
-    pub kind: Kind,
+    pub kind: SegmentKind,
     /// Excitation.
     pub excitation: Excitation,
     /// Reason of the selection, in words.
     pub why: String,
 }
 
-impl Stretch {
+impl ManoeuvreSegment {
     /// Creates a segment of the cells from the first movement to the last response; `span` includes
     /// the time before and after.
-    pub(crate) fn of(
-        cells: &Cells,
-        levels: &Levels,
-        activity: &Activity,
+    pub(crate) fn from_cells(
+        cells: &LogCells,
+        levels: &SteadyLevels,
+        activity: &CellActivity,
         range: &Range<usize>,
-        span: Span,
+        span: TimeSpan,
     ) -> Self {
-        let (inner, steady) = (&cells.all[range.clone()], levels.at(range.start));
+        let (inner, steady) = (&cells.all[range.clone()], levels.level_at(range.start));
         let limit = activity.rudder_limit(range.start);
-        let holds = holds(inner, steady.rudder, limit);
+        let holds = find_holds(inner, steady.rudder, limit);
         // Speed and revolutions one length before the first movement, as the reference of the
         // manoeuvre.
-        let before = &cells.all[range.start.saturating_sub(cells.count(1.0).max(1))];
-        let observed = Observed {
+        let before = &cells.all[range.start.saturating_sub(cells.cell_count(1.0).max(1))];
+        let observed = ManoeuvreData {
             cells: inner,
             holds: &holds,
             steady,
@@ -49,25 +49,25 @@ impl Stretch {
             rudder_limit: limit,
             speed: before.speed,
             revolutions: before.revolutions,
-            pull_out: cells.count(KINDS.pull_out),
+            pull_out: cells.cell_count(KINDS.pull_out),
         };
-        let kind = observed.kind();
+        let kind = observed.classify_manoeuvre();
         // Consecutive holds are on alternate sides: one reversal between two.
         let reversals = holds.len().saturating_sub(1);
-        let excitation = Excitation::of(inner, &steady, reversals, cells.scale.speed_m_s);
-        let why = why(kind, inner, &holds, &excitation, before);
+        let excitation = Excitation::from_cells(inner, &steady, reversals, cells.scale.speed_m_s);
+        let why = describe_reason(kind, inner, &holds, &excitation, before);
         let scatter = steady.rudder_scatter.to_degrees();
         let why = format!("{why}; in course keeping the rudder scatters by {scatter:.1} deg");
         Self { span, kind, excitation, why }
     }
 }
 
-fn why(
-    kind: Kind,
-    cells: &[Cell],
-    holds: &[Hold],
+fn describe_reason(
+    kind: SegmentKind,
+    cells: &[LogCell],
+    holds: &[RudderHold],
     excitation: &Excitation,
-    before: &Cell,
+    before: &LogCell,
 ) -> String {
     let (low, high) = (excitation.rudder_low_deg, excitation.rudder_high_deg);
     let (turned, yaw) = (excitation.heading_range_deg, excitation.yaw_rate_max_deg_s);
@@ -78,17 +78,17 @@ fn why(
         None => "rudder amidships".to_owned(),
     };
     match kind {
-        Kind::Zigzag => format!(
+        SegmentKind::Zigzag => format!(
             "rudder {low:.0} to {high:+.0} deg, to the other side {} times, yaw rate to {yaw:.2} \
              deg/s",
             excitation.rudder_reversals
         ),
-        Kind::PullOut => {
+        SegmentKind::PullOut => {
             format!(
                 "{rudder}, then amidships while the ship turns on; heading over {turned:.0} deg"
             )
         }
-        Kind::Stop | Kind::SpeedChange => {
+        SegmentKind::Stop | SegmentKind::SpeedChange => {
             let last = cells.last().map_or(before.revolutions, |cell| cell.revolutions);
             let range = cells.iter().map(|cell| cell.revolutions).fold(last, f64::min);
             format!(
@@ -97,7 +97,7 @@ fn why(
                 before.revolutions, last
             )
         }
-        Kind::Turn | Kind::CourseChange | Kind::RudderMovement => format!(
+        SegmentKind::Turn | SegmentKind::CourseChange | SegmentKind::RudderMovement => format!(
             "{rudder}, heading over {turned:.0} deg, yaw rate to {yaw:.2} deg/s, speed over \
              {lost:.0} %"
         ),

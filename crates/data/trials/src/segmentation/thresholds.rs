@@ -5,7 +5,7 @@
 
 /// Thresholds between course keeping and movements of the controls.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct StretchThresholds {
+pub(crate) struct SegmentThresholds {
     /// `Fn`: Froude number by which a length is estimated from a speed if none is given,
     /// dimensionless. Source: merchant ships in service have 0.15 to 0.25 (Molland, Turnock and
     /// Hudson, Ship Resistance and Propulsion, 2011).
@@ -69,7 +69,7 @@ pub(crate) struct StretchThresholds {
 }
 
 /// Values of the thresholds.
-pub(crate) const THRESHOLDS: StretchThresholds = StretchThresholds {
+pub(crate) const THRESHOLDS: SegmentThresholds = SegmentThresholds {
     froude: 0.2,
     cell: 0.5,
     level: 400.0,

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use sistership_auth::Attempts;
-use sistership_auth::openid::Provider;
+use sistership_auth::FailedAttempts;
+use sistership_auth::openid::OpenIdProvider;
 use sistership_jobs::budget;
 use sistership_store::Store;
 use sistership_web_support::api_key::ApiKey;
-use sistership_web_support::known::Known;
+use sistership_web_support::known::CredentialCache;
 use sistership_web_support::problem::{Problem, Result};
 use tokio::sync::Semaphore;
 
@@ -15,9 +15,9 @@ use tokio::sync::Semaphore;
 pub struct Credentials {
     key: Option<ApiKey>,
     people: bool,
-    provider: Option<Provider>,
-    pub(crate) known: Known,
-    pub(crate) attempts: Attempts,
+    provider: Option<OpenIdProvider>,
+    pub(crate) known: CredentialCache,
+    pub(crate) attempts: FailedAttempts,
     /// Permits for the passwords that are hashed at a time.
     seats: Arc<Semaphore>,
 }
@@ -35,21 +35,21 @@ impl Credentials {
     pub fn new(
         key: Option<&str>,
         people: bool,
-        provider: Option<Provider>,
+        provider: Option<OpenIdProvider>,
         seats: Arc<Semaphore>,
     ) -> Self {
         let key = key.map(ApiKey::new);
-        let (known, attempts) = (Known::default(), Attempts::default());
+        let (known, attempts) = (CredentialCache::default(), FailedAttempts::default());
         Self { key, people, provider, known, attempts, seats }
     }
 
     /// Returns the accounts of a store.
-    pub fn of<'a>(&'a self, store: &'a Store) -> Accounts<'a> {
+    pub fn with_store<'a>(&'a self, store: &'a Store) -> Accounts<'a> {
         Accounts { credentials: self, store }
     }
 
     /// The server's one key, if it has one.
-    pub fn key(&self) -> Option<&ApiKey> {
+    pub fn server_key(&self) -> Option<&ApiKey> {
         self.key.as_ref()
     }
 
@@ -64,18 +64,18 @@ impl Credentials {
     }
 
     /// The OpenID provider at which people may sign in, if there is one.
-    pub fn provider(&self) -> Option<&Provider> {
+    pub fn provider(&self) -> Option<&OpenIdProvider> {
         self.provider.as_ref()
     }
 
     /// Computes a hash on a blocking thread.
-    pub(crate) async fn compute<T: Send + 'static>(
+    pub(crate) async fn run_blocking<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T> {
         // A request that is dropped while it waits gives its place up.
         let seat = Arc::clone(&self.seats).acquire_owned().await.map_err(Problem::internal)?;
-        let task = tokio::task::spawn_blocking(budget::carried(move || {
+        let task = tokio::task::spawn_blocking(budget::with_request_memory(move || {
             let _seat = seat;
             work()
         }));
@@ -85,7 +85,7 @@ impl Credentials {
 
 impl Accounts<'_> {
     /// Clears the cache of principals, as somebody's rights have changed.
-    pub fn forget(&self) {
-        self.credentials.known.forget();
+    pub fn clear_cache(&self) {
+        self.credentials.known.clear_all();
     }
 }

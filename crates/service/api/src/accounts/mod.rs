@@ -8,6 +8,6 @@ mod provided;
 mod users;
 
 pub use credentials::{Accounts, Credentials};
-pub use identify::{COOKIE, Refusal, cookie};
-pub use provided::Outcome;
-pub use users::SESSION;
+pub use identify::{IdentityRefusal, SESSION_COOKIE, find_cookie};
+pub use provided::SignInOutcome;
+pub use users::SESSION_LIFETIME;

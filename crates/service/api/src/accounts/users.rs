@@ -4,18 +4,18 @@ use std::time::{Duration, Instant};
 
 use http::StatusCode;
 use sistership_auth::{
-    Attempt, Grant, KeyText, check_name, check_password, hash_password, hex, secret, sha256,
-    verify_password, verify_unknown,
+    Grant, KeyText, SignInAttempt, check_name, check_password, hash_password, hash_text,
+    random_secret, to_hex, verify_password, verify_unknown,
 };
 use sistership_jobs::budget;
 use sistership_store::{KeyRow, NewKey, User};
 use sistership_web_support::problem::{Problem, Result};
 
 use crate::accounts::credentials::Accounts;
-use crate::accounts::grants::rows;
+use crate::accounts::grants::grant_rows;
 
 /// Duration of a session in a browser.
-pub const SESSION: Duration = Duration::from_secs(12 * 3600);
+pub const SESSION_LIFETIME: Duration = Duration::from_secs(12 * 3600);
 /// Memory for hashing one password, bytes.
 const HASH_BYTES: u64 = 19 << 20;
 
@@ -30,33 +30,33 @@ impl Accounts<'_> {
     ) -> Result<User> {
         check_name(name).map_err(|message| Problem::invalid("name", message))?;
         let hash = match password {
-            Some(password) => Some(self.hashed(password).await?),
+            Some(password) => Some(self.hash_new_password(password).await?),
             None => None,
         };
-        Ok(self.store.users().create(name, title, hash.as_deref(), &rows(roles)).await?)
+        Ok(self.store.users().create(name, title, hash.as_deref(), &grant_rows(roles)).await?)
     }
 
     /// Sets a password, which ends all sessions of the user.
     pub async fn set_password(&self, name: &str, password: &str) -> Result<User> {
-        let hash = self.hashed(password).await?;
+        let hash = self.hash_new_password(password).await?;
         let user = self.store.users().set_password(name, &hash).await?;
-        self.forget();
+        self.clear_cache();
         Ok(user)
     }
 
     /// Replaces all roles of a user or a key by these.
     pub async fn set_roles(&self, principal: &str, roles: &[Grant]) -> Result<()> {
-        self.store.grants().replace(principal, &rows(roles)).await?;
-        self.forget();
+        self.store.grants().replace_roles(principal, &grant_rows(roles)).await?;
+        self.clear_cache();
         Ok(())
     }
 
     /// Disables a user, who then has no rights, or enables them again.
-    pub async fn enable(&self, name: &str, on: bool) -> Result<User> {
+    pub async fn set_enabled(&self, name: &str, on: bool) -> Result<User> {
         let users = self.store.users();
         // The name stays taken, so that the audit stays unambiguous.
         let user = if on { users.enable(name).await? } else { users.disable(name).await? };
-        self.forget();
+        self.clear_cache();
         Ok(user)
     }
 
@@ -69,34 +69,37 @@ impl Accounts<'_> {
         roles: &[Grant],
     ) -> Result<(KeyText, KeyRow)> {
         let text = KeyText::new().map_err(Problem::internal)?;
-        let kept = text.kept();
+        let kept = text.to_stored();
         let title = title.to_owned();
         let new = NewKey { prefix: kept.prefix, title, user, sha256: kept.sha256, expires_us };
-        Ok((text, self.store.service_keys().create(&new, &rows(roles)).await?))
+        Ok((text, self.store.service_keys().create(&new, &grant_rows(roles)).await?))
     }
 
     /// Revokes a key.
     pub async fn revoke(&self, prefix: &str) -> Result<KeyRow> {
         let key = self.store.service_keys().revoke(prefix).await?;
-        self.forget();
+        self.clear_cache();
         Ok(key)
     }
 
-    async fn hashed(&self, password: &str) -> Result<String> {
+    async fn hash_new_password(&self, password: &str) -> Result<String> {
         check_password(password).map_err(|message| Problem::invalid("password", message))?;
         // Argon2 takes a fixed amount of memory for each hash.
-        budget::take(HASH_BYTES).await?;
+        budget::reserve_for_request(HASH_BYTES).await?;
         let password = password.to_owned();
-        self.credentials.compute(move || hash_password(&password)).await?.map_err(Problem::internal)
+        self.credentials
+            .run_blocking(move || hash_password(&password))
+            .await?
+            .map_err(Problem::internal)
     }
 
     /// Begins a session of a user who knows the password; returns the secret of its cookie.
     pub async fn sign_in(&self, name: &str, password: &str, from: &str) -> Result<String> {
-        self.verified(name, password, from).await?;
-        let secret = secret().map_err(Problem::internal)?;
-        let ends = i64::try_from(SESSION.as_micros()).unwrap_or(i64::MAX);
+        self.verify_password_of(name, password, from).await?;
+        let secret = random_secret().map_err(Problem::internal)?;
+        let ends = i64::try_from(SESSION_LIFETIME.as_micros()).unwrap_or(i64::MAX);
         let until = self.store.now_us().saturating_add(ends);
-        self.store.sessions().begin(&hex(&sha256(&secret)), name, until).await?;
+        self.store.sessions().begin_session(&to_hex(&hash_text(&secret)), name, until).await?;
         Ok(secret)
     }
 
@@ -105,32 +108,32 @@ impl Accounts<'_> {
     /// # Errors
     /// Returns 401 if it is wrong or there is no such user, which cannot be distinguished, and 429
     /// after too many wrong ones.
-    pub async fn verified(&self, name: &str, password: &str, from: &str) -> Result<()> {
-        let (attempts, attempt) = (&self.credentials.attempts, Attempt { name, from });
-        attempts.begin(attempt, Instant::now()).map_err(|wait| {
+    pub async fn verify_password_of(&self, name: &str, password: &str, from: &str) -> Result<()> {
+        let (attempts, attempt) = (&self.credentials.attempts, SignInAttempt { name, from });
+        attempts.begin_attempt(attempt, Instant::now()).map_err(|wait| {
             let wait = wait.as_secs().max(1);
             let why = format!("too many wrong passwords; try again in {wait} s");
             Problem::new(StatusCode::TOO_MANY_REQUESTS, why)
         })?;
-        match self.is_right(name, password).await {
-            Ok(true) => attempts.right(attempt, Instant::now()),
+        match self.is_password_correct(name, password).await {
+            Ok(true) => attempts.record_success(attempt, Instant::now()),
             Ok(false) => {
                 tracing::warn!(name, from, "a wrong password");
                 return Err(Problem::new(StatusCode::UNAUTHORIZED, "name or password is wrong"));
             }
             Err(problem) => {
                 // An error of the server is no failed attempt.
-                attempts.withdraw(attempt, Instant::now());
+                attempts.withdraw_attempt(attempt, Instant::now());
                 return Err(problem);
             }
         }
         Ok(())
     }
 
-    async fn is_right(&self, name: &str, password: &str) -> Result<bool> {
+    async fn is_password_correct(&self, name: &str, password: &str) -> Result<bool> {
         let user = self.store.users().find(name).await?.filter(User::is_enabled);
         let hash = user.and_then(|user| user.password_hash);
-        budget::take(HASH_BYTES).await?;
+        budget::reserve_for_request(HASH_BYTES).await?;
         let password = password.to_owned();
         // A user that does not exist takes as long as a wrong password, so that names cannot be
         // found out.
@@ -141,6 +144,6 @@ impl Accounts<'_> {
                 false
             }
         };
-        self.credentials.compute(compare).await
+        self.credentials.run_blocking(compare).await
     }
 }

@@ -6,85 +6,92 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 use sistership_learned::{BranchKind, BranchSettings};
 use sistership_model::trial::Trial;
-use sistership_model::version::sha256;
-use sistership_model_selection::Ladder;
-use sistership_priors::source::Similarity;
+use sistership_model::version::sha256_hex;
+use sistership_model_selection::SelectionReport;
+use sistership_priors::source::SimilarityRanking;
 use sistership_store::{
-    Expect, Job, Kept, NewJob, NewReport, NewVersion, Refinement, StoreError, Version,
+    ExpectedRevision, Job, NewJob, NewRefinement, NewReport, NewVersion, RefinementRows,
+    StoreError, Version,
 };
 
-use super::outcome::{JobError, Result, failed};
-use super::prepared::Prepared;
+use super::outcome::{JobError, Result, permanent_failure};
+use super::prepared::PreparedRefinement;
 use crate::app::App;
-use sistership_jobs::derive::{Derived, Refined};
-use sistership_jobs::line::{CANDIDATE, CHAMPION, Standing, step};
-use sistership_jobs::promotion::{Comparison, against_champion};
-use sistership_jobs::request::{BRANCH, BranchJob};
-use sistership_report::{self as report, Rendered, VersionLabel};
+use sistership_jobs::derive::{DerivedVersion, RefinementRun};
+use sistership_jobs::line::{CANDIDATE, CHAMPION, VersionHistory, server_move};
+use sistership_jobs::promotion::{ChampionComparison, compare_with_champion};
+use sistership_jobs::request::{BRANCH_JOB_KIND, BranchJob};
+use sistership_report::{self as report, RenderedReport, VersionLabel};
 
 /// A version that is about to be kept, with the inputs of its report.
-struct Made {
+struct PendingVersion {
     version: NewVersion,
-    refined: Arc<Refined>,
-    similarity: Option<Arc<Similarity>>,
-    ladder: Option<Arc<Ladder>>,
-    comparison: Option<Comparison>,
+    refined: Arc<RefinementRun>,
+    similarity: Option<Arc<SimilarityRanking>>,
+    ladder: Option<Arc<SelectionReport>>,
+    comparison: Option<ChampionComparison>,
     /// The selected learned correction, with the ids of the trials to train it on.
     branch: Option<(BranchKind, Vec<String>)>,
     result: Value,
 }
 
 /// Keeps the derived version: as champion if the ship has none, otherwise as candidate.
-pub(super) async fn commit(
+pub(super) async fn commit_refinement(
     app: &App,
     job: &Job,
-    derived: Derived,
-    (prepared, trials): (Prepared, &[String]),
+    derived: DerivedVersion,
+    (prepared, trials): (PreparedRefinement, &[String]),
 ) -> Result<()> {
     // The comparison with the champion is computed once, outside of the loop: it takes simulations
     // and does not depend on the version's number.
     let hashes = derived.document.recipe.trials().iter().map(|t| t.sha256.clone()).collect();
-    let made = Made::new(derived, prepared, trials)?;
+    let made = PendingVersion::new(derived, prepared, trials)?;
     let refined = Arc::clone(&made.refined);
-    let comparison = against_champion(app.archive(), &made.version.model, refined, hashes).await?;
-    let made = Made { comparison, ..made };
+    let comparison =
+        compare_with_champion(app.archive(), &made.version.model, refined, hashes).await?;
+    let made = PendingVersion { comparison, ..made };
     for _ in 0..super::TRIES {
-        let standing = Standing::of(app.store(), &made.version.model).await?;
-        let report = made.report(app, standing.next).await?;
-        match made.keep(app, job, &standing, report).await {
+        let standing = VersionHistory::read_current(app.store(), &made.version.model).await?;
+        let report = made.render_report(app, standing.next).await?;
+        match made.commit(app, job, &standing, report).await {
             // Another version has come in between; the report would name the wrong number.
             Err(JobError::Store(StoreError::PreconditionFailed { .. })) => {}
             other => return other,
         }
     }
-    Err(failed("other versions of the ship kept coming in between; retry the job"))
+    Err(permanent_failure("other versions of the ship kept coming in between; retry the job"))
 }
 
-impl Made {
-    fn new(derived: Derived, prepared: Prepared, trials: &[String]) -> Result<Self> {
-        let Derived { document, refined, .. } = derived;
+impl PendingVersion {
+    fn new(
+        derived: DerivedVersion,
+        prepared: PreparedRefinement,
+        trials: &[String],
+    ) -> Result<Self> {
+        let DerivedVersion { document, refined, .. } = derived;
         let named = |source: &Version| format!("{}/{}", source.head.model, source.head.number);
         let source = prepared.start.source.as_ref().map(named);
-        let refined = refined.ok_or_else(|| failed("the recipe is not that of a refinement"))?;
+        let refined =
+            refined.ok_or_else(|| permanent_failure("the recipe is not that of a refinement"))?;
         let version = NewVersion {
             model: document.ship.clone(),
             parent: prepared.start.source.map(|source| source.head.id),
             law: document.model.law.clone(),
             method: refined.refinement.method.clone(),
-            document: document.canonical().map_err(failed)?,
+            document: document.to_canonical_json().map_err(permanent_failure)?,
             weights: None,
         };
         // The ranking and the selection of the source model are part of the result.
         let ranking = prepared.start.similarity.as_ref().map(|similarity| &similarity.ranking);
-        let from = refined.refinement.settings.origin(source.as_deref()).to_owned();
+        let from = refined.refinement.settings.prior_origin(source.as_deref()).to_owned();
         let mut result = json!({ "source": source, "from": from, "held_out": refined.refinement.held_out,
             "ranking": ranking });
         if let Some(ladder) = &prepared.start.ladder {
-            result["ladder"] = serde_json::to_value(ladder).map_err(failed)?;
+            result["ladder"] = serde_json::to_value(ladder).map_err(permanent_failure)?;
         }
         Ok(Self {
             version,
-            branch: branch(prepared.start.ladder.as_ref(), &refined, trials),
+            branch: selected_branch(prepared.start.ladder.as_ref(), &refined, trials),
             refined: Arc::new(refined),
             similarity: prepared.start.similarity.map(Arc::new),
             ladder: prepared.start.ladder.map(Arc::new),
@@ -93,15 +100,17 @@ impl Made {
         })
     }
 
-    async fn report(&self, app: &App, number: i64) -> Result<NewReport> {
-        let sha256 = sha256(self.version.document.as_bytes());
+    async fn render_report(&self, app: &App, number: i64) -> Result<NewReport> {
+        let sha256 = sha256_hex(self.version.document.as_bytes());
         let label = VersionLabel { ship: self.version.model.clone(), number, sha256 };
         let (refined, similarity) = (Arc::clone(&self.refined), self.similarity.clone());
         let ladder = self.ladder.clone();
         // The closure needs its own handles: rendering runs on a blocking thread.
-        let how = move || render(&refined, (similarity.as_deref(), ladder.as_deref()), label);
-        let rendered = app.compute(how).await??;
-        let document = serde_json::to_string(&rendered.json).map_err(failed)?;
+        let how = move || {
+            render_refinement_report(&refined, (similarity.as_deref(), ladder.as_deref()), label)
+        };
+        let rendered = app.run_blocking(how).await??;
+        let document = serde_json::to_string(&rendered.json).map_err(permanent_failure)?;
         Ok(NewReport {
             version_id: None,
             ship: self.version.model.clone(),
@@ -111,11 +120,11 @@ impl Made {
         })
     }
 
-    async fn keep(
+    async fn commit(
         &self,
         app: &App,
         job: &Job,
-        standing: &Standing,
+        standing: &VersionHistory,
         report: NewReport,
     ) -> Result<()> {
         let reason = format!(
@@ -127,37 +136,43 @@ impl Made {
         // champion, does not become candidate. Only a ship without champion gets one without a
         // person.
         let alias = match &self.comparison {
-            _ if !standing.champion && !standing.second_person => Some((CHAMPION, Expect::Absent)),
+            _ if !standing.champion && !standing.second_person => {
+                Some((CHAMPION, ExpectedRevision::Absent))
+            }
             Some(comparison) if comparison.is_worse() => None,
-            _ => Some((CANDIDATE, Expect::Any)),
+            _ => Some((CANDIDATE, ExpectedRevision::Any)),
         };
-        let own = alias.map(|(alias, expect)| step(alias, expect, &reason));
-        let moves = own.into_iter().chain([standing.follow(&reason)]).collect();
+        let own = alias.map(|(alias, expect)| server_move(alias, expect, &reason));
+        let moves = own.into_iter().chain([standing.move_latest(&reason)]).collect();
         let alias = alias.map(|(alias, _)| alias);
-        let (report, next) = (Some(report), self.next(standing.next)?);
-        let refinement = Refinement { version: self.version.clone(), moves, report, next };
-        let result = |kept: &Kept<'_>| self.result(kept, alias);
+        let (report, next) = (Some(report), self.training_job(standing.next)?);
+        let refinement = NewRefinement { version: self.version.clone(), moves, report, next };
+        let result = |kept: &RefinementRows<'_>| self.job_result(kept, alias);
         app.store().commit_refinement(None, (&job.id, job.fence), &refinement, result).await?;
         Ok(())
     }
 
     /// Returns the job that trains the learned correction on the version of this number.
-    fn next(&self, number: i64) -> Result<Option<NewJob>> {
+    fn training_job(&self, number: i64) -> Result<Option<NewJob>> {
         let Some((kind, trials)) = self.branch.clone() else { return Ok(None) };
         let ship = self.version.model.clone();
-        let settings = BranchSettings::default().of(kind);
+        let settings = BranchSettings::default().with_kind(kind);
         let asked = BranchJob { ship: ship.clone(), number, trials, settings };
-        let request = serde_json::to_string(&asked).map_err(failed)?;
-        Ok(Some(NewJob { kind: BRANCH.to_owned(), ship: Some(ship), request }))
+        let request = serde_json::to_string(&asked).map_err(permanent_failure)?;
+        Ok(Some(NewJob { kind: BRANCH_JOB_KIND.to_owned(), ship: Some(ship), request }))
     }
 
-    fn result(&self, Kept { version, report, next }: &Kept<'_>, alias: Option<&str>) -> String {
+    fn job_result(
+        &self,
+        RefinementRows { version, report, next }: &RefinementRows<'_>,
+        alias: Option<&str>,
+    ) -> String {
         let mut result = self.result.clone();
         result["model"] = json!(version.model);
         result["version"] = json!(version.number);
         result["sha256"] = json!(version.sha256);
         result["alias"] = json!(alias);
-        result["comparison"] = json!(self.comparison.as_ref().map(Comparison::words));
+        result["comparison"] = json!(self.comparison.as_ref().map(ChampionComparison::describe));
         result["report"] = json!(report.map(|report| &report.id));
         if let Some(next) = next {
             result["branch_job"] = json!(next.id);
@@ -168,9 +183,9 @@ impl Made {
 
 /// Returns the selected kind of learned correction, and the ids of the trials that the refinement
 /// was fitted to.
-fn branch(
-    ladder: Option<&Ladder>,
-    refined: &Refined,
+fn selected_branch(
+    ladder: Option<&SelectionReport>,
+    refined: &RefinementRun,
     trials: &[String],
 ) -> Option<(BranchKind, Vec<String>)> {
     let kind = ladder?.branch.as_ref()?.taken?;
@@ -181,11 +196,11 @@ fn branch(
     Some((kind, fitted.map(|(_, id)| id.clone()).collect()))
 }
 
-fn render(
-    refined: &Refined,
-    (similarity, ladder): (Option<&Similarity>, Option<&Ladder>),
+fn render_refinement_report(
+    refined: &RefinementRun,
+    (similarity, ladder): (Option<&SimilarityRanking>, Option<&SelectionReport>),
     version: VersionLabel,
-) -> Result<Rendered> {
+) -> Result<RenderedReport> {
     let trials: Vec<&Trial> = refined.ingredients.trials.iter().collect();
     let input = report::RefinementInput {
         refinement: &refined.refinement,
@@ -196,5 +211,5 @@ fn render(
         ladder,
         version: Some(version),
     };
-    report::render_refinement(&input).map_err(failed)
+    report::render_refinement(&input).map_err(permanent_failure)
 }

@@ -6,44 +6,51 @@ use sistership_jobs::memory::job_bytes;
 use sistership_store::{Job, StoreError};
 
 use super::diagnosis::with_earlier;
-use super::outcome::{JobError, Result, failed};
-use super::progress::Progress;
+use super::outcome::{JobError, Result, permanent_failure};
+use super::progress::JobProgress;
 use crate::app::App;
-use sistership_jobs::budget::{Share, Shortage};
+use sistership_jobs::budget::{MemoryShare, MemoryShortage};
 use sistership_jobs::request::{
-    BRANCH, BranchJob, DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob,
+    BRANCH_JOB_KIND, BranchJob, DIAGNOSIS_JOB_KIND, DiagnosisJob, REFINEMENT_JOB_KIND,
+    RefinementJob,
 };
 
 /// Interval at which a job that waits for memory checks whether it must stop.
-const LOOK: Duration = Duration::from_millis(500);
+const POLL_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Takes the memory of a job as soon as others have given it back: the job waits in its worker, and
 /// smaller jobs of other workers pass it.
-pub(super) async fn taken(app: &App, job: &Job, progress: &Progress) -> Result<Share> {
-    let bytes = demand(app, job).await?;
+pub(super) async fn take_memory(
+    app: &App,
+    job: &Job,
+    progress: &JobProgress,
+) -> Result<MemoryShare> {
+    let bytes = estimate_demand(app, job).await?;
     loop {
-        match app.job_memory().take(bytes, LOOK).await {
+        match app.job_memory().reserve(bytes, POLL_INTERVAL).await {
             Ok(share) => return Ok(share),
-            Err(never @ Shortage::Never { .. }) => {
-                return Err(failed(format!(
+            Err(never @ MemoryShortage::Never { .. }) => {
+                return Err(permanent_failure(format!(
                     "{never}: give it fewer or shorter trials, or let jobs have more memory"
                 )));
             }
             // The report also returns false if the job has been cancelled meanwhile.
-            Err(busy) if progress.tell(0.0, &format!("waiting: {busy}")) => {}
+            Err(busy) if progress.report(0.0, &format!("waiting: {busy}")) => {}
             Err(_) => return Err(JobError::Stopped),
         }
     }
 }
 
-async fn demand(app: &App, job: &Job) -> Result<u64> {
+async fn estimate_demand(app: &App, job: &Job) -> Result<u64> {
     let (law, trials) = match job.kind.as_str() {
-        REFINEMENT => {
-            let asked = serde_json::from_str::<RefinementJob>(&job.request).map_err(failed)?;
+        REFINEMENT_JOB_KIND => {
+            let asked =
+                serde_json::from_str::<RefinementJob>(&job.request).map_err(permanent_failure)?;
             (asked.law, asked.trials)
         }
-        DIAGNOSIS => {
-            let asked = serde_json::from_str::<DiagnosisJob>(&job.request).map_err(failed)?;
+        DIAGNOSIS_JOB_KIND => {
+            let asked =
+                serde_json::from_str::<DiagnosisJob>(&job.request).map_err(permanent_failure)?;
             match app.store().versions().get(&asked.ship, asked.number).await {
                 Ok(version) => {
                     let whole = with_earlier(app, &asked, &version).await?;
@@ -54,8 +61,9 @@ async fn demand(app: &App, job: &Job) -> Result<u64> {
                 Err(error) => return Err(error.into()),
             }
         }
-        BRANCH => {
-            let asked = serde_json::from_str::<BranchJob>(&job.request).map_err(failed)?;
+        BRANCH_JOB_KIND => {
+            let asked =
+                serde_json::from_str::<BranchJob>(&job.request).map_err(permanent_failure)?;
             (None, asked.trials)
         }
         // These kinds read one trial after the other.
@@ -71,7 +79,7 @@ async fn demand(app: &App, job: &Job) -> Result<u64> {
         };
     }
     let law = match law {
-        Some(name) => app.law(&name).await.ok(),
+        Some(name) => app.stored_law(&name).await.ok(),
         None => None,
     };
     Ok(job_bytes(samples, law.as_deref()))

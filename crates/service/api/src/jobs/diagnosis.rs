@@ -5,26 +5,26 @@ use std::sync::Arc;
 use sistership_model::version::SourceVersion;
 use sistership_store::{Job, Version};
 
-use super::commit_diagnosis::{TrialsDiagnosis, commit};
-use super::outcome::{Result, failed};
-use super::prepared::trials;
-use super::progress::Progress;
-use super::progress::tell;
+use super::commit_diagnosis::{TrialsDiagnosis, commit_diagnosis};
+use super::outcome::{Result, permanent_failure};
+use super::prepared::recipe_trials;
+use super::progress::JobProgress;
+use super::progress::report_progress;
 use crate::app::App;
-use sistership_jobs::condition::gathered;
-use sistership_jobs::derive::diagnosed;
+use sistership_jobs::condition::trials_to_diagnose;
+use sistership_jobs::derive::run_diagnosis;
 use sistership_jobs::memory::job_bytes;
 use sistership_jobs::recipe::{DiagnosisKind, DiagnosisRecipe};
 use sistership_jobs::request::DiagnosisJob;
-use sistership_jobs::sorted::sorted;
-use sistership_jobs::start::library_of;
+use sistership_jobs::sorted::sort_keys;
+use sistership_jobs::start::stored_library;
 use sistership_model::version::code_revision;
 
 /// Runs a diagnosis of the new trials and, if the job asks for it, another of these together with
 /// earlier ones.
-pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> {
-    let asked: DiagnosisJob = serde_json::from_str(&job.request).map_err(failed)?;
-    tell(&progress, 0.01, "reading the trials")?;
+pub(super) async fn run_diagnosis(app: &App, job: &Job, progress: JobProgress) -> Result<()> {
+    let asked: DiagnosisJob = serde_json::from_str(&job.request).map_err(permanent_failure)?;
+    report_progress(&progress, 0.01, "reading the trials")?;
     let version = app.store().versions().get(&asked.ship, asked.number).await?;
     let whole = with_earlier(app, &asked, &version).await?;
     // The progress of each part is in proportion to its number of trials.
@@ -32,30 +32,33 @@ pub(super) async fn run(app: &App, job: &Job, progress: Progress) -> Result<()> 
         .as_ref()
         .map_or(0.0, |whole| whole.len() as f64 / (whole.len() + asked.trials.len()) as f64);
     let (begin, middle, end) = (0.05, 0.9 - 0.85 * share, 0.9);
-    let new = part(app, &asked, (&version, &asked.trials), (&progress, begin, middle)).await?;
+    let new =
+        diagnose_part(app, &asked, (&version, &asked.trials), (&progress, begin, middle)).await?;
     let (all, of_new) = match whole {
         None => (new, None),
         Some(whole) => {
-            tell(&progress, middle, "with the trials before them")?;
-            let all = part(app, &asked, (&version, &whole), (&progress, middle, end)).await?;
+            report_progress(&progress, middle, "with the trials before them")?;
+            let all =
+                diagnose_part(app, &asked, (&version, &whole), (&progress, middle, end)).await?;
             (all, Some(new))
         }
     };
-    tell(&progress, 0.92, "writing the report")?;
-    commit(app, job, &version.head, (all, of_new)).await
+    report_progress(&progress, 0.92, "writing the report")?;
+    commit_diagnosis(app, job, &version.head, (all, of_new)).await
 }
 
 /// Diagnoses some trials; the progress goes from `begin` to `end`.
-async fn part(
+async fn diagnose_part(
     app: &App,
     asked: &DiagnosisJob,
     (version, trials): (&Version, &[String]),
-    (progress, begin, end): (&Progress, f64, f64),
+    (progress, begin, end): (&JobProgress, f64, f64),
 ) -> Result<TrialsDiagnosis> {
-    let recipe = recipe(app, asked, version, trials).await?;
+    let recipe = diagnosis_recipe(app, asked, version, trials).await?;
     let step = progress.clone();
-    let scaled = move |fraction: f64, what: &str| step.tell(begin + (end - begin) * fraction, what);
-    let diagnosed = diagnosed(app.archive(), recipe, Arc::new(scaled)).await?;
+    let scaled =
+        move |fraction: f64, what: &str| step.report(begin + (end - begin) * fraction, what);
+    let diagnosed = run_diagnosis(app.archive(), recipe, Arc::new(scaled)).await?;
     Ok(TrialsDiagnosis::new(diagnosed, trials))
 }
 
@@ -69,13 +72,13 @@ pub(super) async fn with_earlier(
     if !asked.with_earlier {
         return Ok(None);
     }
-    let law = app.law(&version.head.law).await.ok();
+    let law = app.stored_law(&version.head.law).await.ok();
     let most = app.limits().job_memory;
     let is_affordable = |samples: u64| job_bytes(samples, law.as_deref()) <= most;
-    Ok(gathered(app.archive(), version, &asked.trials, &is_affordable).await?)
+    Ok(trials_to_diagnose(app.archive(), version, &asked.trials, &is_affordable).await?)
 }
 
-async fn recipe(
+async fn diagnosis_recipe(
     app: &App,
     asked: &DiagnosisJob,
     version: &Version,
@@ -88,9 +91,9 @@ async fn recipe(
         kind: DiagnosisKind::Diagnosis,
         diagnosed: SourceVersion { ship, number, sha256 },
         law_sha256: law.sha256,
-        trials: trials(app, ids).await?,
-        effects_sha256: library_of(app.archive()).await?.sha256.clone(),
-        settings: sorted(serde_json::to_value(&asked.settings).map_err(failed)?),
+        trials: recipe_trials(app, ids).await?,
+        effects_sha256: stored_library(app.archive()).await?.sha256.clone(),
+        settings: sort_keys(serde_json::to_value(&asked.settings).map_err(permanent_failure)?),
         code_revision: code_revision().to_owned(),
     })
 }

@@ -15,7 +15,8 @@ mod refinement;
 mod worker;
 
 pub(crate) use sistership_jobs::request::{
-    BRANCH, BranchJob, DIAGNOSIS, DiagnosisJob, REFINEMENT, RefinementJob, SourceChoice,
+    BRANCH_JOB_KIND, BranchJob, DIAGNOSIS_JOB_KIND, DiagnosisJob, REFINEMENT_JOB_KIND,
+    RefinementJob, SourceChoice,
 };
 pub(crate) use worker::Worker;
 

@@ -20,7 +20,7 @@ pub(super) enum JobError {
 /// Result of a step of a job.
 pub(super) type Result<T> = std::result::Result<T, JobError>;
 
-pub(super) fn failed(reason: impl std::fmt::Display) -> JobError {
+pub(super) fn permanent_failure(reason: impl std::fmt::Display) -> JobError {
     JobError::Failed(reason.to_string())
 }
 
@@ -30,7 +30,7 @@ impl From<StoreError> for JobError {
             // Lack of space is temporary, whatever kind of error carries it.
             full if full.is_out_of_space() => Self::Store(full),
             StoreError::NotFound { .. } | StoreError::Invalid { .. } | StoreError::Objects(_) => {
-                failed(error)
+                permanent_failure(error)
             }
             other => Self::Store(other),
         }
@@ -42,7 +42,7 @@ impl From<DeriveError> for JobError {
         match error {
             DeriveError::Store(error) => error.into(),
             DeriveError::Refine(RefineError::Cancelled) => Self::Stopped,
-            other => failed(other),
+            other => permanent_failure(other),
         }
     }
 }
@@ -50,8 +50,8 @@ impl From<DeriveError> for JobError {
 impl From<Problem> for JobError {
     fn from(problem: Problem) -> Self {
         match problem.status {
-            507 => Self::Store(StoreError::no_room()),
-            _ => failed(problem.detail),
+            507 => Self::Store(StoreError::out_of_space()),
+            _ => permanent_failure(problem.detail),
         }
     }
 }

@@ -8,7 +8,7 @@ use super::outcome::{JobError, Result};
 
 /// Reason to stop work before its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stop {
+pub(super) enum StopReason {
     /// The job was cancelled.
     Cancelled,
     /// The server is stopping.
@@ -19,12 +19,12 @@ pub(super) enum Stop {
 
 /// Progress of work, and the signal to stop it. A clone is another handle on the same.
 #[derive(Debug, Clone)]
-pub(super) struct Progress {
-    stop: Arc<OnceLock<Stop>>,
+pub(super) struct JobProgress {
+    stop: Arc<OnceLock<StopReason>>,
     told: Arc<watch::Sender<(f64, String)>>,
 }
 
-impl Progress {
+impl JobProgress {
     pub(super) fn new() -> (Self, watch::Receiver<(f64, String)>) {
         let (told, seen) = watch::channel((0.0, String::new()));
         (Self { stop: Arc::default(), told: Arc::new(told) }, seen)
@@ -33,7 +33,7 @@ impl Progress {
     /// Reports progress, a fraction of 1; returns false if the work must stop. The progress never
     /// goes back: work that begins anew, as others came in between, keeps the greatest value so
     /// far.
-    pub(super) fn tell(&self, fraction: f64, what: &str) -> bool {
+    pub(super) fn report(&self, fraction: f64, what: &str) -> bool {
         self.told.send_modify(|(so_far, doing)| {
             *so_far = so_far.max(fraction);
             what.clone_into(doing);
@@ -42,11 +42,11 @@ impl Progress {
     }
 
     /// Asks the work to stop; the first reason counts.
-    pub(super) fn stop(&self, why: Stop) {
+    pub(super) fn stop(&self, why: StopReason) {
         self.stop.get_or_init(|| why);
     }
 
-    pub(super) fn stopped(&self) -> Option<Stop> {
+    pub(super) fn stop_reason(&self) -> Option<StopReason> {
         self.stop.get().copied()
     }
 }
@@ -55,8 +55,8 @@ impl Progress {
 ///
 /// # Errors
 /// Returns an error if the job must stop.
-pub(super) fn tell(progress: &Progress, fraction: f64, what: &str) -> Result<()> {
-    if progress.tell(fraction, what) { Ok(()) } else { Err(JobError::Stopped) }
+pub(super) fn report_progress(progress: &JobProgress, fraction: f64, what: &str) -> Result<()> {
+    if progress.report(fraction, what) { Ok(()) } else { Err(JobError::Stopped) }
 }
 
 #[cfg(test)]
@@ -65,12 +65,12 @@ mod tests {
 
     #[test]
     fn progress_never_runs_backwards() {
-        let (progress, seen) = Progress::new();
+        let (progress, seen) = JobProgress::new();
         for (fraction, shown) in [(0.5, 0.5), (0.2, 0.5), (f64::NAN, 0.5), (0.9, 0.9)] {
-            assert!(progress.tell(fraction, "work"));
+            assert!(progress.report(fraction, "work"));
             assert_eq!(seen.borrow().0, shown);
         }
-        progress.stop(Stop::Cancelled);
-        assert!(!progress.tell(1.0, "work"));
+        progress.stop(StopReason::Cancelled);
+        assert!(!progress.report(1.0, "work"));
     }
 }

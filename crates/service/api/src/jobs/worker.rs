@@ -3,41 +3,41 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use sistership_store::{Actor, Claimed, Job, StoreError};
+use sistership_store::{Actor, Job, JobClaim, StoreError};
 use tokio::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, watch};
 use tokio::task::JoinHandle;
 use uuid::Uuid;
 
 use super::outcome::JobError;
-use super::progress::{Progress, Stop};
+use super::progress::{JobProgress, StopReason};
 use super::{branch, chunk, demand, diagnosis, family_prior, refinement};
 use crate::app::App;
-use sistership_jobs::fleet::{BULK, LEARN};
-use sistership_jobs::request::{BRANCH, DIAGNOSIS, REFINEMENT};
-use sistership_listener::Stopping;
+use sistership_jobs::fleet::{BULK_JOB_KIND, PRIOR_JOB_KIND};
+use sistership_jobs::request::{BRANCH_JOB_KIND, DIAGNOSIS_JOB_KIND, REFINEMENT_JOB_KIND};
+use sistership_listener::StopSignal;
 
 /// Interval at which progress is written while it changes.
-const TELL: Duration = Duration::from_millis(250);
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 /// Pause after a failure of the database.
-const BREATH: Duration = Duration::from_secs(1);
+const RETRY_DELAY: Duration = Duration::from_secs(1);
 /// Pause while there is no space to write, which a person has to free.
-const NO_ROOM: Duration = Duration::from_secs(5);
+const SPACE_RETRY_DELAY: Duration = Duration::from_secs(5);
 
 /// One of the workers of this process.
 pub(crate) struct Worker {
     app: App,
     name: String,
-    stopping: Stopping,
+    stopping: StopSignal,
 }
 
 /// Permission of a worker to run a job: together with the other workers of the process, or alone.
-enum Turn<'a> {
+enum WorkerTurn<'a> {
     Shared { _held: RwLockReadGuard<'a, ()> },
     Alone { held: RwLockWriteGuard<'a, ()> },
 }
 
-impl Turn<'_> {
-    fn shared(self) -> Self {
+impl WorkerTurn<'_> {
+    fn into_shared(self) -> Self {
         match self {
             Self::Alone { held } => Self::Shared { _held: held.downgrade() },
             shared => shared,
@@ -46,45 +46,56 @@ impl Turn<'_> {
 }
 
 /// Running work with its progress.
-struct Watched {
+struct WatchedWork {
     work: JoinHandle<Result<(), JobError>>,
-    progress: Progress,
+    progress: JobProgress,
     seen: watch::Receiver<(f64, String)>,
 }
 
 impl Worker {
     pub(crate) fn new(app: App) -> Self {
         let name = format!("{}-{}", std::process::id(), Uuid::now_v7());
-        Self { stopping: app.stopping(), app, name }
+        Self { stopping: app.stop_signal(), app, name }
     }
 
     /// Claims and runs jobs until the server stops.
     pub(crate) async fn run(mut self) {
-        let turns = Arc::clone(self.app.turns());
+        let turns = Arc::clone(self.app.worker_turns());
         // Set once the queue has a job during whose earlier attempt a process ended: it is claimed
         // under the exclusive turn, so that it can take no other job down with it.
         let mut alone = false;
-        while !self.stopping.now() {
-            let Some(turn) = self.turn(&turns, alone).await else { return };
-            match self.app.store().jobs().claim(&self.name, self.app.leases().lease, alone).await {
-                Ok(Claimed::Job(job)) => {
+        while !self.stopping.is_stopping() {
+            let Some(turn) = self.wait_turn(&turns, alone).await else { return };
+            match self
+                .app
+                .store()
+                .jobs()
+                .claim_next(&self.name, self.app.leases().lease, alone)
+                .await
+            {
+                Ok(JobClaim::Job(job)) => {
                     // Only a job during which a process has ended before keeps the other workers
                     // waiting.
-                    let turn = if job.lost_workers > 0 { turn } else { turn.shared() };
-                    self.attend(&job).await;
+                    let turn = if job.lost_workers > 0 { turn } else { turn.into_shared() };
+                    self.run_job(&job).await;
                     drop(turn);
                     alone = false;
                 }
-                Ok(Claimed::Alone) => alone = true,
-                Ok(Claimed::Nothing) => {
+                Ok(JobClaim::Alone) => alone = true,
+                Ok(JobClaim::Nothing) => {
                     drop(turn);
                     alone = false;
-                    self.rest(self.app.leases().poll).await;
+                    self.wait_for_work(self.app.leases().poll).await;
                 }
                 Err(error) => {
                     drop(turn);
                     tracing::error!(%error, "no job could be claimed");
-                    self.rest(if error.is_out_of_space() { NO_ROOM } else { BREATH }).await;
+                    self.wait_for_work(if error.is_out_of_space() {
+                        SPACE_RETRY_DELAY
+                    } else {
+                        RETRY_DELAY
+                    })
+                    .await;
                 }
             }
         }
@@ -92,35 +103,39 @@ impl Worker {
 
     /// Waits for the permission to claim a job, shared or alone; returns `None` if the server
     /// stops.
-    async fn turn<'a>(&mut self, turns: &'a RwLock<()>, alone: bool) -> Option<Turn<'a>> {
+    async fn wait_turn<'a>(
+        &mut self,
+        turns: &'a RwLock<()>,
+        alone: bool,
+    ) -> Option<WorkerTurn<'a>> {
         tokio::select! {
             () = self.stopping.wait() => None,
-            held = turns.write(), if alone => Some(Turn::Alone { held }),
-            held = turns.read(), if !alone => Some(Turn::Shared { _held: held }),
+            held = turns.write(), if alone => Some(WorkerTurn::Alone { held }),
+            held = turns.read(), if !alone => Some(WorkerTurn::Shared { _held: held }),
         }
     }
 
     /// Waits until there is a new job, the time has passed, or the server stops.
-    async fn rest(&mut self, time: Duration) {
+    async fn wait_for_work(&mut self, time: Duration) {
         tokio::select! {
-            () = self.app.wake().notified() => {}
+            () = self.app.wake_signal().notified() => {}
             () = tokio::time::sleep(time) => {}
             () = self.stopping.wait() => {}
         }
     }
 
     #[tracing::instrument(skip_all, fields(job = %job.id, attempt = job.attempt))]
-    async fn attend(&mut self, job: &Job) {
+    async fn run_job(&mut self, job: &Job) {
         tracing::info!("begun");
-        let (progress, seen) = Progress::new();
+        let (progress, seen) = JobProgress::new();
         // The job acts in the name of the user who queued it; the audit names both.
         let author = job.author.clone().unwrap_or_else(|| Actor::current().name);
         let actor = Actor::new(author, format!("job {}", job.id));
-        let work = work(self.app.clone(), job.clone(), progress.clone());
-        let work = tokio::spawn(actor.acting(work));
-        let mut watched = Watched { work, progress, seen };
-        let ended = self.accompany(job, &mut watched).await;
-        if let Err(error) = self.end(job, ended, watched.progress.stopped()).await {
+        let work = run_work(self.app.clone(), job.clone(), progress.clone());
+        let work = tokio::spawn(actor.run_scoped(work));
+        let mut watched = WatchedWork { work, progress, seen };
+        let ended = self.supervise(job, &mut watched).await;
+        if let Err(error) = self.record_end(job, ended, watched.progress.stop_reason()).await {
             tracing::error!(%error, "the end of a job could not be written");
             self.give_back(job, error).await;
         }
@@ -129,13 +144,18 @@ impl Worker {
     /// Returns a job whose end could not be written to the queue as soon as the database can be
     /// written again: this process has not ended and must not be counted as lost.
     async fn give_back(&mut self, job: &Job, mut error: StoreError) {
-        while !self.stopping.now() {
-            self.rest(if error.is_out_of_space() { NO_ROOM } else { BREATH }).await;
+        while !self.stopping.is_stopping() {
+            self.wait_for_work(if error.is_out_of_space() {
+                SPACE_RETRY_DELAY
+            } else {
+                RETRY_DELAY
+            })
+            .await;
             let jobs = self.app.store().jobs();
-            let given = match jobs.release(&job.id, job.fence).await {
+            let given = match jobs.release_job(&job.id, job.fence).await {
                 // The job was lost by a late heartbeat: report that this worker is alive.
                 Err(StoreError::Conflict { .. } | StoreError::NotFound { .. }) => {
-                    jobs.lives(&job.id, job.fence).await
+                    jobs.mark_alive(&job.id, job.fence).await
                 }
                 other => other.map(drop),
             };
@@ -148,10 +168,10 @@ impl Worker {
 
     /// Renews the lease while the work runs; returns the outcome, or `None` if the work did not
     /// stop in time.
-    async fn accompany(
+    async fn supervise(
         &mut self,
         job: &Job,
-        watched: &mut Watched,
+        watched: &mut WatchedWork,
     ) -> Option<Result<(), JobError>> {
         let mut beat = Instant::now();
         // Time at which the job must be given back, once the server is stopping.
@@ -160,53 +180,55 @@ impl Worker {
             tokio::select! {
                 ended = &mut watched.work => return Some(ended.unwrap_or_else(|error| Err(JobError::Failed(format!("the computation broke off: {error}"))))),
                 () = self.stopping.wait(), if leave.is_none() => leave = Some(Instant::now() + self.app.leases().drain),
-                () = until(leave), if leave.is_some() => {
-                    watched.progress.stop(Stop::Leaving);
+                () = sleep_until(leave), if leave.is_some() => {
+                    watched.progress.stop(StopReason::Leaving);
                     let ended = tokio::time::timeout(self.app.limits().stop_time, &mut watched.work).await;
                     return ended.ok().and_then(Result::ok);
                 }
-                () = tokio::time::sleep(TELL.min(self.app.leases().beat)) => {}
+                () = tokio::time::sleep(PROGRESS_INTERVAL.min(self.app.leases().beat)) => {}
             }
             if watched.seen.has_changed().unwrap_or(false)
                 || beat.elapsed() >= self.app.leases().beat
             {
                 beat = Instant::now();
-                self.beat(job, watched).await;
+                self.renew_lease(job, watched).await;
             }
         }
     }
 
-    async fn beat(&self, job: &Job, watched: &mut Watched) {
+    async fn renew_lease(&self, job: &Job, watched: &mut WatchedWork) {
         let (fraction, message) = watched.seen.borrow_and_update().clone();
         let lease = self.app.leases().lease;
         match self.app.store().jobs().heartbeat(&job.id, job.fence, fraction, &message, lease).await
         {
             Ok(false) => {}
-            Ok(true) => watched.progress.stop(Stop::Cancelled),
+            Ok(true) => watched.progress.stop(StopReason::Cancelled),
             Err(StoreError::Conflict { .. } | StoreError::NotFound { .. }) => {
-                watched.progress.stop(Stop::Lost)
+                watched.progress.stop(StopReason::Lost)
             }
             Err(error) => tracing::warn!(%error, "a beat was missed"),
         }
     }
 
     /// Records the end of a job.
-    async fn end(
+    async fn record_end(
         &self,
         job: &Job,
         ended: Option<Result<(), JobError>>,
-        stopped: Option<Stop>,
+        stopped: Option<StopReason>,
     ) -> Result<(), StoreError> {
         let jobs = self.app.store().jobs();
         match (ended, stopped) {
             // A job that succeeded has committed its end together with its results.
             (Some(Ok(())), _) => tracing::info!("done"),
-            (_, Some(Stop::Lost)) => {
+            (_, Some(StopReason::Lost)) => {
                 tracing::warn!("another worker has the job now");
-                jobs.lives(&job.id, job.fence).await?;
+                jobs.mark_alive(&job.id, job.fence).await?;
             }
-            (_, Some(Stop::Leaving)) => drop(jobs.release(&job.id, job.fence).await?),
-            (Some(Err(JobError::Stopped)), _) => drop(jobs.cancelled(&job.id, job.fence).await?),
+            (_, Some(StopReason::Leaving)) => drop(jobs.release_job(&job.id, job.fence).await?),
+            (Some(Err(JobError::Stopped)), _) => {
+                drop(jobs.end_cancelled(&job.id, job.fence).await?)
+            }
             (Some(Err(JobError::Failed(message))), _) => {
                 tracing::warn!(%message, "failed");
                 jobs.fail(&job.id, job.fence, &message).await?;
@@ -220,18 +242,18 @@ impl Worker {
 }
 
 /// Waits until a given time; returns at once without one.
-async fn until(moment: Option<Instant>) {
+async fn sleep_until(moment: Option<Instant>) {
     tokio::time::sleep_until(moment.unwrap_or_else(Instant::now).into()).await;
 }
 
-async fn work(app: App, job: Job, progress: Progress) -> Result<(), JobError> {
-    let _share = demand::taken(&app, &job, &progress).await?;
+async fn run_work(app: App, job: Job, progress: JobProgress) -> Result<(), JobError> {
+    let _share = demand::take_memory(&app, &job, &progress).await?;
     match job.kind.as_str() {
-        REFINEMENT => refinement::run(&app, &job, progress).await,
-        DIAGNOSIS => diagnosis::run(&app, &job, progress).await,
-        BRANCH => branch::run(&app, &job, progress).await,
-        BULK => chunk::run(&app, &job, progress).await,
-        LEARN => family_prior::run(&app, &job, progress).await,
+        REFINEMENT_JOB_KIND => refinement::run_refinement(&app, &job, progress).await,
+        DIAGNOSIS_JOB_KIND => diagnosis::run_diagnosis(&app, &job, progress).await,
+        BRANCH_JOB_KIND => branch::run_training(&app, &job, progress).await,
+        BULK_JOB_KIND => chunk::run_chunk(&app, &job, progress).await,
+        PRIOR_JOB_KIND => family_prior::run_learning(&app, &job, progress).await,
         other => {
             Err(JobError::Failed(format!("this server does not know jobs of the kind `{other}`")))
         }

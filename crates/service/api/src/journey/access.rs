@@ -11,7 +11,7 @@ use sistership_store::testing::TestDatabase;
 
 use super::harness::{Harness, config, read};
 use crate::Server;
-use crate::rights::{ANYONE, HEALTH, OPEN, TABLE};
+use crate::rights::{HEALTH_ROUTES, IDENTIFIED_ROUTES, OPEN_ROUTES, ROLE_TABLE};
 
 /// The server's own key.
 const OWNER: &str = "sesame";
@@ -89,8 +89,9 @@ fn routes() -> BTreeSet<(String, String)> {
 /// Every route is in the table once, and nothing else is.
 #[test]
 fn the_table_has_every_route() {
-    let known = TABLE.iter().map(|(method, path, ..)| (*method, *path));
-    let rows: Vec<(&str, &str)> = known.chain(ANYONE).chain(HEALTH).chain(OPEN).collect();
+    let known = ROLE_TABLE.iter().map(|(method, path, ..)| (*method, *path));
+    let rows: Vec<(&str, &str)> =
+        known.chain(IDENTIFIED_ROUTES).chain(HEALTH_ROUTES).chain(OPEN_ROUTES).collect();
     let set: BTreeSet<(String, String)> =
         rows.iter().map(|(method, path)| ((*method).to_owned(), (*path).to_owned())).collect();
     assert_eq!(set.len(), rows.len(), "a route is there twice");
@@ -112,15 +113,18 @@ fn written() -> String {
         | method | route | reader | engineer | approver | admin | given for |\n\
         | --- | --- | --- | --- | --- | --- | --- |\n"
             .to_owned();
-    for (method, path, least, of) in TABLE {
+    for (method, path, least, of) in ROLE_TABLE {
         let marks = Role::ALL.map(|role| if role >= *least { "yes" } else { "no" }).join(" | ");
-        text += &format!("| {method} | `{path}` | {marks} | {} |\n", of.words());
+        text += &format!("| {method} | `{path}` | {marks} | {} |\n", of.description());
     }
     text += "\nFor whoever has shown who they are, without any role: ";
-    text += &ANYONE.map(|(method, path)| format!("{method} `{path}`")).join(", ");
+    text += &IDENTIFIED_ROUTES.map(|(method, path)| format!("{method} `{path}`")).join(", ");
     text += ". For everybody: ";
-    let open: Vec<String> =
-        HEALTH.iter().chain(&OPEN).map(|(method, path)| format!("{method} `{path}`")).collect();
+    let open: Vec<String> = HEALTH_ROUTES
+        .iter()
+        .chain(&OPEN_ROUTES)
+        .map(|(method, path)| format!("{method} `{path}`"))
+        .collect();
     text += &open.join(", ");
     text + ".\n"
 }
@@ -162,7 +166,7 @@ async fn each_route_is_for_the_roles_of_the_table(database: TestDatabase) {
     }
     let none = harness.key(&json!({ "title": "no role" })).await;
     let mut faults = Vec::new();
-    for (method, path, least, _) in TABLE {
+    for (method, path, least, _) in ROLE_TABLE {
         let (asked, place) = (method.parse::<Method>().unwrap(), filled(path));
         let (status, problem) = harness.asks(None, asked.clone(), &place).await;
         if status != StatusCode::UNAUTHORIZED || problem["status"] != 401 {
@@ -180,14 +184,14 @@ async fn each_route_is_for_the_roles_of_the_table(database: TestDatabase) {
             }
         }
     }
-    for (method, path) in ANYONE {
+    for (method, path) in IDENTIFIED_ROUTES {
         let (status, _) = harness.asks(None, method.parse().unwrap(), path).await;
         let (known, problem) = harness.asks(Some(&none), method.parse().unwrap(), path).await;
         if status != StatusCode::UNAUTHORIZED || is_refused(known, &problem) {
             faults.push(format!("{method} {path}: {status}, {known}"));
         }
     }
-    for (method, path) in HEALTH.into_iter().chain(OPEN) {
+    for (method, path) in HEALTH_ROUTES.into_iter().chain(OPEN_ROUTES) {
         let (status, _) = harness.asks(None, method.parse().unwrap(), path).await;
         if status == StatusCode::UNAUTHORIZED {
             faults.push(format!("{method} {path}: {status}"));
@@ -297,7 +301,7 @@ async fn family_jobs(harness: &Harness) {
 /// address; what the client itself wrote into the header is not believed.
 #[tokio::test(flavor = "multi_thread")]
 async fn one_client_behind_a_proxy_does_not_shut_out_others() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let mut config = config(&database);
     (config.api_key, config.accounts, config.workers) = (Some(OWNER.into()), true, 0);
     config.proxies.networks = vec!["127.0.0.0/8".parse().unwrap()];
@@ -411,7 +415,8 @@ async fn the_audit_names_who_did_what(database: TestDatabase) {
     let ann = harness.key_of("engineer").await;
     let tag = "/v1/ships/mariner/tags/own";
     assert_eq!(harness.asks(Some(&ann), Method::PUT, tag).await.0, StatusCode::NO_CONTENT);
-    let law = sistership_model::Zoo::embedded().unwrap().law_text("abkowitz").unwrap().to_owned();
+    let law =
+        sistership_model::Zoo::load_embedded().unwrap().law_text("abkowitz").unwrap().to_owned();
     let name = law.lines().find(|line| line.starts_with("name:")).unwrap().to_owned();
     let post = harness.client.post(harness.url("/v1/laws")).bearer_auth(&ann);
     let post = post.header("content-type", "application/yaml").header("idempotency-key", "law");
@@ -428,10 +433,13 @@ async fn the_audit_names_who_did_what(database: TestDatabase) {
     assert_eq!(before["items"][0]["after"], json!({ "tag": "own" }));
     let head = harness.asks(Some(OWNER), Method::GET, "/v1/audit/head").await.1;
     assert_eq!(head["sha256"], last["items"][0]["sha256"]);
-    let found = sistership_jobs::upkeep::fsck(harness.server.archive()).await.unwrap();
+    let found = sistership_jobs::upkeep::check_archive(harness.server.archive()).await.unwrap();
     assert!(found.clean, "{:?}", found.faults);
-    harness.database.damage("UPDATE audit SET actor = 'bob' WHERE action = 'ship.tag'").await;
-    let found = sistership_jobs::upkeep::fsck(harness.server.archive()).await.unwrap();
+    harness
+        .database
+        .execute_unchecked("UPDATE audit SET actor = 'bob' WHERE action = 'ship.tag'")
+        .await;
+    let found = sistership_jobs::upkeep::check_archive(harness.server.archive()).await.unwrap();
     assert_eq!(found.faults.len(), 1, "{:?}", found.faults);
     assert_eq!(found.faults[0].check, "audit-chain");
     harness.server.stop().await;

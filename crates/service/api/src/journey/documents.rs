@@ -46,7 +46,7 @@ fn hostile() -> Vec<(&'static str, String, &'static str)> {
 
 #[tokio::test]
 async fn hostile_documents_are_refused_at_once() {
-    let harness = Harness::on(TestDatabase::sqlite()).await;
+    let harness = Harness::on(TestDatabase::new_sqlite()).await;
     for (path, body, words) in hostile() {
         let began = Instant::now();
         let post = harness
@@ -113,7 +113,7 @@ async fn jobs_on_a_law_as_large_as_may_be_end_and_the_server_goes_on() {
 }
 
 async fn jobs_on_a_law_of(terms: usize) {
-    let harness = Harness::on(TestDatabase::sqlite()).await;
+    let harness = Harness::on(TestDatabase::new_sqlite()).await;
     harness.create_ship().await;
     harness.upload_trials().await;
     let post = harness
@@ -140,7 +140,7 @@ async fn jobs_on_a_law_of(terms: usize) {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_law_that_an_earlier_release_took_fails_what_uses_it_and_nothing_else() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let store = Store::connect(&database.url, Arc::new(SystemClock)).await.unwrap();
     let endless = law("1", &"X_u, ".repeat(3_320)).replace("name: tried", "name: endless");
     store.laws().insert("endless", &endless).await.unwrap();

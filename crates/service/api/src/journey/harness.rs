@@ -7,7 +7,7 @@ use reqwest::{Client, Response, StatusCode};
 use serde_json::{Value, json};
 use sistership_store::testing::TestDatabase;
 
-use crate::{Config, Leases, Running, Server};
+use crate::{Config, LeaseSettings, RunningServer, Server};
 
 /// A ship like the SR108, without its model and under another name.
 pub(super) const SHIP: &str = "
@@ -23,7 +23,7 @@ particulars:
 ";
 
 pub(super) struct Harness {
-    pub server: Running,
+    pub server: RunningServer,
     pub client: Client,
     pub database: TestDatabase,
 }
@@ -36,7 +36,7 @@ pub(super) fn config(database: &TestDatabase) -> Config {
         (Duration::from_secs(5), Duration::from_millis(200), Duration::from_millis(50));
     // Two thousand clients of one address, see `registry`.
     (config.limits.connections, config.limits.connections_per_address) = (4096, 4096);
-    config.leases = Leases { lease, beat, poll, ..Leases::default() };
+    config.leases = LeaseSettings { lease, beat, poll, ..LeaseSettings::default() };
     config
 }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 use reqwest::{RequestBuilder, StatusCode};
 use serde_json::{Value, json};
 use sistership_model::Zoo;
-use sistership_store::Moment;
+use sistership_store::CrashPoint;
 use sistership_store::testing::TestDatabase;
 
 use super::harness::{Harness, SHIP, config, read};
@@ -33,7 +33,7 @@ async fn request(harness: &Harness, route: &str) -> RequestBuilder {
     let post = |path: &str| harness.client.post(harness.url(path));
     match route {
         "post /v1/laws" => {
-            let zoo = Zoo::embedded().unwrap();
+            let zoo = Zoo::load_embedded().unwrap();
             let law = zoo.law_text("abkowitz").unwrap().to_owned();
             let name = law.lines().find(|line| line.starts_with("name:")).unwrap().to_owned();
             post("/v1/laws").header("content-type", "application/yaml").body(law.replacen(
@@ -75,7 +75,7 @@ async fn upload(harness: &Harness, name: &str) -> RequestBuilder {
 }
 
 /// Sends it, and gives up once the process would have ended.
-async fn ended_at(harness: &Harness, moment: Moment, request: RequestBuilder) {
+async fn ended_at(harness: &Harness, moment: CrashPoint, request: RequestBuilder) {
     let store = &harness.server.archive().store;
     store.end_at(moment);
     let sent = tokio::spawn(request.send());
@@ -96,7 +96,7 @@ async fn ended_at(harness: &Harness, moment: Moment, request: RequestBuilder) {
 async fn later(harness: &Harness) {
     let later = "UPDATE idempotency_keys SET created_us = created_us - 61000000, alive_us = NULL \
         WHERE status IS NULL";
-    harness.database.damage(later).await;
+    harness.database.execute_unchecked(later).await;
 }
 
 async fn keys_survive(database: TestDatabase) {
@@ -125,7 +125,7 @@ async fn survives(harness: &Harness, route: &str) {
     let request = request(harness, route).await.header("idempotency-key", "key");
     let again = || request.try_clone().unwrap();
     let before = store.row_counts().await.unwrap();
-    ended_at(harness, Moment::BeforeCommit, again()).await;
+    ended_at(harness, CrashPoint::BeforeCommit, again()).await;
     assert_eq!(
         store.row_counts().await.unwrap(),
         before,
@@ -137,7 +137,7 @@ async fn survives(harness: &Harness, route: &str) {
         "{route}: it may still be carried out"
     );
     later(harness).await;
-    ended_at(harness, Moment::AfterCommit, again()).await;
+    ended_at(harness, CrashPoint::AfterCommit, again()).await;
     let kept = store.row_counts().await.unwrap();
     assert_ne!(kept, before, "{route}: what was kept is there");
     later(harness).await;
@@ -157,12 +157,12 @@ async fn survives(harness: &Harness, route: &str) {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn keys_survive_the_end_of_the_process_on_sqlite() {
-    keys_survive(TestDatabase::sqlite()).await;
+    keys_survive(TestDatabase::new_sqlite()).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn keys_survive_the_end_of_the_process_on_postgres() {
-    if let Some(database) = TestDatabase::postgres().await {
+    if let Some(database) = TestDatabase::new_postgres().await {
         keys_survive(database).await;
     }
 }

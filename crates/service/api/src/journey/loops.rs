@@ -9,12 +9,12 @@ use crate::Server;
 
 #[tokio::test(flavor = "multi_thread")]
 async fn the_loop_on_sqlite() {
-    the_loop(Harness::on(TestDatabase::sqlite()).await).await;
+    the_loop(Harness::on(TestDatabase::new_sqlite()).await).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn the_loop_on_postgres() {
-    let Some(database) = TestDatabase::postgres().await else { return };
+    let Some(database) = TestDatabase::new_postgres().await else { return };
     the_loop(Harness::on(database).await).await;
 }
 
@@ -99,8 +99,9 @@ async fn verified(harness: &Harness) {
         let (_, verified) = harness.post(&format!("/v1/models/{version}/verify"), &json!({})).await;
         assert_eq!(verified["identical"], true, "{verified}");
     }
-    let checked =
-        sistership_jobs::verify::verify(harness.server.archive(), "demo-ship", 2).await.unwrap();
+    let checked = sistership_jobs::verify::verify_version(harness.server.archive(), "demo-ship", 2)
+        .await
+        .unwrap();
     assert!(checked.identical && checked.made_by.is_some());
 }
 
@@ -126,7 +127,7 @@ async fn pages(harness: &Harness, report: &str) {
 #[tokio::test(flavor = "multi_thread")]
 async fn two_servers_start_on_one_empty_database() {
     for database in
-        [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten()
+        [Some(TestDatabase::new_sqlite()), TestDatabase::new_postgres().await].into_iter().flatten()
     {
         let (one, two) =
             tokio::join!(Server::start(config(&database)), Server::start(config(&database)));
@@ -137,7 +138,7 @@ async fn two_servers_start_on_one_empty_database() {
             .archive()
             .store
             .versions()
-            .list("mariner", &sistership_store::Page::first(10))
+            .list("mariner", &sistership_store::PageRequest::first_page(10))
             .await
             .unwrap();
         assert_eq!(versions.items.len(), 1);

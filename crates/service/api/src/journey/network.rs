@@ -15,7 +15,7 @@ const STALLED: &str = "POST /v1/ships HTTP/1.1\r\nHost: localhost\r\nContent-Typ
     application/json\r\nContent-Length: 9000\r\n\r\n{";
 
 async fn harness(change: impl FnOnce(&mut Config)) -> Harness {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let mut config = config(&database);
     change(&mut config);
     let client = reqwest::Client::builder().pool_max_idle_per_host(0).build().unwrap();
@@ -24,7 +24,7 @@ async fn harness(change: impl FnOnce(&mut Config)) -> Harness {
 
 impl Harness {
     async fn connect(&self, send: &str) -> TcpStream {
-        let mut stream = TcpStream::connect(self.server.addr()).await.unwrap();
+        let mut stream = TcpStream::connect(self.server.local_addr()).await.unwrap();
         stream.write_all(send.as_bytes()).await.unwrap();
         stream
     }
@@ -242,8 +242,8 @@ async fn without_the_key_no_body_is_awaited_and_guesses_are_throttled() {
 #[tokio::test]
 async fn requests_are_addressed_to_this_server_and_to_no_other() {
     let harness = harness(|_| {}).await;
-    let own = format!("http://{}", harness.server.addr());
-    let host = format!("Host: {}\r\n", harness.server.addr());
+    let own = format!("http://{}", harness.server.local_addr());
+    let host = format!("Host: {}\r\n", harness.server.local_addr());
     let post = |headers: &str| {
         format!(
             "POST /v1/refinements HTTP/1.1\r\nConnection: close\r\nContent-Length: \

@@ -14,7 +14,7 @@ async fn text(harness: &Harness, path: &str) -> String {
 #[tokio::test(flavor = "multi_thread")]
 async fn the_metrics_tell_requests_jobs_and_sizes() {
     for database in
-        [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten()
+        [Some(TestDatabase::new_sqlite()), TestDatabase::new_postgres().await].into_iter().flatten()
     {
         let mut config = config(&database);
         config.workers = 0;
@@ -56,7 +56,7 @@ async fn the_metrics_tell_requests_jobs_and_sizes() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_server_without_its_objects_is_alive_but_not_ready() {
-    let harness = Harness::on(TestDatabase::sqlite()).await;
+    let harness = Harness::on(TestDatabase::new_sqlite()).await;
     assert_eq!(harness.get("/readyz").await["status"], "ok");
     let data = harness.database.folder.path().join("data");
     std::fs::rename(&data, data.with_extension("unmounted")).unwrap();
@@ -71,7 +71,7 @@ async fn a_server_without_its_objects_is_alive_but_not_ready() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_server_that_has_lost_its_database_is_not_ready() {
-    let harness = Harness::on(TestDatabase::sqlite()).await;
+    let harness = Harness::on(TestDatabase::new_sqlite()).await;
     harness.server.archive().store.close().await;
     let unready = harness.get("/readyz").await;
     assert!(

@@ -109,7 +109,7 @@ fn alias() -> serde_json::Value {
 
 #[tokio::test]
 async fn every_error_is_a_problem_that_helps() {
-    let harness = Harness::on(TestDatabase::sqlite()).await;
+    let harness = Harness::on(TestDatabase::new_sqlite()).await;
     for Case(request, status, words) in cases(&harness) {
         let shown = format!("{request:?}");
         let response = request.send().await.unwrap();
@@ -133,7 +133,7 @@ async fn every_error_is_a_problem_that_helps() {
 
 #[tokio::test]
 async fn uploads_are_bounded_and_their_parts_named() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let mut config = config(&database);
     config.limits.upload_bytes = 1 << 20;
     config.api_key = Some("sesame".into());

@@ -119,12 +119,12 @@ async fn crowded(database: TestDatabase) {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn many_at_once_on_sqlite() {
-    crowded(TestDatabase::sqlite()).await;
+    crowded(TestDatabase::new_sqlite()).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn many_at_once_on_postgres() {
-    if let Some(database) = TestDatabase::postgres().await {
+    if let Some(database) = TestDatabase::new_postgres().await {
         crowded(database).await;
     }
 }

@@ -116,12 +116,12 @@ async fn similar(harness: &Harness) {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn ships_are_found_on_sqlite() {
-    find(TestDatabase::sqlite()).await;
+    find(TestDatabase::new_sqlite()).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn ships_are_found_on_postgres() {
-    if let Some(database) = TestDatabase::postgres().await {
+    if let Some(database) = TestDatabase::new_postgres().await {
         find(database).await;
     }
 }

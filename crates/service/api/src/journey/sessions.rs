@@ -159,7 +159,7 @@ async fn a_session_is_not_used_by_others(database: TestDatabase) {
     let put = harness.client.put(harness.url("/v1/ships/mariner/tags/x"));
     let put = put.header("cookie", &ann.cookie).header("origin", harness.server.url());
     assert_eq!(put.send().await.unwrap().status(), StatusCode::UNAUTHORIZED, "not under /v1");
-    assert!(store.ships().tags("mariner").await.unwrap().is_empty());
+    assert!(store.ships().list_tags("mariner").await.unwrap().is_empty());
     assert_eq!(tag(&own).send().await.unwrap().status(), StatusCode::SEE_OTHER);
     let signs = [("form_token", &*open), ("name", "ann"), ("password", PASSWORD)];
     let other_site = harness.form("/sign-in", &signs).build().unwrap();
@@ -195,13 +195,13 @@ async fn admins_give_and_take_on_pages(database: TestDatabase) {
     assert!(status == StatusCode::UNPROCESSABLE_ENTITY && page.contains("captain"), "{page}");
     let on = [("second_person", "on")];
     assert_eq!(eve.sends("/users", "/settings", &on).await.0, StatusCode::SEE_OTHER);
-    assert!(harness.server.archive().store.settings().second_person().await.unwrap());
+    assert!(harness.server.archive().store.settings().requires_second_person().await.unwrap());
     harness.server.stop().await;
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn who_tries_passwords_waits() {
-    let harness = Harness::with_people(TestDatabase::sqlite()).await;
+    let harness = Harness::with_people(TestDatabase::new_sqlite()).await;
     // All at once: failed attempts expire while a slow machine hashes one after the other.
     let wrong = (0..12).map(|_| harness.signs_in("ann", "a wrong sentence"));
     for answer in futures::future::join_all(wrong).await {
@@ -214,15 +214,15 @@ async fn who_tries_passwords_waits() {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn people_on_sqlite() {
-    people_sign_in_and_out(TestDatabase::sqlite()).await;
-    a_session_is_not_used_by_others(TestDatabase::sqlite()).await;
-    admins_give_and_take_on_pages(TestDatabase::sqlite()).await;
+    people_sign_in_and_out(TestDatabase::new_sqlite()).await;
+    a_session_is_not_used_by_others(TestDatabase::new_sqlite()).await;
+    admins_give_and_take_on_pages(TestDatabase::new_sqlite()).await;
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn people_on_postgres() {
     for journey in 0..3 {
-        let Some(database) = TestDatabase::postgres().await else { return };
+        let Some(database) = TestDatabase::new_postgres().await else { return };
         match journey {
             0 => people_sign_in_and_out(database).await,
             1 => a_session_is_not_used_by_others(database).await,

@@ -46,7 +46,7 @@ async fn say(socket: &mut Socket, asked: &Value) {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_ship_sails_on_by_requests_and_by_a_stream() {
-    let harness = Harness::on(TestDatabase::sqlite()).await;
+    let harness = Harness::on(TestDatabase::new_sqlite()).await;
     let asked = json!({ "model": "mariner", "start": { "u_m_s": 7.0, "psi_rad": 1.0 },
         "wind": { "speed_m_s": 5.0, "from_rad": 0.5 } });
     let (one, two) = (harness.under_way(&asked).await, harness.under_way(&asked).await);
@@ -100,7 +100,7 @@ async fn times(harness: &Harness, session: &str, socket: &mut Socket) {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn another_site_opens_no_stream_and_what_is_no_websocket_is_told() {
-    let harness = Harness::on(TestDatabase::sqlite()).await;
+    let harness = Harness::on(TestDatabase::new_sqlite()).await;
     let session = harness.under_way(&json!({ "model": "kvlcc2" })).await;
     match harness.stream(&session, Some("https://evil.example")).await {
         Err(Error::Http(answer)) => assert_eq!(answer.status().as_u16(), 403),
@@ -115,7 +115,7 @@ async fn another_site_opens_no_stream_and_what_is_no_websocket_is_told() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn sessions_are_of_whoever_opened_them_and_bounded() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let mut config = config(&database);
     config.api_key = Some("secret".into());
     config.limits.sessions = SessionLimits { of_one: 2, ..SessionLimits::default() };

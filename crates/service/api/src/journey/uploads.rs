@@ -37,7 +37,7 @@ fn form(manifest: &str, files: &[(&str, String)]) -> Form {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn declarations_sensors_and_stretches_are_taken_and_kept() {
-    let harness = Harness::on(TestDatabase::sqlite()).await;
+    let harness = Harness::on(TestDatabase::new_sqlite()).await;
     let post =
         |path: &str, form: Form| harness.client.post(harness.url(path)).multipart(form).send();
     let files = [("day.csv", log()), ("gyro.csv", gyro())];

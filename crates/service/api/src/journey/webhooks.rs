@@ -150,19 +150,19 @@ async fn told(database: TestDatabase) {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn receivers_are_told_on_sqlite() {
-    told(TestDatabase::sqlite()).await;
+    told(TestDatabase::new_sqlite()).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn receivers_are_told_on_postgres() {
-    if let Some(database) = TestDatabase::postgres().await {
+    if let Some(database) = TestDatabase::new_postgres().await {
         told(database).await;
     }
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn nobody_is_told_within_the_own_network_unless_that_is_allowed() {
-    let harness = started(TestDatabase::sqlite(), false).await;
+    let harness = started(TestDatabase::new_sqlite(), false).await;
     for url in ["http://example.com/", "https://127.0.0.1/", "https://[::1]/", "https://10.0.0.1/"]
     {
         let asked = json!({ "title": "T", "url": url, "events": ["drift"] });

@@ -3,16 +3,16 @@
 use axum::extract::RawPathParams;
 use axum::http::{Method, StatusCode, Uri};
 use sistership_auth::{Rights, Role};
-use sistership_jobs::fleet::{BULK, Chunk, LEARN, LearnJob};
-use sistership_store::{Job, MAX_LIMIT, Page, Store, StoreError, Trial};
+use sistership_jobs::fleet::{BULK_JOB_KIND, BulkChunk, LearnJob, PRIOR_JOB_KIND};
+use sistership_store::{Job, MAX_LIMIT, PageRequest, Store, StoreError, Trial};
 
-use super::table::{Need, Of, need};
+use super::table::{RoleScope, RouteNeed, route_need};
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use sistership_web_support::acting::{Acting, current};
+use sistership_web_support::acting::{RequestActor, current_actor};
 
 /// Parts of a request on which rights depend.
-pub(crate) struct Asked<'a> {
+pub(crate) struct RightsRequest<'a> {
     pub method: &'a Method,
     pub uri: &'a Uri,
     /// The route, with names in braces; `None` if there is none.
@@ -20,12 +20,12 @@ pub(crate) struct Asked<'a> {
     pub params: &'a RawPathParams,
 }
 
-impl Asked<'_> {
-    fn param(&self, name: &str) -> Option<&str> {
+impl RightsRequest<'_> {
+    fn path_param(&self, name: &str) -> Option<&str> {
         self.params.iter().find(|(known, _)| *known == name).map(|(_, value)| value)
     }
 
-    fn query(&self, name: &str) -> Option<String> {
+    fn query_param(&self, name: &str) -> Option<String> {
         let pairs = axum::extract::Query::<Vec<(String, String)>>::try_from_uri(self.uri).ok()?;
         pairs.0.into_iter().find(|(known, _)| known == name).map(|(_, value)| value)
     }
@@ -35,10 +35,14 @@ impl Asked<'_> {
 ///
 /// # Errors
 /// Returns 403 with the role that is needed.
-pub(crate) async fn allowed(app: &App, acting: &Acting, asked: &Asked<'_>) -> Result<()> {
+pub(crate) async fn check_access(
+    app: &App,
+    acting: &RequestActor,
+    asked: &RightsRequest<'_>,
+) -> Result<()> {
     // There is nothing to guard where there is no route.
     let Some(route) = asked.route else { return Ok(()) };
-    let Some(Need { role, of }) = need(asked.method, route) else { return Ok(()) };
+    let Some(RouteNeed { role, of }) = route_need(asked.method, route) else { return Ok(()) };
     let Some(role) = role else { return Ok(()) };
     let rights = &acting.principal.rights;
     if rights.on_server(role) {
@@ -46,46 +50,49 @@ pub(crate) async fn allowed(app: &App, acting: &Acting, asked: &Asked<'_>) -> Re
     }
     // The scope may take a look-up in the store, so that callers without the role anywhere are
     // refused first.
-    let given = rights.anywhere(role) && by_scope(app, rights, role, of, asked).await?;
-    if given { Ok(()) } else { Err(refused(acting, role, of)) }
+    let given =
+        rights.holds_anywhere(role) && has_scoped_role(app, rights, role, of, asked).await?;
+    if given { Ok(()) } else { Err(access_denied(acting, role, of)) }
 }
 
 /// Returns true if a role that is not given for the whole server is given for the object of the
 /// request.
-async fn by_scope(
+async fn has_scoped_role(
     app: &App,
     rights: &Rights,
     role: Role,
-    of: Of,
-    asked: &Asked<'_>,
+    of: RoleScope,
+    asked: &RightsRequest<'_>,
 ) -> Result<bool> {
     let store = app.store();
-    let id = asked.param("id").unwrap_or_default();
+    let id = asked.path_param("id").unwrap_or_default();
     let ship = match of {
-        Of::Server => None,
+        RoleScope::Server => None,
         // The handler finds the ship in the body, and checks the role there.
-        Of::Anything | Of::Body => return Ok(true),
-        Of::Ship(name) => asked.param(name).map(str::to_owned),
-        Of::ShipOfQuery => asked.query("ship"),
-        Of::Job => match store.jobs().get(id).await? {
+        RoleScope::Anything | RoleScope::Body => return Ok(true),
+        RoleScope::Ship(name) => asked.path_param(name).map(str::to_owned),
+        RoleScope::ShipOfQuery => asked.query_param("ship"),
+        RoleScope::Job => match store.jobs().get(id).await? {
             Job { ship: None, kind, request, .. } => {
                 let family = family_of_job(store, &kind, &request).await?;
                 return Ok(family.is_some_and(|family| rights.on_family(role, &family)));
             }
             Job { ship, .. } => ship,
         },
-        Of::Trial => Some(store.trials().get(id).await?.ship),
-        Of::Report => Some(store.reports().get(id).await?.head.ship),
-        Of::Family => {
-            return Ok(asked.param("family").is_some_and(|name| rights.on_family(role, name)));
+        RoleScope::Trial => Some(store.trials().get(id).await?.ship),
+        RoleScope::Report => Some(store.reports().get(id).await?.head.ship),
+        RoleScope::Family => {
+            return Ok(asked.path_param("family").is_some_and(|name| rights.on_family(role, name)));
         }
-        Of::FamilyOfQuery => {
-            return Ok(asked.query("family").is_some_and(|name| rights.on_family(role, &name)));
+        RoleScope::FamilyOfQuery => {
+            return Ok(asked
+                .query_param("family")
+                .is_some_and(|name| rights.on_family(role, &name)));
         }
-        Of::Bulk => return Ok(rights.on_family(role, &store.bulks().get(id).await?.family)),
+        RoleScope::Bulk => return Ok(rights.on_family(role, &store.bulks().get(id).await?.family)),
     };
     match ship {
-        Some(ship) => has(store, rights, role, &ship).await,
+        Some(ship) => has_role(store, rights, role, &ship).await,
         None => Ok(false),
     }
 }
@@ -93,8 +100,8 @@ async fn by_scope(
 /// Returns the family of a job that belongs to no ship.
 async fn family_of_job(store: &Store, kind: &str, request: &str) -> Result<Option<String>> {
     Ok(match kind {
-        LEARN => serde_json::from_str::<LearnJob>(request).ok().map(|job| job.family),
-        BULK => match serde_json::from_str::<Chunk>(request) {
+        PRIOR_JOB_KIND => serde_json::from_str::<LearnJob>(request).ok().map(|job| job.family),
+        BULK_JOB_KIND => match serde_json::from_str::<BulkChunk>(request) {
             Ok(chunk) => Some(store.bulks().get(&chunk.bulk).await?.family),
             Err(_) => None,
         },
@@ -103,11 +110,12 @@ async fn family_of_job(store: &Store, kind: &str, request: &str) -> Result<Optio
 }
 
 /// Returns true if a role is given for a ship, by its name or its families.
-async fn has(store: &Store, rights: &Rights, role: Role, ship: &str) -> Result<bool> {
+async fn has_role(store: &Store, rights: &Rights, role: Role, ship: &str) -> Result<bool> {
     let mut families = Vec::new();
     // Families are read only if the caller has rights by family at all.
     if rights.by_family() {
-        let found = store.families().of_ship(ship, &Page::first(MAX_LIMIT)).await?;
+        let found =
+            store.families().list_by_ship(ship, &PageRequest::first_page(MAX_LIMIT)).await?;
         families.extend(found.items.into_iter().map(|family| family.name));
     }
     Ok(rights.on_ship(role, ship, &families))
@@ -117,12 +125,12 @@ async fn has(store: &Store, rights: &Rights, role: Role, ship: &str) -> Result<b
 ///
 /// # Errors
 /// Returns 403 if the role is missing, and an internal error without a caller.
-pub(crate) async fn on_ship(store: &Store, role: Role, ship: &str) -> Result<()> {
-    let acting = current().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+pub(crate) async fn check_ship_role(store: &Store, role: Role, ship: &str) -> Result<()> {
+    let acting = current_actor().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
     let rights = &acting.principal.rights;
-    match rights.on_server(role) || has(store, rights, role, ship).await? {
+    match rights.on_server(role) || has_role(store, rights, role, ship).await? {
         true => Ok(()),
-        false => Err(refused(&acting, role, Of::Ship("ship"))),
+        false => Err(access_denied(&acting, role, RoleScope::Ship("ship"))),
     }
 }
 
@@ -130,20 +138,20 @@ pub(crate) async fn on_ship(store: &Store, role: Role, ship: &str) -> Result<()>
 ///
 /// # Errors
 /// Returns an error if the store fails, and an internal error without a caller.
-pub(crate) async fn visible<T>(
+pub(crate) async fn filter_visible<T>(
     store: &Store,
     role: Role,
     all: Vec<T>,
     ship: impl Fn(&T) -> &str,
 ) -> Result<Vec<T>> {
-    let acting = current().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+    let acting = current_actor().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
     let rights = &acting.principal.rights;
     if rights.on_server(role) {
         return Ok(all);
     }
     let mut kept = Vec::new();
     for one in all {
-        if has(store, rights, role, ship(&one)).await? {
+        if has_role(store, rights, role, ship(&one)).await? {
             kept.push(one);
         }
     }
@@ -160,16 +168,16 @@ pub(crate) async fn readable_trial(store: &Store, id: &str) -> Result<Option<Tri
         Err(StoreError::NotFound { .. }) => return Ok(None),
         trial => trial?,
     };
-    let mut kept = visible(store, Role::Reader, vec![trial], |trial| &trial.ship).await?;
+    let mut kept = filter_visible(store, Role::Reader, vec![trial], |trial| &trial.ship).await?;
     Ok(kept.pop())
 }
 
-fn refused(acting: &Acting, role: Role, of: Of) -> Problem {
+fn access_denied(acting: &RequestActor, role: Role, of: RoleScope) -> Problem {
     let name = &acting.principal.name;
     let roles: Vec<String> =
         acting.principal.rights.grants().iter().map(ToString::to_string).collect();
     let has = if roles.is_empty() { "no role".to_owned() } else { roles.join(", ") };
-    let whom = of.words();
+    let whom = of.description();
     Problem::new(
         StatusCode::FORBIDDEN,
         format!("this needs the role {role} for {whom}; `{name}` has {has}. An admin can give it"),

@@ -3,8 +3,12 @@
 mod decide;
 mod table;
 
-pub(crate) use decide::{Asked, allowed, on_ship, readable_trial, visible};
-pub(crate) use sistership_web_support::acting::{Acting, Kind, carried, current};
+pub(crate) use decide::{
+    RightsRequest, check_access, check_ship_role, filter_visible, readable_trial,
+};
+pub(crate) use sistership_web_support::acting::{
+    AuthenticationKind, RequestActor, carry_actor, current_actor,
+};
+pub(crate) use table::{HEALTH_ROUTES, OPEN_ROUTES, SECOND_PERSON};
 #[cfg(test)]
-pub(crate) use table::{ANYONE, TABLE};
-pub(crate) use table::{HEALTH, OPEN, SECOND_PERSON};
+pub(crate) use table::{IDENTIFIED_ROUTES, ROLE_TABLE};

@@ -8,16 +8,16 @@ use Role::{Admin, Approver, Engineer, Reader};
 
 /// Role that a route needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Need {
+pub(crate) struct RouteNeed {
     /// The least role; `None` if any identified caller may use the route.
     pub role: Option<Role>,
     /// Object for which the role must be given, if it is not given for the server.
-    pub of: Of,
+    pub of: RoleScope,
 }
 
 /// Object for which a role must be given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Of {
+pub(crate) enum RoleScope {
     /// The whole server.
     Server,
     /// Any object.
@@ -42,9 +42,9 @@ pub(crate) enum Of {
     Body,
 }
 
-impl Of {
+impl RoleScope {
     /// The object in words.
-    pub(crate) fn words(self) -> &'static str {
+    pub(crate) fn description(self) -> &'static str {
         match self {
             Self::Server => "the server",
             Self::Anything => "anything",
@@ -57,14 +57,14 @@ impl Of {
 }
 
 /// Method, route, role and scope.
-pub(crate) type Row = (&'static str, &'static str, Role, Of);
+pub(crate) type RouteRow = (&'static str, &'static str, Role, RoleScope);
 
 /// Routes that need no key, under any host name: their answers hold nothing worth protecting.
-pub(crate) const HEALTH: [(&str, &str); 3] =
+pub(crate) const HEALTH_ROUTES: [(&str, &str); 3] =
     [("GET", "/healthz"), ("GET", "/readyz"), ("GET", "/openapi.json")];
 
 /// Routes of signing in.
-pub(crate) const OPEN: [(&str, &str); 4] = [
+pub(crate) const OPEN_ROUTES: [(&str, &str); 4] = [
     ("GET", "/sign-in"),
     ("POST", "/sign-in"),
     ("GET", "/sign-in/oidc"),
@@ -72,7 +72,7 @@ pub(crate) const OPEN: [(&str, &str); 4] = [
 ];
 
 /// Routes for any identified caller.
-pub(crate) const ANYONE: [(&str, &str); 5] = [
+pub(crate) const IDENTIFIED_ROUTES: [(&str, &str); 5] = [
     ("GET", "/v1/me"),
     ("GET", "/account"),
     ("POST", "/account/password"),
@@ -80,16 +80,16 @@ pub(crate) const ANYONE: [(&str, &str); 5] = [
     ("POST", "/sign-out"),
 ];
 
-const SHIP: Of = Of::Ship("ship");
-const MODEL: Of = Of::Ship("model");
+const SHIP: RoleScope = RoleScope::Ship("ship");
+const MODEL: RoleScope = RoleScope::Ship("model");
 
 /// All routes but those of the three lists above.
 #[rustfmt::skip]
-pub(crate) const TABLE: &[Row] = &[
-    ("GET", "/metrics", Reader, Of::Server),
+pub(crate) const ROLE_TABLE: &[RouteRow] = &[
+    ("GET", "/metrics", Reader, RoleScope::Server),
     // Ships.
-    ("GET", "/v1/ships", Reader, Of::Server),
-    ("POST", "/v1/ships", Engineer, Of::Server),
+    ("GET", "/v1/ships", Reader, RoleScope::Server),
+    ("POST", "/v1/ships", Engineer, RoleScope::Server),
     ("GET", "/v1/ships/{ship}", Reader, SHIP),
     ("PUT", "/v1/ships/{ship}", Engineer, SHIP),
     ("DELETE", "/v1/ships/{ship}", Engineer, SHIP),
@@ -103,23 +103,23 @@ pub(crate) const TABLE: &[Row] = &[
     ("PUT", "/v1/ships/{ship}/tags/{tag}", Engineer, SHIP),
     ("DELETE", "/v1/ships/{ship}/tags/{tag}", Engineer, SHIP),
     // Trials.
-    ("GET", "/v1/trials", Reader, Of::ShipOfQuery),
-    ("POST", "/v1/trials", Engineer, Of::Body),
-    ("POST", "/v1/trials/check", Reader, Of::Anything),
-    ("GET", "/v1/trials/{id}", Reader, Of::Trial),
-    ("DELETE", "/v1/trials/{id}", Engineer, Of::Trial),
-    ("GET", "/v1/trials/{id}/samples", Reader, Of::Trial),
-    ("POST", "/v1/trials/{id}/undelete", Engineer, Of::Trial),
+    ("GET", "/v1/trials", Reader, RoleScope::ShipOfQuery),
+    ("POST", "/v1/trials", Engineer, RoleScope::Body),
+    ("POST", "/v1/trials/check", Reader, RoleScope::Anything),
+    ("GET", "/v1/trials/{id}", Reader, RoleScope::Trial),
+    ("DELETE", "/v1/trials/{id}", Engineer, RoleScope::Trial),
+    ("GET", "/v1/trials/{id}/samples", Reader, RoleScope::Trial),
+    ("POST", "/v1/trials/{id}/undelete", Engineer, RoleScope::Trial),
     // Work.
-    ("POST", "/v1/refinements", Engineer, Of::Body),
-    ("POST", "/v1/diagnoses", Engineer, Of::Body),
-    ("POST", "/v1/branches", Engineer, Of::Body),
-    ("GET", "/v1/jobs", Reader, Of::ShipOfQuery),
-    ("GET", "/v1/jobs/{id}", Reader, Of::Job),
-    ("DELETE", "/v1/jobs/{id}", Engineer, Of::Job),
-    ("GET", "/v1/jobs/{id}/events", Reader, Of::Job),
-    ("POST", "/v1/jobs/{id}/retry", Engineer, Of::Job),
-    ("GET", "/v1/reports/{id}", Reader, Of::Report),
+    ("POST", "/v1/refinements", Engineer, RoleScope::Body),
+    ("POST", "/v1/diagnoses", Engineer, RoleScope::Body),
+    ("POST", "/v1/branches", Engineer, RoleScope::Body),
+    ("GET", "/v1/jobs", Reader, RoleScope::ShipOfQuery),
+    ("GET", "/v1/jobs/{id}", Reader, RoleScope::Job),
+    ("DELETE", "/v1/jobs/{id}", Engineer, RoleScope::Job),
+    ("GET", "/v1/jobs/{id}/events", Reader, RoleScope::Job),
+    ("POST", "/v1/jobs/{id}/retry", Engineer, RoleScope::Job),
+    ("GET", "/v1/reports/{id}", Reader, RoleScope::Report),
     // Models. To move the champion takes an approver where a second person is asked for.
     ("GET", "/v1/models/{model}/versions", Reader, MODEL),
     ("POST", "/v1/models/{model}/versions", Engineer, MODEL),
@@ -133,67 +133,67 @@ pub(crate) const TABLE: &[Row] = &[
     ("GET", "/v1/models/{model}/aliases/{alias}", Reader, MODEL),
     ("PUT", "/v1/models/{model}/aliases/{alias}", Engineer, MODEL),
     ("GET", "/v1/models/{model}/aliases/{alias}/history", Reader, MODEL),
-    ("POST", "/v1/predictions", Reader, Of::Body),
+    ("POST", "/v1/predictions", Reader, RoleScope::Body),
     // Sessions belong to the caller that opened them; others do not find them.
-    ("GET", "/v1/sessions", Reader, Of::Anything),
-    ("POST", "/v1/sessions", Reader, Of::Body),
-    ("GET", "/v1/sessions/{id}", Reader, Of::Body),
-    ("DELETE", "/v1/sessions/{id}", Reader, Of::Body),
-    ("POST", "/v1/sessions/{id}/steps", Reader, Of::Body),
-    ("GET", "/v1/sessions/{id}/stream", Reader, Of::Body),
-    ("GET", "/v1/compare", Reader, Of::Body),
-    ("GET", "/v1/laws", Reader, Of::Anything),
-    ("POST", "/v1/laws", Engineer, Of::Server),
-    ("GET", "/v1/laws/{law}", Reader, Of::Anything),
-    ("GET", "/v1/effects", Reader, Of::Anything),
-    ("GET", "/v1/effects/{sha256}", Reader, Of::Anything),
+    ("GET", "/v1/sessions", Reader, RoleScope::Anything),
+    ("POST", "/v1/sessions", Reader, RoleScope::Body),
+    ("GET", "/v1/sessions/{id}", Reader, RoleScope::Body),
+    ("DELETE", "/v1/sessions/{id}", Reader, RoleScope::Body),
+    ("POST", "/v1/sessions/{id}/steps", Reader, RoleScope::Body),
+    ("GET", "/v1/sessions/{id}/stream", Reader, RoleScope::Body),
+    ("GET", "/v1/compare", Reader, RoleScope::Body),
+    ("GET", "/v1/laws", Reader, RoleScope::Anything),
+    ("POST", "/v1/laws", Engineer, RoleScope::Server),
+    ("GET", "/v1/laws/{law}", Reader, RoleScope::Anything),
+    ("GET", "/v1/effects", Reader, RoleScope::Anything),
+    ("GET", "/v1/effects/{sha256}", Reader, RoleScope::Anything),
     // Families. Adding a ship to a family gives those with a role for the family rights on the
     // ship.
-    ("GET", "/v1/families", Reader, Of::Server),
-    ("POST", "/v1/families", Engineer, Of::Server),
-    ("GET", "/v1/families/{family}", Reader, Of::Family),
-    ("PUT", "/v1/families/{family}", Engineer, Of::Family),
-    ("GET", "/v1/families/{family}/drift", Reader, Of::Family),
-    ("GET", "/v1/families/{family}/members", Reader, Of::Family),
-    ("POST", "/v1/families/{family}/members", Engineer, Of::Server),
-    ("DELETE", "/v1/families/{family}/members/{ship}", Engineer, Of::Family),
-    ("GET", "/v1/families/{family}/prior", Reader, Of::Family),
-    ("POST", "/v1/families/{family}/prior", Engineer, Of::Family),
-    ("POST", "/v1/families/{family}/refinements", Engineer, Of::Family),
-    ("GET", "/v1/bulk-refinements", Reader, Of::FamilyOfQuery),
-    ("GET", "/v1/bulk-refinements/{id}", Reader, Of::Bulk),
-    ("DELETE", "/v1/bulk-refinements/{id}", Engineer, Of::Bulk),
-    ("GET", "/v1/bulk-refinements/{id}/ships", Reader, Of::Bulk),
-    ("POST", "/v1/bulk-refinements/{id}/retry", Engineer, Of::Bulk),
-    ("POST", "/v1/bulk-refinements/{id}/champions", Engineer, Of::Bulk),
+    ("GET", "/v1/families", Reader, RoleScope::Server),
+    ("POST", "/v1/families", Engineer, RoleScope::Server),
+    ("GET", "/v1/families/{family}", Reader, RoleScope::Family),
+    ("PUT", "/v1/families/{family}", Engineer, RoleScope::Family),
+    ("GET", "/v1/families/{family}/drift", Reader, RoleScope::Family),
+    ("GET", "/v1/families/{family}/members", Reader, RoleScope::Family),
+    ("POST", "/v1/families/{family}/members", Engineer, RoleScope::Server),
+    ("DELETE", "/v1/families/{family}/members/{ship}", Engineer, RoleScope::Family),
+    ("GET", "/v1/families/{family}/prior", Reader, RoleScope::Family),
+    ("POST", "/v1/families/{family}/prior", Engineer, RoleScope::Family),
+    ("POST", "/v1/families/{family}/refinements", Engineer, RoleScope::Family),
+    ("GET", "/v1/bulk-refinements", Reader, RoleScope::FamilyOfQuery),
+    ("GET", "/v1/bulk-refinements/{id}", Reader, RoleScope::Bulk),
+    ("DELETE", "/v1/bulk-refinements/{id}", Engineer, RoleScope::Bulk),
+    ("GET", "/v1/bulk-refinements/{id}/ships", Reader, RoleScope::Bulk),
+    ("POST", "/v1/bulk-refinements/{id}/retry", Engineer, RoleScope::Bulk),
+    ("POST", "/v1/bulk-refinements/{id}/champions", Engineer, RoleScope::Bulk),
     // Rights.
-    ("GET", "/v1/users", Admin, Of::Server),
-    ("POST", "/v1/users", Admin, Of::Server),
-    ("GET", "/v1/users/{user}", Admin, Of::Server),
-    ("DELETE", "/v1/users/{user}", Admin, Of::Server),
-    ("POST", "/v1/users/{user}/enable", Admin, Of::Server),
-    ("PUT", "/v1/users/{user}/password", Admin, Of::Server),
-    ("PUT", "/v1/users/{user}/roles", Admin, Of::Server),
-    ("PUT", "/v1/users/{user}/identities", Admin, Of::Server),
-    ("GET", "/v1/keys", Admin, Of::Server),
-    ("POST", "/v1/keys", Admin, Of::Server),
-    ("GET", "/v1/keys/{prefix}", Admin, Of::Server),
-    ("DELETE", "/v1/keys/{prefix}", Admin, Of::Server),
-    ("PUT", "/v1/keys/{prefix}/roles", Admin, Of::Server),
-    ("GET", "/v1/settings", Reader, Of::Anything),
-    ("PUT", "/v1/settings", Admin, Of::Server),
-    ("GET", "/v1/webhooks", Admin, Of::Server),
-    ("POST", "/v1/webhooks", Admin, Of::Server),
-    ("GET", "/v1/webhooks/{id}", Admin, Of::Server),
-    ("DELETE", "/v1/webhooks/{id}", Admin, Of::Server),
-    ("GET", "/v1/webhooks/{id}/deliveries", Admin, Of::Server),
-    ("POST", "/v1/webhooks/{id}/deliveries/{delivery}/retry", Admin, Of::Server),
-    ("GET", "/v1/audit", Admin, Of::Server),
-    ("GET", "/v1/audit/head", Admin, Of::Server),
+    ("GET", "/v1/users", Admin, RoleScope::Server),
+    ("POST", "/v1/users", Admin, RoleScope::Server),
+    ("GET", "/v1/users/{user}", Admin, RoleScope::Server),
+    ("DELETE", "/v1/users/{user}", Admin, RoleScope::Server),
+    ("POST", "/v1/users/{user}/enable", Admin, RoleScope::Server),
+    ("PUT", "/v1/users/{user}/password", Admin, RoleScope::Server),
+    ("PUT", "/v1/users/{user}/roles", Admin, RoleScope::Server),
+    ("PUT", "/v1/users/{user}/identities", Admin, RoleScope::Server),
+    ("GET", "/v1/keys", Admin, RoleScope::Server),
+    ("POST", "/v1/keys", Admin, RoleScope::Server),
+    ("GET", "/v1/keys/{prefix}", Admin, RoleScope::Server),
+    ("DELETE", "/v1/keys/{prefix}", Admin, RoleScope::Server),
+    ("PUT", "/v1/keys/{prefix}/roles", Admin, RoleScope::Server),
+    ("GET", "/v1/settings", Reader, RoleScope::Anything),
+    ("PUT", "/v1/settings", Admin, RoleScope::Server),
+    ("GET", "/v1/webhooks", Admin, RoleScope::Server),
+    ("POST", "/v1/webhooks", Admin, RoleScope::Server),
+    ("GET", "/v1/webhooks/{id}", Admin, RoleScope::Server),
+    ("DELETE", "/v1/webhooks/{id}", Admin, RoleScope::Server),
+    ("GET", "/v1/webhooks/{id}/deliveries", Admin, RoleScope::Server),
+    ("POST", "/v1/webhooks/{id}/deliveries/{delivery}/retry", Admin, RoleScope::Server),
+    ("GET", "/v1/audit", Admin, RoleScope::Server),
+    ("GET", "/v1/audit/head", Admin, RoleScope::Server),
     // Pages.
-    ("GET", "/", Reader, Of::Server),
-    ("GET", "/new-ship", Engineer, Of::Server),
-    ("POST", "/ships", Engineer, Of::Server),
+    ("GET", "/", Reader, RoleScope::Server),
+    ("GET", "/new-ship", Engineer, RoleScope::Server),
+    ("POST", "/ships", Engineer, RoleScope::Server),
     ("GET", "/ships/{ship}", Reader, SHIP),
     ("POST", "/ships/{ship}/refine", Engineer, SHIP),
     ("POST", "/ships/{ship}/diagnose", Engineer, SHIP),
@@ -206,49 +206,52 @@ pub(crate) const TABLE: &[Row] = &[
     ("POST", "/ships/{ship}/upload", Engineer, SHIP),
     ("GET", "/ships/{ship}/uploads/{draft}", Engineer, SHIP),
     ("POST", "/ships/{ship}/uploads/{draft}", Engineer, SHIP),
-    ("GET", "/trials/{id}", Reader, Of::Trial),
-    ("GET", "/compare", Reader, Of::Server),
-    ("GET", "/playground", Reader, Of::Server),
-    ("GET", "/families", Reader, Of::Server),
-    ("GET", "/families/{family}", Reader, Of::Family),
-    ("GET", "/zoo", Reader, Of::Anything),
-    ("GET", "/zoo/laws/{law}", Reader, Of::Anything),
-    ("GET", "/zoo/effects/{effect}", Reader, Of::Anything),
-    ("GET", "/jobs", Reader, Of::ShipOfQuery),
-    ("GET", "/jobs/{id}", Reader, Of::Job),
-    ("POST", "/jobs/{id}/cancel", Engineer, Of::Job),
-    ("POST", "/jobs/{id}/retry", Engineer, Of::Job),
-    ("GET", "/users", Admin, Of::Server),
-    ("POST", "/users", Admin, Of::Server),
-    ("POST", "/users/{user}/roles", Admin, Of::Server),
-    ("POST", "/users/{user}/password", Admin, Of::Server),
-    ("POST", "/users/{user}/disable", Admin, Of::Server),
-    ("POST", "/users/{user}/enable", Admin, Of::Server),
-    ("POST", "/keys", Admin, Of::Server),
-    ("POST", "/keys/{prefix}/revoke", Admin, Of::Server),
-    ("POST", "/settings", Admin, Of::Server),
-    ("GET", "/audit", Admin, Of::Server),
+    ("GET", "/trials/{id}", Reader, RoleScope::Trial),
+    ("GET", "/compare", Reader, RoleScope::Server),
+    ("GET", "/playground", Reader, RoleScope::Server),
+    ("GET", "/families", Reader, RoleScope::Server),
+    ("GET", "/families/{family}", Reader, RoleScope::Family),
+    ("GET", "/zoo", Reader, RoleScope::Anything),
+    ("GET", "/zoo/laws/{law}", Reader, RoleScope::Anything),
+    ("GET", "/zoo/effects/{effect}", Reader, RoleScope::Anything),
+    ("GET", "/jobs", Reader, RoleScope::ShipOfQuery),
+    ("GET", "/jobs/{id}", Reader, RoleScope::Job),
+    ("POST", "/jobs/{id}/cancel", Engineer, RoleScope::Job),
+    ("POST", "/jobs/{id}/retry", Engineer, RoleScope::Job),
+    ("GET", "/users", Admin, RoleScope::Server),
+    ("POST", "/users", Admin, RoleScope::Server),
+    ("POST", "/users/{user}/roles", Admin, RoleScope::Server),
+    ("POST", "/users/{user}/password", Admin, RoleScope::Server),
+    ("POST", "/users/{user}/disable", Admin, RoleScope::Server),
+    ("POST", "/users/{user}/enable", Admin, RoleScope::Server),
+    ("POST", "/keys", Admin, RoleScope::Server),
+    ("POST", "/keys/{prefix}/revoke", Admin, RoleScope::Server),
+    ("POST", "/settings", Admin, RoleScope::Server),
+    ("GET", "/audit", Admin, RoleScope::Server),
 ];
 
 /// Role of the second person, if one is required.
 pub(crate) const SECOND_PERSON: Role = Approver;
 
 /// Returns the role that a route needs; `None` for routes without access control.
-pub(super) fn need(method: &Method, route: &str) -> Option<Need> {
+pub(super) fn route_need(method: &Method, route: &str) -> Option<RouteNeed> {
     let method = if *method == Method::HEAD { "GET" } else { method.as_str() };
-    if HEALTH.contains(&(method, route)) || OPEN.contains(&(method, route)) || is_unknown(method) {
+    if HEALTH_ROUTES.contains(&(method, route))
+        || OPEN_ROUTES.contains(&(method, route))
+        || is_unknown_method(method)
+    {
         return None;
     }
-    if ANYONE.contains(&(method, route)) {
-        return Some(Need { role: None, of: Of::Anything });
+    if IDENTIFIED_ROUTES.contains(&(method, route)) {
+        return Some(RouteNeed { role: None, of: RoleScope::Anything });
     }
     // A route that is missing in the table is for admins.
-    let row = TABLE.iter().find(|(known, at, ..)| *known == method && *at == route);
-    let (role, of) = row.map_or((Admin, Of::Server), |&(_, _, role, of)| (role, of));
-    Some(Need { role: Some(role), of })
+    let row = ROLE_TABLE.iter().find(|(known, at, ..)| *known == method && *at == route);
+    let (role, of) = row.map_or((Admin, RoleScope::Server), |&(_, _, role, of)| (role, of));
+    Some(RouteNeed { role: Some(role), of })
 }
 
 /// Returns true if no route has the method, so that the router answers 405.
-fn is_unknown(method: &str) -> bool {
+fn is_unknown_method(method: &str) -> bool {
     !["GET", "PUT", "POST", "DELETE"].contains(&method)
 }

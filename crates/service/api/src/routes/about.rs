@@ -36,11 +36,11 @@ use crate::problem::{Fault, Problem};
         (name = "health", description = "Whether the server lives and can work.")
     )
 )]
-struct About;
+struct ApiDescription;
 
 /// Returns the part of the document that does not depend on the endpoints.
-pub(super) fn about() -> OpenApi {
-    let mut about = About::openapi();
+pub(super) fn general_document() -> OpenApi {
+    let mut about = ApiDescription::openapi();
     about.info.version = env!("CARGO_PKG_VERSION").to_owned();
     let key = HttpBuilder::new()
         .scheme(HttpAuthScheme::Bearer)

@@ -5,21 +5,23 @@ use axum::extract::State;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
-use sistership_store::{Actor, Alias, AliasChange, AliasMove, Expect, Store};
+use sistership_store::{Actor, Alias, AliasChange, AliasMove, ExpectedRevision, Store};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::versions::exists;
+use super::versions::check_exists;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::rights::{SECOND_PERSON, on_ship};
-use crate::web::conditions::tag;
+use crate::rights::{SECOND_PERSON, check_ship_role};
+use crate::web::conditions::entity_tag;
 use crate::web::field::{EntityTags, Remark, VersionNumber};
-use crate::web::{Conditions, Listing, Name, Paged, Params, Payload, Place};
-use sistership_jobs::line::{CHAMPION, alias, is_reserved};
+use crate::web::{
+    DocumentBody, Listing, Name, PageQuery, PathParams, QueryParams, RequestConditions,
+};
+use sistership_jobs::line::{CHAMPION, find_alias, is_reserved};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn alias_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, put)).routes(routes!(history))
 }
 
@@ -60,18 +62,18 @@ struct AliasRequest {
 }
 
 impl AliasView {
-    fn of(alias: Alias) -> Self {
+    fn from_alias(alias: Alias) -> Self {
         let Alias { model, alias, version_number: version, revision } = alias;
         Self { model, alias, version, revision }
     }
 
-    fn answer(self, status: StatusCode) -> Response {
-        (status, [(header::ETAG, tag(self.revision))], Json(self)).into_response()
+    fn etag_response(self, status: StatusCode) -> Response {
+        (status, [(header::ETAG, entity_tag(self.revision))], Json(self)).into_response()
     }
 }
 
 impl AliasStep {
-    fn of(change: AliasChange) -> Self {
+    fn from_change(change: AliasChange) -> Self {
         let AliasChange {
             from_number: from, to_number: to, revision, reason, actor, moved_us, ..
         } = change;
@@ -82,17 +84,17 @@ impl AliasStep {
 /// List the aliases of a model
 #[utoipa::path(
     get, path = "/v1/models/{model}/aliases", tag = "models",
-    params(("model" = inline(Name), Path), Paged),
+    params(("model" = inline(Name), Path), PageQuery),
     responses((status = 200, body = Listing<AliasView>))
 )]
 async fn list(
     State(app): State<App>,
-    Place(model): Place<Name>,
-    Params(query): Params<Paged>,
+    PathParams(model): PathParams<Name>,
+    QueryParams(query): QueryParams<PageQuery>,
 ) -> Result<Json<Listing<AliasView>>> {
-    exists(&app, &model).await?;
-    let aliases = app.store().aliases().list(&model, &query.page()?).await?;
-    Ok(Json(Listing::of(aliases, AliasView::of)))
+    check_exists(&app, &model).await?;
+    let aliases = app.store().aliases().list(&model, &query.requested_page()?).await?;
+    Ok(Json(Listing::from_list(aliases, AliasView::from_alias)))
 }
 
 /// Get the position of an alias; a move must present its ETag
@@ -103,9 +105,10 @@ async fn list(
 )]
 async fn get(
     State(app): State<App>,
-    Place((model, name)): Place<(Name, Name)>,
+    PathParams((model, name)): PathParams<(Name, Name)>,
 ) -> Result<Response> {
-    Ok(AliasView::of(app.store().aliases().get(&model, &name).await?).answer(StatusCode::OK))
+    Ok(AliasView::from_alias(app.store().aliases().get(&model, &name).await?)
+        .etag_response(StatusCode::OK))
 }
 
 /// Move an alias, or create it
@@ -123,19 +126,20 @@ async fn get(
 )]
 async fn put(
     State(app): State<App>,
-    Place((model, name)): Place<(Name, Name)>,
-    conditions: Conditions,
-    payload: Payload,
+    PathParams((model, name)): PathParams<(Name, Name)>,
+    conditions: RequestConditions,
+    payload: DocumentBody,
 ) -> Result<Response> {
-    let AliasRequest { version, reason } = payload.json()?;
+    let AliasRequest { version, reason } = payload.parse_json()?;
     // Reserved names are those that the server itself moves.
-    check(&name)?;
-    let current = alias(app.store(), &model, &name).await?.map(|alias| alias.revision);
+    check_alias_name(&name)?;
+    let current = find_alias(app.store(), &model, &name).await?.map(|alias| alias.revision);
     // The headers If-Match and If-None-Match are the only way to state the expected position.
-    let expect = conditions.expect(&format!("alias `{model}/{name}`"), current)?;
+    let expect = conditions.expected_revision(&format!("alias `{model}/{name}`"), current)?;
     let moved = move_to(&app, &model, &name, version.get(), expect, &reason).await?;
-    let status = if expect == Expect::Absent { StatusCode::CREATED } else { StatusCode::OK };
-    Ok(AliasView::of(moved).answer(status))
+    let status =
+        if expect == ExpectedRevision::Absent { StatusCode::CREATED } else { StatusCode::OK };
+    Ok(AliasView::from_alias(moved).etag_response(status))
 }
 
 /// Moves an alias if its position is as expected.
@@ -147,11 +151,11 @@ pub(super) async fn move_to(
     model: &str,
     alias: &str,
     version: i64,
-    expect: Expect,
+    expect: ExpectedRevision,
     reason: &str,
 ) -> Result<Alias> {
     if alias == CHAMPION {
-        second_person(app.store(), model).await?;
+        check_second_person(app.store(), model).await?;
     }
     // The author is the caller, never a field of the request.
     let (alias, actor) = (alias.to_owned(), Actor::current().name);
@@ -160,14 +164,14 @@ pub(super) async fn move_to(
 }
 
 /// Checks the role of an approver, if moves of the champion need a second person.
-pub(super) async fn second_person(store: &Store, ship: &str) -> Result<()> {
-    match store.settings().second_person().await? {
-        true => on_ship(store, SECOND_PERSON, ship).await,
+pub(super) async fn check_second_person(store: &Store, ship: &str) -> Result<()> {
+    match store.settings().requires_second_person().await? {
+        true => check_ship_role(store, SECOND_PERSON, ship).await,
         false => Ok(()),
     }
 }
 
-fn check(name: &str) -> Result<()> {
+fn check_alias_name(name: &str) -> Result<()> {
     match is_reserved(name) {
         true => Err(Problem::invalid(
             "alias",
@@ -180,15 +184,16 @@ fn check(name: &str) -> Result<()> {
 /// List the moves of an alias, the latest first
 #[utoipa::path(
     get, path = "/v1/models/{model}/aliases/{alias}/history", tag = "models",
-    params(("model" = inline(Name), Path), ("alias" = inline(Name), Path), Paged),
+    params(("model" = inline(Name), Path), ("alias" = inline(Name), Path), PageQuery),
     responses((status = 200, body = Listing<AliasStep>))
 )]
 async fn history(
     State(app): State<App>,
-    Place((model, name)): Place<(Name, Name)>,
-    Params(query): Params<Paged>,
+    PathParams((model, name)): PathParams<(Name, Name)>,
+    QueryParams(query): QueryParams<PageQuery>,
 ) -> Result<Json<Listing<AliasStep>>> {
     app.store().aliases().get(&model, &name).await?;
-    let changes = app.store().aliases().history(&model, &name, &query.page()?).await?;
-    Ok(Json(Listing::of(changes, AliasStep::of)))
+    let changes =
+        app.store().aliases().list_history(&model, &name, &query.requested_page()?).await?;
+    Ok(Json(Listing::from_list(changes, AliasStep::from_change)))
 }

@@ -12,9 +12,9 @@ use utoipa_axum::routes;
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
 use crate::web::field::{AuditName, Cursor, Limit};
-use crate::web::{Listing, Params, Payload, page};
+use crate::web::{DocumentBody, Listing, QueryParams, page};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn audit_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .routes(routes!(list))
         .routes(routes!(head))
@@ -59,7 +59,7 @@ struct HeadView {
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct Query {
+struct AuditQuery {
     /// Only entries by this author.
     #[param(inline)]
     actor: Option<AuditName>,
@@ -83,7 +83,7 @@ struct Settings {
 }
 
 impl EntryView {
-    fn of(entry: AuditEntry) -> Self {
+    fn from_entry(entry: AuditEntry) -> Self {
         let AuditEntry { number, at_us, actor, origin, action, subject, .. } = entry;
         // States are stored as JSON; one that cannot be parsed is shown as null.
         let read = |text: Option<String>| text.and_then(|text| serde_json::from_str(&text).ok());
@@ -109,29 +109,29 @@ impl EntryView {
     responses((status = 200, body = Listing<EntryView>)))]
 async fn list(
     State(app): State<App>,
-    Params(query): Params<Query>,
+    QueryParams(query): QueryParams<AuditQuery>,
 ) -> Result<Json<Listing<EntryView>>> {
     // The store filters by one of the two only.
     let filter = match (&query.actor, &query.subject) {
         (Some(_), Some(_)) => {
             let message = "give either an actor or a subject";
-            let fault = Fault::at("subject", message);
-            return Err(Problem::bad_request(format!("subject: {message}")).with(fault));
+            let fault = Fault::at_field("subject", message);
+            return Err(Problem::bad_request(format!("subject: {message}")).with_fault(fault));
         }
         (Some(actor), None) => AuditFilter::Actor(actor),
         (None, Some(subject)) => AuditFilter::Subject(subject),
         (None, None) => AuditFilter::All,
     };
-    let page = page::page(query.limit, query.after.as_ref())?;
+    let page = page::parse_page(query.limit, query.after.as_ref())?;
     let entries = app.store().audit().list(filter, &page).await?;
-    Ok(Json(Listing::of(entries, EntryView::of)))
+    Ok(Json(Listing::from_list(entries, EntryView::from_entry)))
 }
 
 /// Get the number and the hash of the last entry of the audit
 #[utoipa::path(get, path = "/v1/audit/head", tag = "access",
     responses((status = 200, body = HeadView)))]
 async fn head(State(app): State<App>) -> Result<Json<HeadView>> {
-    let head = app.store().audit().head().await?;
+    let head = app.store().audit().chain_head().await?;
     Ok(Json(HeadView { number: head.number, sha256: head.sha256 }))
 }
 
@@ -139,7 +139,7 @@ async fn head(State(app): State<App>) -> Result<Json<HeadView>> {
 #[utoipa::path(get, path = "/v1/settings", tag = "access",
     responses((status = 200, body = Settings)))]
 async fn settings(State(app): State<App>) -> Result<Json<Settings>> {
-    Ok(Json(Settings { second_person: app.store().settings().second_person().await? }))
+    Ok(Json(Settings { second_person: app.store().settings().requires_second_person().await? }))
 }
 
 /// Change the settings
@@ -147,8 +147,8 @@ async fn settings(State(app): State<App>) -> Result<Json<Settings>> {
     put, path = "/v1/settings", tag = "access", request_body = Settings,
     responses((status = 200, body = Settings))
 )]
-async fn set_settings(State(app): State<App>, payload: Payload) -> Result<Json<Settings>> {
-    let asked: Settings = payload.json()?;
+async fn set_settings(State(app): State<App>, payload: DocumentBody) -> Result<Json<Settings>> {
+    let asked: Settings = payload.parse_json()?;
     app.store().settings().set_second_person(asked.second_person).await?;
     Ok(Json(asked))
 }

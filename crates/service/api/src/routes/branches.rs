@@ -10,22 +10,24 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::jobs::JobView;
-use super::model_ref::resolve;
-use super::named_trials::{named, no_trials};
-use super::queue::{accepted, enqueue};
+use super::model_ref::resolve_version;
+use super::named_trials::{checked_trials, no_trials};
+use super::queue::{enqueue_job, job_reply};
 use super::trials::all_of_ship;
 use crate::app::App;
-use crate::jobs::{BRANCH, BranchJob};
+use crate::jobs::{BRANCH_JOB_KIND, BranchJob};
 use crate::problem::{Problem, Result};
-use crate::rights::on_ship;
+use crate::rights::check_ship_role;
 use crate::web::field::RequestKey;
-use crate::web::{Id, Key, ModelName, Name, Number, Payload, Place, Reply};
+use crate::web::{
+    DocumentBody, Id, IdempotencyKey, ModelName, Name, Number, PathParams, StoredReply,
+};
 use sistership_auth::Role;
-use sistership_jobs::archive::document;
-use sistership_jobs::schema::described;
-use sistership_jobs::training::foundation_of;
+use sistership_jobs::archive::version_document;
+use sistership_jobs::schema::schema_reference;
+use sistership_jobs::training::foundation_number;
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn branch_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(train)).routes(routes!(weights))
 }
 
@@ -42,7 +44,7 @@ struct BranchRequest {
     /// Kind of learner and its settings. By default every kind is evaluated, and one is selected
     /// only if it improves on held-out trials by more than its uncertainty.
     #[serde(default)]
-    #[schema(schema_with = described::<BranchSettings>)]
+    #[schema(schema_with = schema_reference::<BranchSettings>)]
     settings: BranchSettings,
 }
 
@@ -58,29 +60,34 @@ struct BranchRequest {
     request_body = BranchRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
-async fn train(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
-    let request: BranchRequest = payload.json()?;
-    key.once(&app, payload.bytes(), |app| async move { queued(&app, request).await }).await
+async fn train(
+    State(app): State<App>,
+    key: IdempotencyKey,
+    payload: DocumentBody,
+) -> Result<Response> {
+    let request: BranchRequest = payload.parse_json()?;
+    key.run_once(&app, payload.bytes(), |app| async move { queue_training(&app, request).await })
+        .await
 }
 
-async fn queued(app: &App, request: BranchRequest) -> Result<Reply> {
-    let job = settled(app, request).await?;
-    accepted(enqueue(app, BRANCH, &job.ship, &job).await?)
+async fn queue_training(app: &App, request: BranchRequest) -> Result<StoredReply> {
+    let job = resolve_request(app, request).await?;
+    job_reply(enqueue_job(app, BRANCH_JOB_KIND, &job.ship, &job).await?)
 }
 
 /// Looks up everything that the request names, so that a wrong request is refused at once.
-async fn settled(app: &App, request: BranchRequest) -> Result<BranchJob> {
+async fn resolve_request(app: &App, request: BranchRequest) -> Result<BranchJob> {
     let BranchRequest { model, trials, settings } = request;
-    let version = resolve(app.store(), "model", &model).await?;
+    let version = resolve_version(app.store(), "model", &model).await?;
     // Reading the version takes a reader, training on it an engineer.
-    on_ship(app.store(), Role::Engineer, &version.head.model).await?;
-    let number = foundation(app, &version.head).await?;
+    check_ship_role(app.store(), Role::Engineer, &version.head.model).await?;
+    let number = base_version(app, &version.head).await?;
     settings
         .check()
         .map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
     let ship = version.head.model.clone();
     let trials = match trials {
-        Some(ids) => named(app, &ship, ids, "all of the ship's").await?,
+        Some(ids) => checked_trials(app, &ship, ids, "all of the ship's").await?,
         None => all_of_ship(app, &ship).await?.into_iter().map(|trial| trial.id).collect(),
     };
     if trials.is_empty() {
@@ -91,8 +98,8 @@ async fn settled(app: &App, request: BranchRequest) -> Result<BranchJob> {
 
 /// Returns the number of the version to correct: of a version with a learned correction, the one
 /// without it that it came from.
-async fn foundation(app: &App, head: &sistership_store::VersionHead) -> Result<i64> {
-    let number = foundation_of(app.archive(), &head.model, head.number).await?;
+async fn base_version(app: &App, head: &sistership_store::VersionHead) -> Result<i64> {
+    let number = foundation_number(app.archive(), &head.model, head.number).await?;
     let elsewhere = || {
         let name = format!("{}/{}", head.model, head.number);
         let message = format!(
@@ -114,13 +121,13 @@ async fn foundation(app: &App, head: &sistership_store::VersionHead) -> Result<i
 )]
 async fn weights(
     State(app): State<App>,
-    Place((model, number)): Place<(Name, Number)>,
+    PathParams((model, number)): PathParams<(Name, Number)>,
 ) -> Result<Response> {
     let version = app.store().versions().get(&model, number.get()).await?;
     let missing = || {
         Problem::not_found(format!("version {}/{} has no learned branch", &model[..], number.get()))
     };
-    let branch = document(&version)?.model.branch.ok_or_else(missing)?;
+    let branch = version_document(&version)?.model.branch.ok_or_else(missing)?;
     let bytes = app.objects().get(&branch.weights_sha256).await?;
     Ok(([(header::CONTENT_TYPE, "application/json")], bytes).into_response())
 }

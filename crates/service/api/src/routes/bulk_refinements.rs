@@ -6,20 +6,25 @@ use axum::http::StatusCode;
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use sistership_store::{AliasMove, Bulk, BulkOutcome, Expect, MAX_LIMIT, Page};
+use sistership_store::{
+    AliasMove, BulkOutcome, ExpectedRevision, FamilyRefinement, MAX_LIMIT, PageRequest,
+};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::aliases::second_person;
+use super::aliases::check_second_person;
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::field::{Cursor, Limit, Remark, RequestKey};
-use crate::web::{Id, Key, Listing, Name, Params, Payload, Place, Reply, Word, page};
-use sistership_jobs::fleet::{Asked, Standing, order_refinement};
+use crate::web::{
+    DocumentBody, Id, IdempotencyKey, Listing, Name, PathParams, QueryParams, StoredReply, Word,
+    page,
+};
+use sistership_jobs::fleet::{BulkProgress, BulkRefinementRequest, order_refinement};
 use sistership_jobs::line::CHAMPION;
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn bulk_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .routes(routes!(refine))
         .routes(routes!(list))
@@ -39,7 +44,7 @@ struct BulkView {
     #[schema(value_type = Object)]
     request: Value,
     #[serde(flatten)]
-    standing: Standing,
+    standing: BulkProgress,
 }
 
 /// Outcome of a bulk refinement for one ship.
@@ -74,7 +79,7 @@ struct Promotion {
 
 /// Result of a promotion.
 #[derive(Debug, Serialize, ToSchema)]
-struct Promoted {
+struct PromotionResult {
     /// Number of candidates that have become champions.
     champions: usize,
 }
@@ -82,7 +87,7 @@ struct Promoted {
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct ListQuery {
+struct BulkListQuery {
     /// Only refinements of this family.
     #[param(inline)]
     family: Option<Word>,
@@ -97,7 +102,7 @@ struct ListQuery {
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct ShipQuery {
+struct OutcomeQuery {
     /// Only ships with this outcome.
     #[param(inline)]
     outcome: Option<Outcome>,
@@ -131,8 +136,8 @@ impl Outcome {
 }
 
 impl BulkView {
-    async fn of(app: &App, bulk: Bulk) -> Result<Self> {
-        let standing = Standing::of(app.store(), &bulk).await?;
+    async fn load(app: &App, bulk: FamilyRefinement) -> Result<Self> {
+        let standing = BulkProgress::read_current(app.store(), &bulk).await?;
         let request = serde_json::from_str(&bulk.request).unwrap_or_default();
         Ok(Self {
             id: bulk.id,
@@ -145,7 +150,7 @@ impl BulkView {
 }
 
 impl OutcomeView {
-    fn of(outcome: BulkOutcome) -> Self {
+    fn from_outcome(outcome: BulkOutcome) -> Self {
         let comparison = serde_json::from_str(&outcome.document).unwrap_or_default();
         let BulkOutcome { ship, outcome, version, worst_change, .. } = outcome;
         Self { ship, outcome, version, worst_change, comparison }
@@ -160,45 +165,45 @@ impl OutcomeView {
     post, path = "/v1/families/{family}/refinements", tag = "families",
     params(("family" = inline(Word), Path),
     ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
-    request_body = Asked, responses((status = 202, body = BulkView, headers(("Location" = String))))
+    request_body = BulkRefinementRequest, responses((status = 202, body = BulkView, headers(("Location" = String))))
 )]
 async fn refine(
     State(app): State<App>,
-    Place(family): Place<Word>,
-    key: Key,
-    payload: Payload,
+    PathParams(family): PathParams<Word>,
+    key: IdempotencyKey,
+    payload: DocumentBody,
 ) -> Result<Response> {
-    let asked: Asked = payload.json()?;
+    let asked: BulkRefinementRequest = payload.parse_json()?;
     // Bulk refinement and jobs are queued in one transaction; the workers are woken after its
     // commit.
     let work = |app: App| async move {
         let bulk = order_refinement(app.store(), &family, &asked).await?;
         let id = bulk.id.clone();
-        Ok(Reply::new(StatusCode::ACCEPTED, &BulkView::of(&app, bulk).await?)?
-            .at(&["v1", "bulk-refinements", &id])
+        Ok(StoredReply::new(StatusCode::ACCEPTED, &BulkView::load(&app, bulk).await?)?
+            .with_location(&["v1", "bulk-refinements", &id])
             .with_jobs())
     };
-    key.once(&app, payload.bytes(), work).await
+    key.run_once(&app, payload.bytes(), work).await
 }
 
 /// List the bulk refinements, the latest first
 #[utoipa::path(
-    get, path = "/v1/bulk-refinements", tag = "families", params(ListQuery),
+    get, path = "/v1/bulk-refinements", tag = "families", params(BulkListQuery),
     responses((status = 200, body = Listing<BulkView>))
 )]
 async fn list(
     State(app): State<App>,
-    Params(query): Params<ListQuery>,
+    QueryParams(query): QueryParams<BulkListQuery>,
 ) -> Result<Json<Listing<BulkView>>> {
     let bulks = app
         .store()
         .bulks()
-        .list(query.family.as_deref(), &page::page(query.limit, query.after.as_ref())?)
+        .list(query.family.as_deref(), &page::parse_page(query.limit, query.after.as_ref())?)
         .await?;
     let mut items = Vec::with_capacity(bulks.items.len());
     // The status of each is counted from its chunks, hence look-ups for each item; a page has few.
     for bulk in bulks.items {
-        items.push(BulkView::of(&app, bulk).await?);
+        items.push(BulkView::load(&app, bulk).await?);
     }
     Ok(Json(Listing { items, next: bulks.next }))
 }
@@ -208,9 +213,9 @@ async fn list(
     get, path = "/v1/bulk-refinements/{id}", tag = "families", params(("id" = inline(Id), Path)),
     responses((status = 200, body = BulkView))
 )]
-async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<BulkView>> {
+async fn get(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<BulkView>> {
     let bulk = app.store().bulks().get(&id).await?;
-    Ok(Json(BulkView::of(&app, bulk).await?))
+    Ok(Json(BulkView::load(&app, bulk).await?))
 }
 
 /// Cancel the rest of a bulk refinement; ships that are done keep their outcome
@@ -218,10 +223,10 @@ async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<BulkVi
     delete, path = "/v1/bulk-refinements/{id}", tag = "families", params(("id" = inline(Id), Path)),
     responses((status = 200, body = BulkView))
 )]
-async fn cancel(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<BulkView>> {
+async fn cancel(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<BulkView>> {
     let bulk = app.store().bulks().get(&id).await?;
     app.store().bulks().request_cancel(&id).await?;
-    Ok(Json(BulkView::of(&app, bulk).await?))
+    Ok(Json(BulkView::load(&app, bulk).await?))
 }
 
 /// Run the chunks again that failed or were cancelled
@@ -230,51 +235,55 @@ async fn cancel(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Bul
     params(("id" = inline(Id), Path)),
     responses((status = 200, body = BulkView))
 )]
-async fn retry(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<BulkView>> {
+async fn retry(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<BulkView>> {
     let bulk = app.store().bulks().get(&id).await?;
-    app.store().bulks().retry(&id).await?;
+    app.store().bulks().retry_chunks(&id).await?;
     // Several chunks may be queued again: all workers are woken.
-    app.wake().notify_waiters();
-    Ok(Json(BulkView::of(&app, bulk).await?))
+    app.wake_signal().notify_waiters();
+    Ok(Json(BulkView::load(&app, bulk).await?))
 }
 
 /// List the ships of a bulk refinement with their errors before and after
 #[utoipa::path(
     get, path = "/v1/bulk-refinements/{id}/ships", tag = "families",
-    params(("id" = inline(Id), Path), ShipQuery),
+    params(("id" = inline(Id), Path), OutcomeQuery),
     responses((status = 200, body = Listing<OutcomeView>))
 )]
 async fn ships(
     State(app): State<App>,
-    Place(id): Place<Id>,
-    Params(query): Params<ShipQuery>,
+    PathParams(id): PathParams<Id>,
+    QueryParams(query): QueryParams<OutcomeQuery>,
 ) -> Result<Json<Listing<OutcomeView>>> {
     let bulk = app.store().bulks().get(&id).await?;
-    let page = page::page(query.limit, query.after.as_ref())?;
-    let outcomes =
-        app.store().bulks().outcomes(&bulk.id, query.outcome.map(Outcome::name), &page).await?;
-    Ok(Json(Listing::of(outcomes, OutcomeView::of)))
+    let page = page::parse_page(query.limit, query.after.as_ref())?;
+    let outcomes = app
+        .store()
+        .bulks()
+        .list_outcomes(&bulk.id, query.outcome.map(Outcome::name), &page)
+        .await?;
+    Ok(Json(Listing::from_list(outcomes, OutcomeView::from_outcome)))
 }
 
 /// Promote candidates of a bulk refinement to champions
 #[utoipa::path(
     post, path = "/v1/bulk-refinements/{id}/champions", tag = "families",
     params(("id" = inline(Id), Path)), request_body = Promotion,
-    responses((status = 200, body = Promoted))
+    responses((status = 200, body = PromotionResult))
 )]
 async fn promote(
     State(app): State<App>,
-    Place(id): Place<Id>,
-    payload: Payload,
-) -> Result<Json<Promoted>> {
-    let word: Promotion = payload.json()?;
+    PathParams(id): PathParams<Id>,
+    payload: DocumentBody,
+) -> Result<Json<PromotionResult>> {
+    let word: Promotion = payload.parse_json()?;
     let bulk = app.store().bulks().get(&id).await?;
     let (reason, actor) = (word.reason.into_string(), word.actor.into_string());
-    let change = AliasMove { alias: CHAMPION.to_owned(), expect: Expect::Any, reason, actor };
-    let (mut champions, mut page) = (0, Page::first(MAX_LIMIT));
+    let change =
+        AliasMove { alias: CHAMPION.to_owned(), expect: ExpectedRevision::Any, reason, actor };
+    let (mut champions, mut page) = (0, PageRequest::first_page(MAX_LIMIT));
     // Candidates are promoted one by one; an error leaves the earlier promotions in place.
     loop {
-        let list = app.store().bulks().outcomes(&bulk.id, Some("candidate"), &page).await?;
+        let list = app.store().bulks().list_outcomes(&bulk.id, Some("candidate"), &page).await?;
         for outcome in &list.items {
             let meant = word
                 .ships
@@ -282,12 +291,15 @@ async fn promote(
                 .is_none_or(|ships| ships.iter().any(|ship| **ship == *outcome.ship));
             if let (true, Some(version)) = (meant, outcome.version) {
                 // The role of an approver may depend on the ship, so that it is checked for each.
-                second_person(app.store(), &outcome.ship).await?;
-                app.store().bulks().promote(&bulk.id, &outcome.ship, version, &change).await?;
+                check_second_person(app.store(), &outcome.ship).await?;
+                app.store()
+                    .bulks()
+                    .promote_candidate(&bulk.id, &outcome.ship, version, &change)
+                    .await?;
                 champions += 1;
             }
         }
-        let Some(next) = list.next else { return Ok(Json(Promoted { champions })) };
-        page = Page::after(next, MAX_LIMIT);
+        let Some(next) = list.next else { return Ok(Json(PromotionResult { champions })) };
+        page = PageRequest::after_key(next, MAX_LIMIT);
     }
 }

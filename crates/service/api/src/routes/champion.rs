@@ -15,17 +15,17 @@ use utoipa_axum::routes;
 use super::versions::VersionHead;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::web::conditions::tag;
+use crate::web::conditions::entity_tag;
 use crate::web::field::EntityTags;
-use crate::web::{Conditions, Name, Params, Place, accept};
-use sistership_jobs::archive::document;
+use crate::web::{Name, PathParams, QueryParams, RequestConditions, accept};
+use sistership_jobs::archive::version_document;
 use sistership_jobs::line::CHAMPION;
-use sistership_web_support::answers::Answer;
+use sistership_web_support::answers::CachedAnswer;
 
 const JSON: &str = "application/json";
 const YAML: &str = "application/yaml";
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn champion_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(champion))
 }
 
@@ -43,7 +43,7 @@ struct Champion {
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct Query {
+struct ChampionQuery {
     /// `json` or `yaml`; takes precedence over `Accept`.
     #[param(inline)]
     format: Option<Format>,
@@ -72,23 +72,23 @@ enum Format {
 )]
 async fn champion(
     State(app): State<App>,
-    Place(ship): Place<Name>,
-    Params(query): Params<Query>,
-    conditions: Conditions,
+    PathParams(ship): PathParams<Name>,
+    QueryParams(query): QueryParams<ChampionQuery>,
+    conditions: RequestConditions,
     headers: HeaderMap,
 ) -> Result<Response> {
     // A format in the query takes precedence over `Accept`.
     let media = match query.format {
         Some(Format::Json) => JSON,
         Some(Format::Yaml) => YAML,
-        None => accept::choose(&headers, &[JSON, YAML])?,
+        None => accept::choose_media(&headers, &[JSON, YAML])?,
     };
     // A ship without champion gets advice; an unknown ship gets its own error.
-    let Some(current) = app.store().versions().current(&ship, CHAMPION).await? else {
-        return Err(missing(&app, &ship).await);
+    let Some(current) = app.store().versions().current_version(&ship, CHAMPION).await? else {
+        return Err(no_champion(&app, &ship).await);
     };
-    let Answer { etag, body } = answer(&app, current, media).await?;
-    let known = etag.to_str().is_ok_and(|etag| conditions.has(etag));
+    let CachedAnswer { etag, body } = cached_answer(&app, current, media).await?;
+    let known = etag.to_str().is_ok_and(|etag| conditions.matches_current(etag));
     let (vary, media) = (HeaderValue::from_static("accept"), HeaderValue::from_static(media));
     let head = [(header::ETAG, etag), (header::VARY, vary), (header::CONTENT_TYPE, media)];
     Ok(if known {
@@ -99,30 +99,34 @@ async fn champion(
 }
 
 /// Returns the answer, from the cache if the version was requested before.
-async fn answer(app: &App, current: CurrentVersion, media: &'static str) -> Result<Answer> {
+async fn cached_answer(
+    app: &App,
+    current: CurrentVersion,
+    media: &'static str,
+) -> Result<CachedAnswer> {
     // A version never changes, so that its answer stays valid; the report is part of the key, as it
     // may be added later.
     let key = (current.id, current.report, media);
-    if let Some(answer) = app.answers().get(&key) {
+    if let Some(answer) = app.champion_cache().get(&key) {
         return Ok(answer);
     }
     let version = app.store().versions().by_id(&key.0).await?;
-    let (model, sha256) = (document(&version)?.model, &version.head.sha256);
+    let (model, sha256) = (version_document(&version)?.model, &version.head.sha256);
     // The two forms need different tags: caches must not confuse them.
     let (etag, body) = match media {
-        YAML => (tag(format!("{sha256}.yaml")), yaml(&model)?),
-        _ => (tag(sha256), json(version.head, key.1.clone(), &model)?),
+        YAML => (entity_tag(format!("{sha256}.yaml")), yaml_body(&model)?),
+        _ => (entity_tag(sha256), json_body(version.head, key.1.clone(), &model)?),
     };
-    let answer = Answer {
+    let answer = CachedAnswer {
         etag: HeaderValue::try_from(etag).map_err(Problem::internal)?,
         body: Bytes::from(body),
     };
-    app.answers().keep(key, answer.clone());
+    app.champion_cache().insert_answer(key, answer.clone());
     Ok(answer)
 }
 
 /// Returns the reason for which a ship has no champion.
-async fn missing(app: &App, ship: &str) -> Problem {
+async fn no_champion(app: &App, ship: &str) -> Problem {
     if let Err(error) = app.store().ships().get(ship).await {
         return error.into();
     }
@@ -132,17 +136,17 @@ async fn missing(app: &App, ship: &str) -> Problem {
     ))
 }
 
-fn yaml(model: &Model) -> Result<String> {
+fn yaml_body(model: &Model) -> Result<String> {
     serde_yaml::to_string(model).map_err(Problem::internal)
 }
 
-fn json(
+fn json_body(
     head: sistership_store::VersionHead,
     report: Option<String>,
     model: &Model,
 ) -> Result<String> {
     let ship = head.model.clone();
-    let version = VersionHead { report, ..VersionHead::of(head) };
+    let version = VersionHead { report, ..VersionHead::from_head(head) };
     let model = serde_json::to_value(model).map_err(Problem::internal)?;
     serde_json::to_string(&Champion { ship, version, model }).map_err(Problem::internal)
 }
@@ -155,11 +159,14 @@ mod tests {
 
     #[test]
     fn yaml_reads_back_as_the_same_model() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         for vessel in zoo.vessels().filter(|vessel| !vessel.file.models.is_empty()) {
-            let model = zoo.published(vessel, None).unwrap();
+            let model = zoo.published_model(vessel, None).unwrap();
             let law_of = |name: &str| zoo.law(name).map(|law| (**law).clone());
-            assert_eq!(Model::parse("model.yaml", &yaml(&model).unwrap(), &law_of).unwrap(), model);
+            assert_eq!(
+                Model::parse("model.yaml", &yaml_body(&model).unwrap(), &law_of).unwrap(),
+                model
+            );
         }
     }
 }

@@ -15,27 +15,27 @@ use utoipa::openapi::schema::Schema;
 use crate::web::field::any_object;
 
 /// Body of a vessel; its schema is added to the document separately.
-pub(super) struct Vessel;
+pub(super) struct VesselBodySchema;
 
-impl utoipa::PartialSchema for Vessel {
+impl utoipa::PartialSchema for VesselBodySchema {
     fn schema() -> RefOr<Schema> {
         any_object()
     }
 }
 
-impl utoipa::ToSchema for Vessel {
+impl utoipa::ToSchema for VesselBodySchema {
     fn name() -> std::borrow::Cow<'static, str> {
         <VesselFile as schemars::JsonSchema>::schema_name()
     }
 }
 
 /// Returns the schemas of all request types of other crates, by name.
-pub(super) fn schemas() -> Map<String, Value> {
+pub(super) fn request_schemas() -> Map<String, Value> {
     let settings = SchemaSettings::draft2020_12().for_deserialize();
     let mut generator = settings
         .with(|settings| settings.definitions_path = "/components/schemas".into())
         .into_generator();
-    generator.subschema_for::<refine::Settings>();
+    generator.subschema_for::<refine::RefinementSettings>();
     generator.subschema_for::<diagnose::Settings>();
     generator.subschema_for::<BulkSettings>();
     generator.subschema_for::<BranchSettings>();
@@ -45,8 +45,8 @@ pub(super) fn schemas() -> Map<String, Value> {
 }
 
 /// Adds the schemas of other crates to the document.
-pub(super) fn add(document: &mut Value) {
+pub(super) fn add_request_schemas(document: &mut Value) {
     if let Some(known) = document["components"]["schemas"].as_object_mut() {
-        known.extend(schemas());
+        known.extend(request_schemas());
     }
 }

@@ -11,22 +11,22 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::jobs::JobView;
-use super::model_ref::resolve;
-use super::named_trials::{named, no_trials};
-use super::queue::{accepted, enqueue};
+use super::model_ref::resolve_version;
+use super::named_trials::{checked_trials, no_trials};
+use super::queue::{enqueue_job, job_reply};
 use super::trials::all_of_ship;
 use crate::app::App;
-use crate::jobs::{DIAGNOSIS, DiagnosisJob};
+use crate::jobs::{DIAGNOSIS_JOB_KIND, DiagnosisJob};
 use crate::problem::{Problem, Result};
-use crate::rights::on_ship;
+use crate::rights::check_ship_role;
 use crate::web::field::RequestKey;
 use crate::web::payload::from_slice;
-use crate::web::{Id, Key, ModelName, Payload, Reply};
+use crate::web::{DocumentBody, Id, IdempotencyKey, ModelName, StoredReply};
 use sistership_auth::Role;
 use sistership_jobs::condition::fitted_samples;
-use sistership_jobs::schema::described;
+use sistership_jobs::schema::schema_reference;
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn diagnosis_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(diagnose))
 }
 
@@ -43,7 +43,7 @@ struct DiagnosisRequest {
     trials: Option<Vec<Id>>,
     /// Settings of the diagnosis; each has a default, and all are kept with the report.
     #[serde(default)]
-    #[schema(schema_with = described::<Settings>)]
+    #[schema(schema_with = schema_reference::<Settings>)]
     settings: Settings,
 }
 
@@ -59,39 +59,45 @@ struct DiagnosisRequest {
     request_body = DiagnosisRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
-async fn diagnose(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
-    let request: DiagnosisRequest = payload.json()?;
-    key.once(&app, payload.bytes(), |app| async move { queued(&app, request).await }).await
+async fn diagnose(
+    State(app): State<App>,
+    key: IdempotencyKey,
+    payload: DocumentBody,
+) -> Result<Response> {
+    let request: DiagnosisRequest = payload.parse_json()?;
+    key.run_once(&app, payload.bytes(), |app| async move { queue_reply(&app, request).await }).await
 }
 
-async fn queued(app: &App, request: DiagnosisRequest) -> Result<Reply> {
-    accepted(enqueued(app, request).await?)
+async fn queue_reply(app: &App, request: DiagnosisRequest) -> Result<StoredReply> {
+    job_reply(queue_job(app, request).await?)
 }
 
-async fn enqueued(app: &App, request: DiagnosisRequest) -> Result<Job> {
+async fn queue_job(app: &App, request: DiagnosisRequest) -> Result<Job> {
     // The ship is named by the request, even if the name resolves to nothing: then the next call
     // fails.
     let ship = request.model.split('/').next().unwrap_or_default().to_owned();
-    enqueue(app, DIAGNOSIS, &ship, &settled(app, request).await?).await
+    enqueue_job(app, DIAGNOSIS_JOB_KIND, &ship, &resolve_request(app, request).await?).await
 }
 
 /// Queues a diagnosis that a page requests, from the document that the endpoint takes.
-pub(super) async fn ask(app: &App, asked: &Value) -> Result<Job> {
-    enqueued(app, from_slice(&serde_json::to_vec(asked).map_err(Problem::internal)?)?).await
+pub(super) async fn queue_from_page(app: &App, asked: &Value) -> Result<Job> {
+    queue_job(app, from_slice(&serde_json::to_vec(asked).map_err(Problem::internal)?)?).await
 }
 
 /// Looks up everything that the request names, so that a wrong request is refused at once.
-async fn settled(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
+async fn resolve_request(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
     let DiagnosisRequest { model, trials, settings } = request;
-    let version = resolve(app.store(), "model", &model).await?;
-    on_ship(app.store(), Role::Engineer, &version.head.model).await?;
+    let version = resolve_version(app.store(), "model", &model).await?;
+    check_ship_role(app.store(), Role::Engineer, &version.head.model).await?;
     settings
-        .check()
+        .check_values()
         .map_err(|(field, message)| Problem::invalid(&format!("settings.{field}"), message))?;
     let ship = version.head.model.clone();
     let trials = match trials {
-        Some(ids) => named(app, &ship, ids, "those that the version was not made of").await?,
-        None => unseen(app, &version).await?,
+        Some(ids) => {
+            checked_trials(app, &ship, ids, "those that the version was not made of").await?
+        }
+        None => unseen_trials(app, &version).await?,
     };
     let (number, with_earlier, key_sha256) = (version.head.number, false, None);
     Ok(DiagnosisJob { ship, number, trials, with_earlier, settings, key_sha256 })
@@ -99,7 +105,7 @@ async fn settled(app: &App, request: DiagnosisRequest) -> Result<DiagnosisJob> {
 
 /// Returns the trials of the ship that a version was not fitted to; all of them if there are no
 /// others.
-async fn unseen(app: &App, version: &Version) -> Result<Vec<String>> {
+async fn unseen_trials(app: &App, version: &Version) -> Result<Vec<String>> {
     let all = all_of_ship(app, &version.head.model).await?;
     // Trials are compared by the hash of their samples, by which recipes name them.
     let seen = fitted_samples(app.archive(), version).await?;

@@ -10,17 +10,17 @@ use utoipa_axum::routes;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::MemberLimit;
-use crate::web::{Name, Params, Place, Word};
+use crate::web::{Name, PathParams, QueryParams, Word};
 use sistership_jobs::fleet::{Drift, FamilyDrift};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn drift_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(of_ship)).routes(routes!(of_family))
 }
 
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct Query {
+struct DriftQuery {
     /// Number of members to examine; those whose diagnosis says that their model does not hold come
     /// first.
     #[param(inline)]
@@ -32,9 +32,12 @@ struct Query {
     get, path = "/v1/ships/{ship}/drift", tag = "ships", params(("ship" = inline(Name), Path)),
     responses((status = 200, body = Drift))
 )]
-async fn of_ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Json<Drift>> {
+async fn of_ship(
+    State(app): State<App>,
+    PathParams(ship): PathParams<Name>,
+) -> Result<Json<Drift>> {
     app.store().ships().get(&ship).await?;
-    let drift = Drift::of(app.archive(), &ship).await?;
+    let drift = Drift::for_champion(app.archive(), &ship).await?;
     drift.map(Json).ok_or_else(|| {
         Problem::invalid(
             "ship",
@@ -52,9 +55,9 @@ async fn of_ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Jso
 )]
 async fn of_family(
     State(app): State<App>,
-    Place(name): Place<Word>,
-    Params(query): Params<Query>,
+    PathParams(name): PathParams<Word>,
+    QueryParams(query): QueryParams<DriftQuery>,
 ) -> Result<Json<FamilyDrift>> {
     let limit = query.limit.unwrap_or_default().get();
-    Ok(Json(FamilyDrift::of(app.archive(), &name, limit).await?))
+    Ok(Json(FamilyDrift::read_members(app.archive(), &name, limit).await?))
 }

@@ -11,9 +11,9 @@ use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::Result;
-use crate::web::{Listing, Paged, Params, Place};
+use crate::web::{Listing, PageQuery, PathParams, QueryParams};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn effect_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get))
 }
 
@@ -26,22 +26,22 @@ struct EffectLibraryHead {
 }
 
 impl EffectLibraryHead {
-    fn of(library: sistership_store::EffectLibrary) -> Self {
+    fn from_library(library: sistership_store::EffectLibrary) -> Self {
         Self { sha256: library.sha256, created_us: library.created_us }
     }
 }
 
 /// List the libraries of effects, by hash
 #[utoipa::path(
-    get, path = "/v1/effects", tag = "effects", params(Paged),
+    get, path = "/v1/effects", tag = "effects", params(PageQuery),
     responses((status = 200, body = Listing<EffectLibraryHead>))
 )]
 async fn list(
     State(app): State<App>,
-    Params(query): Params<Paged>,
+    QueryParams(query): QueryParams<PageQuery>,
 ) -> Result<Json<Listing<EffectLibraryHead>>> {
-    let libraries = app.store().effects().list(&query.page()?).await?;
-    Ok(Json(Listing::of(libraries, EffectLibraryHead::of)))
+    let libraries = app.store().effect_libraries().list(&query.requested_page()?).await?;
+    Ok(Json(Listing::from_list(libraries, EffectLibraryHead::from_library)))
 }
 
 /// Get a library of effects: the YAML files of its effects in sequence, byte for byte as they were
@@ -50,7 +50,7 @@ async fn list(
     get, path = "/v1/effects/{sha256}", tag = "effects", params(("sha256" = String, Path)),
     responses((status = 200, content((String = "application/yaml"))))
 )]
-async fn get(State(app): State<App>, Place(sha256): Place<String>) -> Result<Response> {
-    let library = app.store().effects().get(&sha256).await?;
+async fn get(State(app): State<App>, PathParams(sha256): PathParams<String>) -> Result<Response> {
+    let library = app.store().effect_libraries().get(&sha256).await?;
     Ok(([(header::CONTENT_TYPE, "application/yaml")], library.document).into_response())
 }

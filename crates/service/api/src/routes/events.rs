@@ -13,12 +13,12 @@ use utoipa_axum::routes;
 use super::jobs::JobView;
 use crate::app::App;
 use crate::problem::Result;
-use crate::web::{Id, Place};
+use crate::web::{Id, PathParams};
 
 /// Interval at which the job is read: another process may work on it.
-const LOOK: Duration = Duration::from_millis(200);
+const POLL_INTERVAL: Duration = Duration::from_millis(200);
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn event_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(events))
 }
 
@@ -32,27 +32,27 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 )]
 async fn events(
     State(app): State<App>,
-    Place(id): Place<Id>,
+    PathParams(id): PathParams<Id>,
 ) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>> {
     let job = app.store().jobs().get(&id).await?;
-    Ok(Sse::new(follow(app, job)).keep_alive(KeepAlive::default()))
+    Ok(Sse::new(follow_job(app, job)).keep_alive(KeepAlive::default()))
 }
 
-fn follow(app: App, first: Job) -> impl Stream<Item = Result<Event, Infallible>> {
+fn follow_job(app: App, first: Job) -> impl Stream<Item = Result<Event, Infallible>> {
     let id = first.id.clone();
     async_stream::stream! {
-        let (mut stopping, mut seen, mut job) = (app.stopping(), None, first);
+        let (mut stopping, mut seen, mut job) = (app.stop_signal(), None, first);
         loop {
             // The first state is always sent, as nothing precedes it.
-            if seen.replace(mark(&job)) != Some(mark(&job)) {
-                yield Ok(event(job.clone()));
+            if seen.replace(change_mark(&job)) != Some(change_mark(&job)) {
+                yield Ok(job_event(job.clone()));
             }
             if job.state.is_final() {
                 break;
             }
             tokio::select! {
                 () = stopping.wait() => break,
-                () = tokio::time::sleep(LOOK) => {}
+                () = tokio::time::sleep(POLL_INTERVAL) => {}
             }
             match app.store().jobs().get(&id).await {
                 Ok(now) => job = now,
@@ -63,13 +63,13 @@ fn follow(app: App, first: Job) -> impl Stream<Item = Result<Event, Infallible>>
 }
 
 /// Returns the parts of a job whose change is sent to the listener.
-fn mark(job: &Job) -> (JobState, u64, String, bool, i64) {
+fn change_mark(job: &Job) -> (JobState, u64, String, bool, i64) {
     (job.state, job.progress.to_bits(), job.message.clone(), job.cancel_requested, job.attempt)
 }
 
-fn event(job: Job) -> Event {
+fn job_event(job: Job) -> Event {
     let event = Event::default().event("job");
     event
-        .json_data(JobView::of(job))
+        .json_data(JobView::from_job(job))
         .unwrap_or_else(|_| Event::default().comment("the job cannot be shown"))
 }

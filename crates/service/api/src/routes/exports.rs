@@ -12,16 +12,16 @@ use utoipa_axum::routes;
 use super::binary::Binary;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::web::{Name, Number, Params, Place};
+use crate::web::{Name, Number, PathParams, QueryParams};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn export_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(export))
 }
 
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct Query {
+struct ExportQuery {
     #[param(inline)]
     format: Option<ExportFormat>,
 }
@@ -38,14 +38,15 @@ struct Query {
 )]
 async fn export(
     State(app): State<App>,
-    Place((name, number)): Place<(Name, Number)>,
-    Params(query): Params<Query>,
+    PathParams((name, number)): PathParams<(Name, Number)>,
+    QueryParams(query): QueryParams<ExportQuery>,
 ) -> Result<Response> {
     let version = app.store().versions().get(&name, number.get()).await?;
-    let law = app.law(&version.head.law).await?;
+    let law = app.stored_law(&version.head.law).await?;
     let format = query.format.unwrap_or_default();
-    let model = app.archive().model(&version).await?;
-    let exported = app.compute(move || format.write(&version, (&model, &law))).await?;
+    let model = app.archive().model_with_weights(&version).await?;
+    let exported =
+        app.run_blocking(move || format.export_version(&version, (&model, &law))).await?;
     let exported = exported.map_err(|error| Problem::invalid("format", error.to_string()))?;
     let kept = format!("attachment; filename=\"{}\"", exported.file);
     let media = [(header::CONTENT_TYPE, "application/octet-stream")];

@@ -12,17 +12,18 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::jobs::JobView;
-use super::model_ref::resolve;
-use super::queue::accepted;
+use super::model_ref::resolve_version;
+use super::queue::job_reply;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::{Remark, RequestKey};
 use crate::web::{
-    Key, Listing, ModelName, Name, Number, Paged, Params, Payload, Place, Reply, Word,
+    DocumentBody, IdempotencyKey, Listing, ModelName, Name, Number, PageQuery, PathParams,
+    QueryParams, StoredReply, Word,
 };
-use sistership_jobs::fleet::{LEARN, LearnJob};
+use sistership_jobs::fleet::{LearnJob, PRIOR_JOB_KIND};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn family_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .routes(routes!(list, create))
         .routes(routes!(get, found))
@@ -113,22 +114,22 @@ struct NewMembers {
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct Revision {
+struct RevisionQuery {
     /// Revision of the prior; by default the latest.
     #[param(inline)]
     revision: Option<Number>,
 }
 
 impl FamilyView {
-    async fn of(app: &App, family: Family) -> Result<Self> {
+    async fn load(app: &App, family: Family) -> Result<Self> {
         let store = app.store();
         let foundation = store.versions().by_id(&family.foundation).await?.head;
         // A family without a prior is not an error of the request.
-        let prior = match store.families().prior(&family.name, None).await {
+        let prior = match store.families().get_prior(&family.name, None).await {
             Err(StoreError::NotFound { .. }) => None,
             other => Some(other?.revision),
         };
-        let members = store.families().count(&family.name).await?;
+        let members = store.families().count_members(&family.name).await?;
         let foundation = format!("{}/{}", foundation.model, foundation.number);
         let Family { name, title, created_us, .. } = family;
         Ok(Self { name, title, foundation, members, prior, created_us })
@@ -136,23 +137,23 @@ impl FamilyView {
 }
 
 impl MemberView {
-    pub(super) fn of(member: FamilyMember) -> Self {
+    pub(super) fn from_member(member: FamilyMember) -> Self {
         let FamilyMember { ship, added_us, champion, method } = member;
         Self { ship, added_us, champion, method }
     }
 }
 
 /// List the families by name
-#[utoipa::path(get, path = "/v1/families", tag = "families", params(Paged),
+#[utoipa::path(get, path = "/v1/families", tag = "families", params(PageQuery),
     responses((status = 200, body = Listing<FamilyView>)))]
 async fn list(
     State(app): State<App>,
-    Params(query): Params<Paged>,
+    QueryParams(query): QueryParams<PageQuery>,
 ) -> Result<Json<Listing<FamilyView>>> {
-    let families = app.store().families().list(&query.page()?).await?;
+    let families = app.store().families().list(&query.requested_page()?).await?;
     let mut items = Vec::with_capacity(families.items.len());
     for family in families.items {
-        items.push(FamilyView::of(&app, family).await?);
+        items.push(FamilyView::load(&app, family).await?);
     }
     Ok(Json(Listing { items, next: families.next }))
 }
@@ -165,21 +166,25 @@ async fn list(
     request_body = NewFamily,
     responses((status = 201, body = FamilyView, headers(("Location" = String))))
 )]
-async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
-    let new: NewFamily = payload.json()?;
+async fn create(
+    State(app): State<App>,
+    key: IdempotencyKey,
+    payload: DocumentBody,
+) -> Result<Response> {
+    let new: NewFamily = payload.parse_json()?;
     // The work runs in one transaction with the key: family and members are kept together or not at
     // all.
     let work = |app: App| async move {
-        let members = bounded("members", new.members)?;
-        let foundation = resolve(app.store(), "foundation", &new.foundation).await?.head;
+        let members = check_ship_count("members", new.members)?;
+        let foundation = resolve_version(app.store(), "foundation", &new.foundation).await?.head;
         let title = new.title.as_deref().unwrap_or(&new.name);
         let family = app.store().families().create(&new.name, title, &foundation.id).await?;
-        app.store().families().add(&family.name, &members).await?;
+        app.store().families().add_members(&family.name, &members).await?;
         let name = family.name.clone();
-        let reply = Reply::new(StatusCode::CREATED, &FamilyView::of(&app, family).await?)?;
-        Ok(reply.at(&["v1", "families", &name]))
+        let reply = StoredReply::new(StatusCode::CREATED, &FamilyView::load(&app, family).await?)?;
+        Ok(reply.with_location(&["v1", "families", &name]))
     };
-    key.once(&app, payload.bytes(), work).await
+    key.run_once(&app, payload.bytes(), work).await
 }
 
 /// Get a family
@@ -187,9 +192,12 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
     get, path = "/v1/families/{family}", tag = "families", params(("family" = inline(Word), Path)),
     responses((status = 200, body = FamilyView))
 )]
-async fn get(State(app): State<App>, Place(name): Place<Word>) -> Result<Json<FamilyView>> {
+async fn get(
+    State(app): State<App>,
+    PathParams(name): PathParams<Word>,
+) -> Result<Json<FamilyView>> {
     let family = app.store().families().get(&name).await?;
-    Ok(Json(FamilyView::of(&app, family).await?))
+    Ok(Json(FamilyView::load(&app, family).await?))
 }
 
 /// Replace the foundation of a family; models are refined from it when the family is refined next
@@ -199,29 +207,30 @@ async fn get(State(app): State<App>, Place(name): Place<Word>) -> Result<Json<Fa
 )]
 async fn found(
     State(app): State<App>,
-    Place(name): Place<Word>,
-    payload: Payload,
+    PathParams(name): PathParams<Word>,
+    payload: DocumentBody,
 ) -> Result<Json<FamilyView>> {
-    let new: NewFoundation = payload.json()?;
-    let foundation = resolve(app.store(), "foundation", &new.foundation).await?.head;
-    let family = app.store().families().found(&name, &foundation.id).await?;
-    Ok(Json(FamilyView::of(&app, family).await?))
+    let new: NewFoundation = payload.parse_json()?;
+    let foundation = resolve_version(app.store(), "foundation", &new.foundation).await?.head;
+    let family = app.store().families().set_foundation(&name, &foundation.id).await?;
+    Ok(Json(FamilyView::load(&app, family).await?))
 }
 
 /// List the members of a family by name
 #[utoipa::path(
     get, path = "/v1/families/{family}/members", tag = "families",
-    params(("family" = inline(Word), Path), Paged),
+    params(("family" = inline(Word), Path), PageQuery),
     responses((status = 200, body = Listing<MemberView>))
 )]
 async fn members(
     State(app): State<App>,
-    Place(name): Place<Word>,
-    Params(query): Params<Paged>,
+    PathParams(name): PathParams<Word>,
+    QueryParams(query): QueryParams<PageQuery>,
 ) -> Result<Json<Listing<MemberView>>> {
     let family = app.store().families().get(&name).await?;
-    let members = app.store().families().members(&family.name, &query.page()?).await?;
-    Ok(Json(Listing::of(members, MemberView::of)))
+    let members =
+        app.store().families().list_members(&family.name, &query.requested_page()?).await?;
+    Ok(Json(Listing::from_list(members, MemberView::from_member)))
 }
 
 /// Add ships to a family, all or none; members stay members
@@ -232,14 +241,14 @@ async fn members(
 )]
 async fn add(
     State(app): State<App>,
-    Place(name): Place<Word>,
-    payload: Payload,
+    PathParams(name): PathParams<Word>,
+    payload: DocumentBody,
 ) -> Result<Json<FamilyView>> {
-    let new: NewMembers = payload.json()?;
-    let ships = bounded("ships", new.ships)?;
-    app.store().families().add(&name, &ships).await?;
+    let new: NewMembers = payload.parse_json()?;
+    let ships = check_ship_count("ships", new.ships)?;
+    app.store().families().add_members(&name, &ships).await?;
     // The answer is read after the change, so that it has the present number of members.
-    get(State(app), Place(name)).await
+    get(State(app), PathParams(name)).await
 }
 
 /// Remove a ship from a family
@@ -250,11 +259,11 @@ async fn add(
 )]
 async fn remove(
     State(app): State<App>,
-    Place((name, ship)): Place<(Word, Name)>,
+    PathParams((name, ship)): PathParams<(Word, Name)>,
 ) -> Result<Json<FamilyView>> {
     // A ship that is no member is an error, so that a misspelt name does not pass unnoticed.
-    match app.store().families().remove(&name, &ship).await? {
-        true => get(State(app), Place(name)).await,
+    match app.store().families().remove_member(&name, &ship).await? {
+        true => get(State(app), PathParams(name)).await,
         false => Err(StoreError::NotFound { kind: "member", id: format!("{name}/{ship}") }.into()),
     }
 }
@@ -262,15 +271,15 @@ async fn remove(
 /// Get the prior of a family: the variation of each coefficient over its members
 #[utoipa::path(
     get, path = "/v1/families/{family}/prior", tag = "families",
-    params(("family" = inline(Word), Path), Revision),
+    params(("family" = inline(Word), Path), RevisionQuery),
     responses((status = 200, body = PriorView))
 )]
 async fn prior(
     State(app): State<App>,
-    Place(name): Place<Word>,
-    Params(query): Params<Revision>,
+    PathParams(name): PathParams<Word>,
+    QueryParams(query): QueryParams<RevisionQuery>,
 ) -> Result<Json<PriorView>> {
-    let prior = app.store().families().prior(&name, query.revision.map(Number::get)).await?;
+    let prior = app.store().families().get_prior(&name, query.revision.map(Number::get)).await?;
     let document = serde_json::from_str(&prior.document).map_err(Problem::internal)?;
     let FamilyPrior { family, revision, sha256, created_us, .. } = prior;
     Ok(Json(PriorView { family, revision, sha256, created_us, document }))
@@ -282,18 +291,18 @@ async fn prior(
     params(("family" = inline(Word), Path)),
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
-async fn learn(State(app): State<App>, Place(name): Place<Word>) -> Result<Reply> {
+async fn learn(State(app): State<App>, PathParams(name): PathParams<Word>) -> Result<StoredReply> {
     let family = app.store().families().get(&name).await?;
     let request =
         serde_json::to_string(&LearnJob { family: family.name }).map_err(Problem::internal)?;
     let job =
         // The job belongs to no ship; access to it is decided by the family in its request.
-        app.store().jobs().enqueue(&NewJob { kind: LEARN.to_owned(), ship: None, request }).await?;
+        app.store().jobs().enqueue(&NewJob { kind: PRIOR_JOB_KIND.to_owned(), ship: None, request }).await?;
     app.wake_all();
-    accepted(job)
+    job_reply(job)
 }
 
-fn bounded(field: &str, ships: Vec<Name>) -> Result<Vec<String>> {
+fn check_ship_count(field: &str, ships: Vec<Name>) -> Result<Vec<String>> {
     match i64::try_from(ships.len()) {
         Ok(count) if count <= MAX_LIMIT => Ok(ships.into_iter().map(Name::into_string).collect()),
         _ => Err(Problem::invalid(

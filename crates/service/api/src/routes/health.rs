@@ -15,7 +15,7 @@ use crate::app::App;
 use crate::problem::{Problem, Result};
 use sistership_model::version::code_revision;
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn health_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(healthz)).routes(routes!(readyz))
 }
 
@@ -32,29 +32,29 @@ struct Health {
     writes: Option<&'static str>,
 }
 
-fn ok(writes: Option<&'static str>) -> Json<Health> {
+fn healthy(writes: Option<&'static str>) -> Json<Health> {
     Json(Health { status: "ok", revision: code_revision(), writes })
 }
 
 /// Check that the server is running
 #[utoipa::path(get, path = "/healthz", tag = "health", responses((status = 200, body = Health)))]
 async fn healthz() -> Json<Health> {
-    ok(None)
+    healthy(None)
 }
 
 /// Check that the server can work: its database and its object store answer, and it is not stopping
 #[utoipa::path(get, path = "/readyz", tag = "health", responses((status = 200, body = Health)))]
 async fn readyz(State(app): State<App>) -> Result<Json<Health>> {
-    if app.stopping().now() {
+    if app.stop_signal().is_stopping() {
         return Err(Problem::new(StatusCode::SERVICE_UNAVAILABLE, "the server is stopping"));
     }
-    app.store().health().await.map_err(|error| unready("database", &error))?;
-    app.objects().health().await.map_err(|error| unready("object store", &error))?;
-    let no_room = app.no_room().load(Ordering::Relaxed);
-    Ok(ok(Some(if no_room { "no space" } else { "ok" })))
+    app.store().check_health().await.map_err(|error| not_ready("database", &error))?;
+    app.objects().check_health().await.map_err(|error| not_ready("object store", &error))?;
+    let no_room = app.is_out_of_space().load(Ordering::Relaxed);
+    Ok(healthy(Some(if no_room { "no space" } else { "ok" })))
 }
 
-fn unready(what: &str, error: &StoreError) -> Problem {
+fn not_ready(what: &str, error: &StoreError) -> Problem {
     tracing::warn!(%error, "the {what} does not answer");
     Problem::new(
         StatusCode::SERVICE_UNAVAILABLE,

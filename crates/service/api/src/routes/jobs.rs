@@ -12,9 +12,9 @@ use utoipa_axum::routes;
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::field::{Cursor, Limit};
-use crate::web::{Id, Listing, Name, Params, Place, page};
+use crate::web::{Id, Listing, Name, PathParams, QueryParams, page};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn job_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, cancel)).routes(routes!(retry))
 }
 
@@ -53,7 +53,7 @@ pub(super) struct JobView {
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct Query {
+struct JobQuery {
     /// Only jobs of this ship.
     #[param(inline)]
     ship: Option<Name>,
@@ -92,7 +92,7 @@ impl From<JobStateName> for JobState {
 }
 
 impl JobView {
-    pub(super) fn of(job: Job) -> Self {
+    pub(super) fn from_job(job: Job) -> Self {
         let mut request: Value = serde_json::from_str(&job.request).unwrap_or_default();
         // The hash of the idempotency key is internal.
         if let Some(fields) = request.as_object_mut() {
@@ -138,29 +138,32 @@ impl JobView {
     responses((status = 200, body = Listing<JobView>)))]
 async fn list(
     State(app): State<App>,
-    Params(query): Params<Query>,
+    QueryParams(query): QueryParams<JobQuery>,
 ) -> Result<Json<Listing<JobView>>> {
     let filter = JobFilter {
         ship: query.ship.map(Name::into_string),
         state: query.state.map(JobState::from),
     };
-    let jobs =
-        app.store().jobs().list(&filter, &page::page(query.limit, query.after.as_ref())?).await?;
-    Ok(Json(Listing::of(jobs, JobView::of)))
+    let jobs = app
+        .store()
+        .jobs()
+        .list(&filter, &page::parse_page(query.limit, query.after.as_ref())?)
+        .await?;
+    Ok(Json(Listing::from_list(jobs, JobView::from_job)))
 }
 
 /// Get a job
 #[utoipa::path(get, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = inline(Id), Path)),
     responses((status = 200, body = JobView)))]
-async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<JobView>> {
-    Ok(Json(JobView::of(app.store().jobs().get(&id).await?)))
+async fn get(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<JobView>> {
+    Ok(Json(JobView::from_job(app.store().jobs().get(&id).await?)))
 }
 
 /// Cancel a job; a running one stops at its next step
 #[utoipa::path(delete, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = inline(Id), Path)),
     responses((status = 200, body = JobView)))]
-async fn cancel(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<JobView>> {
-    Ok(Json(JobView::of(app.store().jobs().request_cancel(&id).await?)))
+async fn cancel(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<JobView>> {
+    Ok(Json(JobView::from_job(app.store().jobs().request_cancel(&id).await?)))
 }
 
 /// Run a job again that failed or was cancelled
@@ -168,9 +171,9 @@ async fn cancel(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Job
     post, path = "/v1/jobs/{id}/retry", tag = "jobs", params(("id" = inline(Id), Path)),
     responses((status = 200, body = JobView))
 )]
-async fn retry(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<JobView>> {
+async fn retry(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<JobView>> {
     let job = app.store().jobs().retry(&id).await?;
     // One job needs one worker.
-    app.wake().notify_one();
-    Ok(Json(JobView::of(job)))
+    app.wake_signal().notify_one();
+    Ok(Json(JobView::from_job(job)))
 }

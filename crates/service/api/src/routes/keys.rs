@@ -14,11 +14,11 @@ use super::users::RolesRequest;
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::field::{KeyPrefix, MomentUs, Remark, UserName};
-use crate::web::{Listing, Paged, Params, Payload, Place};
-use sistership_web_support::reply::path;
-use sistership_web_support::roles::{RoleRequest, RoleView, grants};
+use crate::web::{DocumentBody, Listing, PageQuery, PathParams, QueryParams};
+use sistership_web_support::reply::encode_path;
+use sistership_web_support::roles::{RoleRequest, RoleView, parse_grants};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn key_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .routes(routes!(list, create))
         .routes(routes!(get, revoke))
@@ -69,8 +69,9 @@ struct KeyRequest {
 }
 
 impl KeyView {
-    async fn of(app: &App, row: KeyRow) -> Result<Self> {
-        let roles = app.store().grants().of(&KeyRow::principal(&row.prefix)).await?;
+    async fn load(app: &App, row: KeyRow) -> Result<Self> {
+        let roles =
+            app.store().grants().list_by_principal(&KeyRow::principal_name(&row.prefix)).await?;
         let KeyRow {
             prefix,
             title,
@@ -81,24 +82,24 @@ impl KeyView {
             last_used_us,
             ..
         } = row;
-        let roles = roles.into_iter().map(RoleView::of).collect();
+        let roles = roles.into_iter().map(RoleView::from_row).collect();
         Ok(Self { prefix, title, user, roles, created_us, expires_us, revoked_us, last_used_us })
     }
 }
 
 /// List the service keys by prefix, including ended ones
-#[utoipa::path(get, path = "/v1/keys", tag = "access", params(Paged),
+#[utoipa::path(get, path = "/v1/keys", tag = "access", params(PageQuery),
     responses((status = 200, body = Listing<KeyView>)))]
 async fn list(
     State(app): State<App>,
-    Params(query): Params<Paged>,
+    QueryParams(query): QueryParams<PageQuery>,
 ) -> Result<Json<Listing<KeyView>>> {
-    let keys = app.store().service_keys().list(&query.page()?).await?;
+    let keys = app.store().service_keys().list(&query.requested_page()?).await?;
     let mut items = Vec::new();
     for key in keys.items {
-        items.push(KeyView::of(&app, key).await?);
+        items.push(KeyView::load(&app, key).await?);
     }
-    let next = keys.next.as_ref().and_then(crate::web::page::cursor);
+    let next = keys.next.as_ref().and_then(crate::web::page::encode_cursor);
     Ok(Json(Listing { items, next }))
 }
 
@@ -110,13 +111,13 @@ async fn list(
     post, path = "/v1/keys", tag = "access", request_body = KeyRequest,
     responses((status = 201, body = NewKeyView, headers(("Location" = String))))
 )]
-async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
-    let KeyRequest { title, user, roles, expires_us } = payload.json()?;
+async fn create(State(app): State<App>, payload: DocumentBody) -> Result<Response> {
+    let KeyRequest { title, user, roles, expires_us } = payload.parse_json()?;
     // Dates in the past are accepted: such a key is never valid.
     let (user, ends) = (user.map(UserName::into_string), expires_us.map(MomentUs::get));
-    let (text, row) = app.accounts().make_key(&title, user, ends, &grants(roles)?).await?;
-    let location = path(&["v1", "keys", &row.prefix]);
-    let about = KeyView::of(&app, row).await?;
+    let (text, row) = app.accounts().make_key(&title, user, ends, &parse_grants(roles)?).await?;
+    let location = encode_path(&["v1", "keys", &row.prefix]);
+    let about = KeyView::load(&app, row).await?;
     let view = NewKeyView { key: text.as_str().to_owned(), about };
     // Neither the browser nor a proxy may store the key.
     let head = [(header::LOCATION, location), (header::CACHE_CONTROL, "no-store".to_owned())];
@@ -126,17 +127,23 @@ async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
 /// Get a service key
 #[utoipa::path(get, path = "/v1/keys/{prefix}", tag = "access",
     params(("prefix" = inline(KeyPrefix), Path)), responses((status = 200, body = KeyView)))]
-async fn get(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Result<Json<KeyView>> {
+async fn get(
+    State(app): State<App>,
+    PathParams(prefix): PathParams<KeyPrefix>,
+) -> Result<Json<KeyView>> {
     let key = app.store().service_keys().get(&prefix).await?;
-    Ok(Json(KeyView::of(&app, key).await?))
+    Ok(Json(KeyView::load(&app, key).await?))
 }
 
 /// Revoke a service key permanently
 #[utoipa::path(delete, path = "/v1/keys/{prefix}", tag = "access",
     params(("prefix" = inline(KeyPrefix), Path)), responses((status = 200, body = KeyView)))]
-async fn revoke(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Result<Json<KeyView>> {
+async fn revoke(
+    State(app): State<App>,
+    PathParams(prefix): PathParams<KeyPrefix>,
+) -> Result<Json<KeyView>> {
     let key = app.accounts().revoke(&prefix).await?;
-    Ok(Json(KeyView::of(&app, key).await?))
+    Ok(Json(KeyView::load(&app, key).await?))
 }
 
 /// Replace all roles of a service key
@@ -147,11 +154,11 @@ async fn revoke(State(app): State<App>, Place(prefix): Place<KeyPrefix>) -> Resu
 )]
 async fn set_roles(
     State(app): State<App>,
-    Place(prefix): Place<KeyPrefix>,
-    payload: Payload,
+    PathParams(prefix): PathParams<KeyPrefix>,
+    payload: DocumentBody,
 ) -> Result<Json<KeyView>> {
-    let RolesRequest { roles } = payload.json()?;
-    app.accounts().set_roles(&KeyRow::principal(&prefix), &grants(roles)?).await?;
+    let RolesRequest { roles } = payload.parse_json()?;
+    app.accounts().set_roles(&KeyRow::principal_name(&prefix), &parse_grants(roles)?).await?;
     let key = app.store().service_keys().get(&prefix).await?;
-    Ok(Json(KeyView::of(&app, key).await?))
+    Ok(Json(KeyView::load(&app, key).await?))
 }

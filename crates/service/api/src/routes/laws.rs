@@ -13,9 +13,12 @@ use utoipa_axum::routes;
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::field::RequestKey;
-use crate::web::{Key, Listing, Name, Paged, Params, Payload, Place, Reply, accept};
+use crate::web::{
+    DocumentBody, IdempotencyKey, Listing, Name, PageQuery, PathParams, QueryParams, StoredReply,
+    accept,
+};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn law_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list, create)).routes(routes!(get))
 }
 
@@ -40,20 +43,20 @@ struct LawText {
 }
 
 impl LawHead {
-    fn of(law: sistership_store::Law) -> Self {
+    fn from_law(law: sistership_store::Law) -> Self {
         Self { name: law.name, sha256: law.sha256, created_us: law.created_us }
     }
 }
 
 /// List the laws
-#[utoipa::path(get, path = "/v1/laws", tag = "laws", params(Paged),
+#[utoipa::path(get, path = "/v1/laws", tag = "laws", params(PageQuery),
     responses((status = 200, body = Listing<LawHead>)))]
 async fn list(
     State(app): State<App>,
-    Params(query): Params<Paged>,
+    QueryParams(query): QueryParams<PageQuery>,
 ) -> Result<Json<Listing<LawHead>>> {
-    let laws = app.store().laws().list(&query.page()?).await?;
-    Ok(Json(Listing::of(laws, LawHead::of)))
+    let laws = app.store().laws().list(&query.requested_page()?).await?;
+    Ok(Json(Listing::from_list(laws, LawHead::from_law)))
 }
 
 /// Add a law; it never changes afterwards
@@ -67,16 +70,20 @@ async fn list(
     request_body(content = String, content_type = "application/yaml"),
     responses((status = 201, body = LawHead))
 )]
-async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
-    let text = payload.text()?.to_owned();
+async fn create(
+    State(app): State<App>,
+    key: IdempotencyKey,
+    payload: DocumentBody,
+) -> Result<Response> {
+    let text = payload.yaml_text()?.to_owned();
     let parse = text.clone();
     // Parsing a large law takes time, hence not on the threads that serve.
-    let name = app.compute(move || Law::parse("body", &parse)).await??.name;
+    let name = app.run_blocking(move || Law::parse("body", &parse)).await??.name;
     let work = |app: App| async move {
-        let head = LawHead::of(app.store().laws().insert(&name, &text).await?);
-        Ok(Reply::new(StatusCode::CREATED, &head)?.at(&["v1", "laws", &name]))
+        let head = LawHead::from_law(app.store().laws().insert(&name, &text).await?);
+        Ok(StoredReply::new(StatusCode::CREATED, &head)?.with_location(&["v1", "laws", &name]))
     };
-    key.once(&app, payload.bytes(), work).await
+    key.run_once(&app, payload.bytes(), work).await
 }
 
 /// Get a law, as JSON or as its YAML file
@@ -87,11 +94,13 @@ async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Re
 )]
 async fn get(
     State(app): State<App>,
-    Place(name): Place<Name>,
+    PathParams(name): PathParams<Name>,
     headers: HeaderMap,
 ) -> Result<Response> {
     let law = app.store().laws().get(&name).await?;
-    if accept::choose(&headers, &["application/json", "application/yaml"])? == "application/yaml" {
+    if accept::choose_media(&headers, &["application/json", "application/yaml"])?
+        == "application/yaml"
+    {
         return Ok((
             [(header::CONTENT_TYPE, "application/yaml"), (header::VARY, "accept")],
             law.document,

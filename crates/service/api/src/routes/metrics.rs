@@ -10,7 +10,7 @@ use crate::app::App;
 use crate::metrics::MEDIA;
 use crate::problem::Result;
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn metrics_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(metrics))
 }
 

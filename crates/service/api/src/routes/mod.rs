@@ -55,23 +55,23 @@ use tower_http::catch_panic::CatchPanicLayer;
 pub use document::openapi;
 
 use crate::app::App;
-use crate::web::query::{self, KnownQuery};
+use crate::web::query::{self, KnownParameters};
 use crate::web::{envelope, guard};
 
 /// Returns the router of all endpoints and pages.
 pub(crate) fn router(app: App) -> Router {
-    let (api, described) = endpoints::api(app.limits()).split_for_parts();
+    let (api, described) = endpoints::api_router(app.limits()).split_for_parts();
     // Unknown query parameters are refused by comparison with the document.
-    let known = Arc::new(KnownQuery::of(&described));
+    let known = Arc::new(KnownParameters::from_document(&described));
     let api = api.route_layer(from_fn_with_state(known, query::refuse_unknown));
-    let text = document::text();
-    api.route("/openapi.json", get(move || async move { document::served(text) }))
-        .merge(pages::routes(app.limits()))
+    let text = document::document_text();
+    api.route("/openapi.json", get(move || async move { document::serve_document(text) }))
+        .merge(pages::page_routes(app.limits()))
         // Layers run from the last to the first: the envelope is outermost, then panics are caught,
         // then access is decided.
-        .fallback(envelope::nowhere)
-        .layer(from_fn_with_state(app.clone(), guard::guard))
-        .layer(CatchPanicLayer::custom(envelope::panicked))
-        .layer(from_fn_with_state(app.clone(), envelope::envelope))
+        .fallback(envelope::no_route)
+        .layer(from_fn_with_state(app.clone(), guard::guard_request))
+        .layer(CatchPanicLayer::custom(envelope::panic_response))
+        .layer(from_fn_with_state(app.clone(), envelope::wrap_request))
         .with_state(app)
 }

@@ -3,27 +3,30 @@
 use sistership_store::{Store, StoreError, Version};
 
 use crate::problem::{Problem, Result};
-use crate::rights::on_ship;
+use crate::rights::check_ship_role;
 use sistership_auth::Role;
-use sistership_jobs::line::{CHAMPION, alias};
+use sistership_jobs::line::{CHAMPION, find_alias};
 
 /// Returns the version that a name in a request refers to; `field` is named in errors.
-pub(super) async fn resolve(store: &Store, field: &str, name: &str) -> Result<Version> {
+pub(super) async fn resolve_version(store: &Store, field: &str, name: &str) -> Result<Version> {
     let (ship, rest) = name.split_once('/').unwrap_or((name, CHAMPION));
-    on_ship(store, Role::Reader, ship).await?;
+    check_ship_role(store, Role::Reader, ship).await?;
     let number = match rest.parse() {
         Ok(number) => number,
         Err(_) => {
-            alias(store, ship, rest).await?.ok_or_else(|| nothing(field, name))?.version_number
+            find_alias(store, ship, rest)
+                .await?
+                .ok_or_else(|| unknown_model(field, name))?
+                .version_number
         }
     };
     match store.versions().get(ship, number).await {
-        Err(StoreError::NotFound { .. }) => Err(nothing(field, name)),
+        Err(StoreError::NotFound { .. }) => Err(unknown_model(field, name)),
         other => Ok(other?),
     }
 }
 
-fn nothing(field: &str, name: &str) -> Problem {
+fn unknown_model(field: &str, name: &str) -> Problem {
     let forms = "give `ship` (its champion), `ship/number` or `ship/alias`";
     Problem::invalid(
         field,

@@ -2,7 +2,7 @@
 
 use axum::http::StatusCode;
 
-use super::trials::bounded;
+use super::trials::check_trial_count;
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
 use crate::rights::readable_trial;
@@ -12,13 +12,13 @@ use crate::web::Id;
 ///
 /// # Errors
 /// Returns an error that names the first id that is repeated, unknown, or of another ship.
-pub(super) async fn named(
+pub(super) async fn checked_trials(
     app: &App,
     ship: &str,
     ids: Vec<Id>,
     left_out: &str,
 ) -> Result<Vec<String>> {
-    bounded(app, ids.len())?;
+    check_trial_count(app, ids.len())?;
     if ids.is_empty() {
         return Err(Problem::invalid(
             "trials",
@@ -29,21 +29,21 @@ pub(super) async fn named(
         let wrong = if ids[..index].contains(id) {
             Some("is named twice".to_owned())
         } else {
-            mismatch(app, ship, id).await?
+            mismatch_message(app, ship, id).await?
         };
         if let Some(message) = wrong {
             let problem = Problem::new(
                 StatusCode::UNPROCESSABLE_ENTITY,
                 format!("trials[{index}]: `{id}` {message}"),
             );
-            return Err(problem.with(Fault::at(format!("trials[{index}]"), message)));
+            return Err(problem.with_fault(Fault::at_field(format!("trials[{index}]"), message)));
         }
     }
     Ok(ids.into_iter().map(Id::into_string).collect())
 }
 
 /// Returns the reason for which a trial cannot be one of the ship's.
-async fn mismatch(app: &App, ship: &str, id: &str) -> Result<Option<String>> {
+async fn mismatch_message(app: &App, ship: &str, id: &str) -> Result<Option<String>> {
     Ok(match readable_trial(app.store(), id).await? {
         Some(trial) if trial.ship == ship => None,
         Some(trial) => Some(format!("is a trial of `{}`, not of `{ship}`", trial.ship)),

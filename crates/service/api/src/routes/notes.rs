@@ -5,7 +5,7 @@ use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
-use sistership_store::Note;
+use sistership_store::ShipNote;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -13,9 +13,11 @@ use utoipa_axum::routes;
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::field::{Remark, RequestKey};
-use crate::web::{Key, Listing, Name, Paged, Params, Payload, Place, Reply};
+use crate::web::{
+    DocumentBody, IdempotencyKey, Listing, Name, PageQuery, PathParams, QueryParams, StoredReply,
+};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn note_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list, add))
 }
 
@@ -41,14 +43,14 @@ struct NewNote {
 
 /// The note that was added.
 #[derive(Debug, Serialize, ToSchema)]
-struct Noted<'a> {
+struct NoteReceipt<'a> {
     ship: &'a str,
     text: &'a str,
 }
 
 impl NoteView {
-    fn of(note: Note) -> Self {
-        let Note { number, at_us, actor, text } = note;
+    fn from_note(note: ShipNote) -> Self {
+        let ShipNote { number, at_us, actor, text } = note;
         Self { number, at_us, actor, text }
     }
 }
@@ -56,17 +58,17 @@ impl NoteView {
 /// List the notes about a ship, the latest first
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/notes", tag = "ships",
-    params(("ship" = inline(Name), Path), Paged),
+    params(("ship" = inline(Name), Path), PageQuery),
     responses((status = 200, body = Listing<NoteView>))
 )]
 async fn list(
     State(app): State<App>,
-    Place(ship): Place<Name>,
-    Params(query): Params<Paged>,
+    PathParams(ship): PathParams<Name>,
+    QueryParams(query): QueryParams<PageQuery>,
 ) -> Result<Json<Listing<NoteView>>> {
     app.store().ships().get(&ship).await?;
-    let notes = app.store().ships().notes(&ship, &query.page()?).await?;
-    Ok(Json(Listing::of(notes, NoteView::of)))
+    let notes = app.store().ships().list_notes(&ship, &query.requested_page()?).await?;
+    Ok(Json(Listing::from_list(notes, NoteView::from_note)))
 }
 
 /// Add a note about a ship; notes are part of the audit and cannot be removed
@@ -78,18 +80,18 @@ async fn list(
         description = "Repeat the request safely under this key"),
     ),
     request_body = NewNote,
-    responses((status = 201, body = Noted))
+    responses((status = 201, body = NoteReceipt))
 )]
 async fn add(
     State(app): State<App>,
-    Place(ship): Place<Name>,
-    key: Key,
-    payload: Payload,
+    PathParams(ship): PathParams<Name>,
+    key: IdempotencyKey,
+    payload: DocumentBody,
 ) -> Result<Response> {
-    let new: NewNote = payload.json()?;
+    let new: NewNote = payload.parse_json()?;
     let work = |app: App| async move {
-        app.store().ships().note(&ship, &new.text).await?;
-        Reply::new(StatusCode::CREATED, &Noted { ship: &ship, text: &new.text })
+        app.store().ships().add_note(&ship, &new.text).await?;
+        StoredReply::new(StatusCode::CREATED, &NoteReceipt { ship: &ship, text: &new.text })
     };
-    key.once(&app, payload.bytes(), work).await
+    key.run_once(&app, payload.bytes(), work).await
 }

@@ -5,16 +5,16 @@ use axum::extract::State;
 use serde_json::{Value, json};
 use sistership_jobs::predictions::{PredictionRequest, predict};
 use sistership_model::Model;
-use sistership_model::branch::Branch;
+use sistership_model::branch::CorrectionDocument;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::model_ref::resolve;
+use super::model_ref::resolve_version;
 use crate::app::App;
 use crate::problem::Result;
-use crate::web::Payload;
+use crate::web::DocumentBody;
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn prediction_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(create))
 }
 
@@ -29,14 +29,14 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         `low` and `high`, where draws were asked for; `branch` of a version with a learned branch: \
         its kind and mode, and `branch_share`: what it counted for, 0 to 1"))
 )]
-async fn create(State(app): State<App>, payload: Payload) -> Result<Json<Value>> {
-    let request: PredictionRequest = payload.json()?;
-    let version = resolve(app.store(), "model", &request.model).await?;
-    let model: Model = app.archive().model(&version).await?;
-    let law = app.law(&model.law).await?;
+async fn create(State(app): State<App>, payload: DocumentBody) -> Result<Json<Value>> {
+    let request: PredictionRequest = payload.parse_json()?;
+    let version = resolve_version(app.store(), "model", &request.model).await?;
+    let model: Model = app.archive().model_with_weights(&version).await?;
+    let law = app.stored_law(&model.law).await?;
     let most = app.limits().prediction_samples;
-    let branch = model.branch.as_ref().map(branch_words);
-    let mut answer = app.compute(move || predict(&request, &model, &law, most)).await??;
+    let branch = model.branch.as_ref().map(branch_description);
+    let mut answer = app.run_blocking(move || predict(&request, &model, &law, most)).await??;
     let head = version.head;
     answer["model"] = json!(head.model);
     answer["version"] = json!(head.number);
@@ -48,6 +48,6 @@ async fn create(State(app): State<App>, payload: Payload) -> Result<Json<Value>>
     Ok(Json(answer))
 }
 
-fn branch_words(branch: &Branch) -> Value {
+fn branch_description(branch: &CorrectionDocument) -> Value {
     json!({ "kind": branch.recipe.learner.name(), "mode": branch.mode.name() })
 }

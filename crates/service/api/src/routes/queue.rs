@@ -7,10 +7,10 @@ use sistership_store::{Job, NewJob};
 use super::jobs::JobView;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::web::Reply;
+use crate::web::StoredReply;
 
 /// Adds a job to the queue.
-pub(super) async fn enqueue(
+pub(super) async fn enqueue_job(
     app: &App,
     kind: &str,
     ship: &str,
@@ -22,7 +22,9 @@ pub(super) async fn enqueue(
 }
 
 /// Answer to a request whose work is a job.
-pub(super) fn accepted(job: Job) -> Result<Reply> {
+pub(super) fn job_reply(job: Job) -> Result<StoredReply> {
     let id = job.id.clone();
-    Ok(Reply::new(StatusCode::ACCEPTED, &JobView::of(job))?.at(&["v1", "jobs", &id]).with_jobs())
+    Ok(StoredReply::new(StatusCode::ACCEPTED, &JobView::from_job(job))?
+        .with_location(&["v1", "jobs", &id])
+        .with_jobs())
 }

@@ -4,28 +4,28 @@ use axum::extract::State;
 use axum::response::Response;
 use serde::Deserialize;
 use serde_json::Value;
-use sistership_identification::refine::{Prior, SettingFault, Settings};
+use sistership_identification::refine::{Prior, RefinementSettings, SettingFault};
 use sistership_store::{Job, StoreError};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::jobs::JobView;
-use super::model_ref::resolve;
-use super::named_trials::{named, no_trials};
-use super::queue::{accepted, enqueue};
+use super::model_ref::resolve_version;
+use super::named_trials::{checked_trials, no_trials};
+use super::queue::{enqueue_job, job_reply};
 use super::trials::all_of_ship;
 use crate::app::App;
-use crate::jobs::{REFINEMENT, RefinementJob, SourceChoice};
+use crate::jobs::{REFINEMENT_JOB_KIND, RefinementJob, SourceChoice};
 use crate::problem::{Problem, Result};
-use crate::rights::on_ship;
+use crate::rights::check_ship_role;
 use crate::web::field::RequestKey;
 use crate::web::payload::from_slice;
-use crate::web::{Id, Key, ModelName, Name, Payload, Reply};
+use crate::web::{DocumentBody, Id, IdempotencyKey, ModelName, Name, StoredReply};
 use sistership_auth::Role;
-use sistership_jobs::schema::described;
+use sistership_jobs::schema::schema_reference;
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn refinement_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(refine))
 }
 
@@ -52,8 +52,8 @@ struct RefinementRequest {
     trials: Option<Vec<Id>>,
     /// Settings of the estimator; each has a default, and all are kept with the version.
     #[serde(default)]
-    #[schema(schema_with = described::<Settings>)]
-    settings: Settings,
+    #[schema(schema_with = schema_reference::<RefinementSettings>)]
+    settings: RefinementSettings,
 }
 
 /// Name of the source that is selected automatically.
@@ -72,21 +72,27 @@ const AUTO: &str = "auto";
     request_body = RefinementRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
-async fn refine(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
-    let request: RefinementRequest = payload.json()?;
+async fn refine(
+    State(app): State<App>,
+    key: IdempotencyKey,
+    payload: DocumentBody,
+) -> Result<Response> {
+    let request: RefinementRequest = payload.parse_json()?;
     // The search is decided from the raw body: once parsed, a default method looks like a chosen
     // one.
     let search = names_no_method(payload.bytes()) && request.is_open();
-    key.once(&app, payload.bytes(), move |app| async move { queued(&app, request, search).await })
-        .await
+    key.run_once(&app, payload.bytes(), move |app| async move {
+        queue_reply(&app, request, search).await
+    })
+    .await
 }
 
 /// Queues a refinement that a page requests, from the document that the endpoint takes.
-pub(super) async fn ask(app: &App, asked: &Value) -> Result<Job> {
+pub(super) async fn queue_from_page(app: &App, asked: &Value) -> Result<Job> {
     let body = serde_json::to_vec(asked).map_err(Problem::internal)?;
     let request: RefinementRequest = from_slice(&body)?;
     let search = names_no_method(&body) && request.is_open();
-    enqueued(app, request, search).await
+    queue_job(app, request, search).await
 }
 
 impl RefinementRequest {
@@ -109,22 +115,22 @@ fn names_no_method(body: &[u8]) -> bool {
     asked.pointer("/settings/method").is_none()
 }
 
-async fn queued(app: &App, request: RefinementRequest, search: bool) -> Result<Reply> {
-    accepted(enqueued(app, request, search).await?)
+async fn queue_reply(app: &App, request: RefinementRequest, search: bool) -> Result<StoredReply> {
+    job_reply(queue_job(app, request, search).await?)
 }
 
-async fn enqueued(app: &App, request: RefinementRequest, search: bool) -> Result<Job> {
+async fn queue_job(app: &App, request: RefinementRequest, search: bool) -> Result<Job> {
     let ship = request.ship.to_string();
     // The job stores the resolved request, so that later changes of aliases or trials do not affect
     // it.
-    let job = RefinementJob { search, ..settled(app, request).await? };
-    enqueue(app, REFINEMENT, &ship, &job).await
+    let job = RefinementJob { search, ..resolve_request(app, request).await? };
+    enqueue_job(app, REFINEMENT_JOB_KIND, &ship, &job).await
 }
 
 /// Looks up everything that the request names, so that a wrong request is refused at once.
-async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob> {
+async fn resolve_request(app: &App, request: RefinementRequest) -> Result<RefinementJob> {
     let RefinementRequest { ship, source, law, trials, settings } = request;
-    on_ship(app.store(), Role::Engineer, &ship).await?;
+    check_ship_role(app.store(), Role::Engineer, &ship).await?;
     match app.store().ships().get(&ship).await {
         Err(StoreError::NotFound { .. }) => {
             return Err(Problem::invalid(
@@ -135,11 +141,11 @@ async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob>
         other => drop(other?),
     }
     // All settings are checked at once, so that one answer names every fault.
-    settings.check().map_err(refused)?;
-    repeatable(&settings)?;
-    known(app, law.as_deref()).await?;
+    settings.check().map_err(setting_refusal)?;
+    check_repeatable(&settings)?;
+    check_law(app, law.as_deref()).await?;
     let trials = trial_ids(app, &ship, trials).await?;
-    let source = choice(app, source.as_deref().unwrap_or(AUTO)).await?;
+    let source = source_choice(app, source.as_deref().unwrap_or(AUTO)).await?;
     Ok(RefinementJob {
         source,
         ship: ship.into_string(),
@@ -152,14 +158,14 @@ async fn settled(app: &App, request: RefinementRequest) -> Result<RefinementJob>
 }
 
 /// Refusal that names every setting that cannot be used.
-fn refused(faults: Vec<SettingFault>) -> Problem {
+fn setting_refusal(faults: Vec<SettingFault>) -> Problem {
     let fault = |SettingFault { field, message }| (format!("settings.{field}"), message);
     Problem::all_invalid(faults.into_iter().map(fault))
 }
 
 /// Checks that the version can be derived again from its recipe, which is not so if a clock ends
 /// the search.
-fn repeatable(settings: &Settings) -> Result<()> {
+fn check_repeatable(settings: &RefinementSettings) -> Result<()> {
     let timed = settings
         .cma_es
         .as_ref()
@@ -170,7 +176,7 @@ fn repeatable(settings: &Settings) -> Result<()> {
 }
 
 /// Checks that a law exists.
-async fn known(app: &App, law: Option<&str>) -> Result<()> {
+async fn check_law(app: &App, law: Option<&str>) -> Result<()> {
     let Some(law) = law else { return Ok(()) };
     match app.store().laws().get(law).await {
         Err(StoreError::NotFound { .. }) => Err(Problem::invalid(
@@ -181,17 +187,17 @@ async fn known(app: &App, law: Option<&str>) -> Result<()> {
     }
 }
 
-async fn choice(app: &App, source: &str) -> Result<SourceChoice> {
+async fn source_choice(app: &App, source: &str) -> Result<SourceChoice> {
     if source == AUTO {
         return Ok(SourceChoice::Auto);
     }
-    let head = resolve(app.store(), "source", source).await?.head;
+    let head = resolve_version(app.store(), "source", source).await?.head;
     Ok(SourceChoice::Version { ship: head.model, number: head.number })
 }
 
 async fn trial_ids(app: &App, ship: &str, ids: Option<Vec<Id>>) -> Result<Vec<String>> {
     if let Some(ids) = ids {
-        return named(app, ship, ids, "all of the ship's").await;
+        return checked_trials(app, ship, ids, "all of the ship's").await;
     }
     let all: Vec<String> =
         all_of_ship(app, ship).await?.into_iter().map(|trial| trial.id).collect();

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use sistership_model::Model;
 use sistership_model::version::FORMAT;
-use sistership_store::{Expect, NewVersion, StoreError};
+use sistership_store::{ExpectedRevision, NewVersion, StoreError};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -16,16 +16,16 @@ use super::versions::VersionHead;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::{Remark, RequestKey, VersionNumber};
-use crate::web::{Key, Name, Payload, Place, Reply};
+use crate::web::{DocumentBody, IdempotencyKey, Name, PathParams, StoredReply};
 use sistership_jobs::error::DeriveError;
-use sistership_jobs::line::{LATEST, step};
-use sistership_jobs::recipe::{Recipe, RegisteredRecipe};
-use sistership_jobs::schema::described;
+use sistership_jobs::line::{LATEST, server_move};
+use sistership_jobs::recipe::{DerivationRecipe, RegisteredRecipe};
+use sistership_jobs::schema::schema_reference;
 use sistership_jobs::version::VersionDocument;
 
-const METHOD: &str = "registered";
+const REGISTERED_METHOD: &str = "registered";
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn register_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(register))
 }
 
@@ -35,7 +35,7 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 struct RegisterRequest {
     /// The model, as `models/schema/model.json` describes it and `GET /v1/ships/{ship}/model`
     /// returns it.
-    #[schema(schema_with = described::<Model>)]
+    #[schema(schema_with = schema_reference::<Model>)]
     model: Value,
     /// Author and tool; kept in its recipe.
     #[schema(inline)]
@@ -60,18 +60,22 @@ struct RegisterRequest {
 )]
 async fn register(
     State(app): State<App>,
-    Place(ship): Place<Name>,
-    key: Key,
-    payload: Payload,
+    PathParams(ship): PathParams<Name>,
+    key: IdempotencyKey,
+    payload: DocumentBody,
 ) -> Result<Response> {
-    let request: RegisterRequest = payload.json()?;
-    key.once(&app, payload.bytes(), |app| async move {
-        registered(&app, ship.into_string(), request).await
+    let request: RegisterRequest = payload.parse_json()?;
+    key.run_once(&app, payload.bytes(), |app| async move {
+        register_version(&app, ship.into_string(), request).await
     })
     .await
 }
 
-async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result<Reply> {
+async fn register_version(
+    app: &App,
+    ship: String,
+    request: RegisterRequest,
+) -> Result<StoredReply> {
     let RegisterRequest { model, origin, parent } = request;
     let model: Model = serde_path_to_error::deserialize(model).map_err(|error| {
         let field = format!("model.{}", error.path());
@@ -84,28 +88,28 @@ async fn registered(app: &App, ship: String, request: RegisterRequest) -> Result
         ));
     }
     app.store().ships().get(&ship).await?;
-    let law_sha256 = checked(app, &model).await?;
-    let weights = weights(app, &model).await?;
+    let law_sha256 = check_against_law(app, &model).await?;
+    let weights = checked_weights(app, &model).await?;
     let new = NewVersion {
         parent: parent_id(app, &ship, parent.map(VersionNumber::get)).await?,
         law: model.law.clone(),
-        method: METHOD.to_owned(),
-        document: document(&ship, model, law_sha256, origin.into_string())?,
+        method: REGISTERED_METHOD.to_owned(),
+        document: version_document(&ship, model, law_sha256, origin.into_string())?,
         model: ship,
         weights,
     };
     // The document does not depend on the number, so that versions made at the same time do no
     // harm.
-    let follow = step(LATEST, Expect::Any, METHOD);
+    let follow = server_move(LATEST, ExpectedRevision::Any, REGISTERED_METHOD);
     let versions = app.store().versions();
     let version = versions.create_with_weights(app.objects(), &new, &[follow]).await?;
     let (model, number) = (version.model.clone(), version.number.to_string());
-    let reply = Reply::new(StatusCode::CREATED, &VersionHead::of(version))?;
-    Ok(reply.at(&["v1", "models", &model, "versions", &number]))
+    let reply = StoredReply::new(StatusCode::CREATED, &VersionHead::from_head(version))?;
+    Ok(reply.with_location(&["v1", "models", &model, "versions", &number]))
 }
 
 /// Checks a model against its law, and returns the hash of the law's text.
-async fn checked(app: &App, model: &Model) -> Result<String> {
+async fn check_against_law(app: &App, model: &Model) -> Result<String> {
     let no_law = || {
         Problem::invalid(
             "model.law",
@@ -114,14 +118,14 @@ async fn checked(app: &App, model: &Model) -> Result<String> {
     };
     let law = app.find_law(&model.law).await?.ok_or_else(no_law)?;
     model
-        .check(&law.law)
+        .check_against(&law.law)
         .map_err(|(field, message)| Problem::invalid(&format!("model.{field}"), message))?;
     Ok(law.sha256)
 }
 
 /// Returns the object with the weights of a model's learned correction, which must exist and suit
 /// the model.
-async fn weights(app: &App, model: &Model) -> Result<Option<String>> {
+async fn checked_weights(app: &App, model: &Model) -> Result<Option<String>> {
     let Some(branch) = &model.branch else { return Ok(None) };
     let refuse = |error: DeriveError| match error {
         DeriveError::Store(StoreError::NotFound { .. }) => Problem::invalid(
@@ -132,7 +136,7 @@ async fn weights(app: &App, model: &Model) -> Result<Option<String>> {
         other => other.into(),
     };
     // On a copy: the document keeps the hash of the weights, not the weights.
-    app.archive().attach(&mut model.clone()).await.map_err(refuse)?;
+    app.archive().attach_weights(&mut model.clone()).await.map_err(refuse)?;
     Ok(Some(branch.weights_sha256.clone()))
 }
 
@@ -146,11 +150,16 @@ async fn parent_id(app: &App, ship: &str, parent: Option<i64>) -> Result<Option<
     }
 }
 
-fn document(ship: &str, model: Model, law_sha256: String, origin: String) -> Result<String> {
+fn version_document(
+    ship: &str,
+    model: Model,
+    law_sha256: String,
+    origin: String,
+) -> Result<String> {
     let document = VersionDocument {
         format: FORMAT.to_owned(),
         ship: ship.to_owned(),
-        recipe: Recipe::Registered(RegisteredRecipe {
+        recipe: DerivationRecipe::Registered(RegisteredRecipe {
             kind: Default::default(),
             law_sha256,
             origin,
@@ -158,5 +167,5 @@ fn document(ship: &str, model: Model, law_sha256: String, origin: String) -> Res
         model,
         report: Value::Null,
     };
-    document.canonical().map_err(Problem::internal)
+    document.to_canonical_json().map_err(Problem::internal)
 }

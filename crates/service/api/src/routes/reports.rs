@@ -10,23 +10,23 @@ use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::Result;
-use crate::web::{Id, Params, Place, accept};
+use crate::web::{Id, PathParams, QueryParams, accept};
 
 /// Content Security Policy of a report: only its own styles and images.
-pub(super) const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; \
+pub(super) const REPORT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; \
     form-action 'none'; frame-ancestors 'none'";
 
 const JSON: &str = "application/json";
 const HTML: &str = "text/html";
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn report_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(get))
 }
 
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct Query {
+struct ReportQuery {
     /// `json` or `html`; takes precedence over `Accept`.
     #[param(inline)]
     format: Option<Format>,
@@ -46,14 +46,14 @@ enum Format {
 )]
 async fn get(
     State(app): State<App>,
-    Place(id): Place<Id>,
-    Params(query): Params<Query>,
+    PathParams(id): PathParams<Id>,
+    QueryParams(query): QueryParams<ReportQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
     let media = match query.format {
         Some(Format::Json) => JSON,
         Some(Format::Html) => HTML,
-        None => accept::choose(&headers, &[JSON, HTML])?,
+        None => accept::choose_media(&headers, &[JSON, HTML])?,
     };
     let report = app.store().reports().get(&id).await?;
     let body = if media == HTML { report.html } else { report.document };
@@ -61,7 +61,7 @@ async fn get(
     let head = [
         (header::CONTENT_TYPE, media),
         (header::VARY, "accept"),
-        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::CONTENT_SECURITY_POLICY, REPORT_POLICY),
     ];
     Ok((head, body).into_response())
 }

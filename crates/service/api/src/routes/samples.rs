@@ -19,17 +19,17 @@ use utoipa_axum::routes;
 use super::binary::Binary;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::upload::{hex, spool};
-use crate::web::{Id, Place, accept};
-use sistership_jobs::budget::{self, Share};
+use crate::upload::{hex_digits, spool_stream};
+use crate::web::{Id, PathParams, accept};
+use sistership_jobs::budget::{self, MemoryShare};
 
 const CSV: &str = "text/csv";
 const PARQUET: &str = "application/vnd.apache.parquet";
 /// Memory for the samples of a CSV file while it is sent, bytes: a page of each column, encoded and
 /// decoded.
-const DECODING: u64 = 4 << 20;
+const DECODING_BYTES: u64 = 4 << 20;
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn sample_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(samples))
 }
 
@@ -41,25 +41,25 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 )]
 async fn samples(
     State(app): State<App>,
-    Place(id): Place<Id>,
+    PathParams(id): PathParams<Id>,
     headers: HeaderMap,
 ) -> Result<Response> {
-    let media = accept::choose(&headers, &[CSV, PARQUET])?;
+    let media = accept::choose_media(&headers, &[CSV, PARQUET])?;
     let trial = app.store().trials().get(&id).await?;
-    let (size, stream) = app.objects().stream(&trial.object_key).await?;
+    let (size, stream) = app.objects().get_stream(&trial.object_key).await?;
     let types = [(header::CONTENT_TYPE, media), (header::VARY, "accept")];
     if media == CSV {
-        return Ok((types, csv(&app, &trial.object_key, stream).await?).into_response());
+        return Ok((types, csv_body(&app, &trial.object_key, stream).await?).into_response());
     }
-    let body = Body::from_stream(verified(trial.object_key, stream));
+    let body = Body::from_stream(verify_stream(trial.object_key, stream));
     Ok((types, [(header::CONTENT_LENGTH, size)], body).into_response())
 }
 
 /// Passes the bytes on as they come; if their hash differs from `key`, the answer breaks off before
 /// its end.
-fn verified(
+fn verify_stream(
     key: String,
-    mut bytes: Bytestream,
+    mut bytes: ByteStream,
 ) -> impl Stream<Item = std::result::Result<Bytes, BoxError>> + Send {
     async_stream::try_stream! {
         // The last piece is held back until the hash is known, so that a damaged object never looks
@@ -73,14 +73,14 @@ fn verified(
                 yield before;
             }
         }
-        damaged(&key, &hex(&hash.finalize()))?;
+        check_hash(&key, &hex_digits(&hash.finalize()))?;
         yield held;
     }
 }
 
-type Bytestream = BoxStream<'static, sistership_store::Result<Bytes>>;
+type ByteStream = BoxStream<'static, sistership_store::Result<Bytes>>;
 
-fn damaged(key: &str, actual: &str) -> std::result::Result<(), BoxError> {
+fn check_hash(key: &str, actual: &str) -> std::result::Result<(), BoxError> {
     if key == actual {
         Ok(())
     } else {
@@ -90,14 +90,14 @@ fn damaged(key: &str, actual: &str) -> std::result::Result<(), BoxError> {
 
 /// Returns the samples as CSV, decoded some rows at a time from disk: nothing waits in memory for a
 /// client that does not read.
-async fn csv(app: &App, key: &str, bytes: Bytestream) -> Result<Body> {
-    let share = budget::share(DECODING).await?;
-    let spooled = spool(app.spool(), bytes).await?;
-    damaged(key, &spooled.sha256).map_err(Problem::internal)?;
+async fn csv_body(app: &App, key: &str, bytes: ByteStream) -> Result<Body> {
+    let share = budget::reserve_share(DECODING_BYTES).await?;
+    let spooled = spool_stream(app.spool(), bytes).await?;
+    check_hash(key, &spooled.sha256).map_err(Problem::internal)?;
     let open = move || CsvPieces::open(File::open(&spooled.path)?).map_err(BoxError::from);
-    let pieces = app.compute(open).await?.map_err(Problem::internal)?;
+    let pieces = app.run_blocking(open).await?.map_err(Problem::internal)?;
     // The share of memory travels with the reader and is given back when either ends.
-    let next = |(mut pieces, share): (CsvPieces, Option<Share>)| async move {
+    let next = |(mut pieces, share): (CsvPieces, Option<MemoryShare>)| async move {
         let decode = move || {
             pieces
                 .next_piece()

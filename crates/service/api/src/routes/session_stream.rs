@@ -12,26 +12,26 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::Response;
 use serde_json::Value;
 use sistership_jobs::predictions::session::StepsRequest;
-use sistership_listener::Peer;
+use sistership_listener::PeerInfo;
 use sistership_web_support::host;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::sessions::found;
+use super::sessions::find_session;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::rights::{Acting, current};
+use crate::rights::{RequestActor, current_actor};
 use crate::web::payload::from_slice;
-use crate::web::{Id, Place};
+use crate::web::{Id, PathParams};
 
 /// Longest message, bytes.
-const MESSAGE: usize = 64 << 10;
+const MESSAGE_BYTES: usize = 64 << 10;
 /// Number of steps that are simulated before the first of them is sent.
-const TOGETHER: usize = 64;
+const STEPS_PER_BATCH: usize = 64;
 /// Longest duration of a stream, which keeps the roles of its opening.
-const LONGEST: Duration = Duration::from_secs(3600);
+const LONGEST_STREAM: Duration = Duration::from_secs(3600);
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn stream_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(stream))
 }
 
@@ -47,28 +47,28 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 )]
 async fn stream(
     State(app): State<App>,
-    Place(id): Place<Id>,
+    PathParams(id): PathParams<Id>,
     headers: HeaderMap,
-    peer: Option<Extension<Peer>>,
+    peer: Option<Extension<PeerInfo>>,
     upgrade: std::result::Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Result<Response> {
-    of_no_other_site(&headers)?;
-    found(&app, &id).await?;
+    check_same_site(&headers)?;
+    find_session(&app, &id).await?;
     let upgrade = upgrade.map_err(|error| {
         Problem::bad_request(format!("this is to be opened as a WebSocket: {error}"))
     })?;
-    let acting = current().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
-    let upgrade = upgrade.max_message_size(MESSAGE).max_frame_size(MESSAGE);
+    let acting = current_actor().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+    let upgrade = upgrade.max_message_size(MESSAGE_BYTES).max_frame_size(MESSAGE_BYTES);
     let peer = peer.map(|Extension(peer)| peer);
     Ok(upgrade.on_upgrade(move |socket| async move {
-        let served = Served { app, id: id.into_string(), acting };
-        drop(tokio::time::timeout(LONGEST, served.serve(socket, peer)).await);
+        let served = SessionStream { app, id: id.into_string(), acting };
+        drop(tokio::time::timeout(LONGEST_STREAM, served.run(socket, peer)).await);
     }))
 }
 
 /// Refuses WebSockets that pages of other sites open: browsers send the site as `Origin`, and do
 /// not ask the server for permission first.
-fn of_no_other_site(headers: &HeaderMap) -> Result<()> {
+fn check_same_site(headers: &HeaderMap) -> Result<()> {
     let host = headers.get(header::HOST).and_then(|host| host.to_str().ok());
     let host: Option<Authority> = host.and_then(|host| host.parse().ok());
     if headers.contains_key(header::ORIGIN) && !host::is_same_origin(headers, host.as_ref())? {
@@ -79,19 +79,19 @@ fn of_no_other_site(headers: &HeaderMap) -> Result<()> {
 }
 
 /// Session and caller of a stream.
-struct Served {
+struct SessionStream {
     app: App,
     id: String,
-    acting: Acting,
+    acting: RequestActor,
 }
 
-impl Served {
-    async fn serve(&self, mut socket: WebSocket, peer: Option<Peer>) {
-        let mut stopping = self.app.stopping();
+impl SessionStream {
+    async fn run(&self, mut socket: WebSocket, peer: Option<PeerInfo>) {
+        let mut stopping = self.app.stop_signal();
         loop {
             let came = tokio::select! {
                 () = stopping.wait() => break,
-                () = cut(peer.as_ref()) => break,
+                () = wait_until_cut(peer.as_ref()) => break,
                 came = socket.recv() => came,
             };
             let text = match came {
@@ -99,12 +99,13 @@ impl Served {
                 Some(Ok(Message::Ping(_) | Message::Pong(_))) => continue,
                 _ => break,
             };
-            peer.iter().for_each(Peer::works);
-            let answered = self.acting.clone().scope(self.steps(text.as_bytes(), &mut socket));
-            if self.app.held().scope(answered).await.is_err() {
+            peer.iter().for_each(PeerInfo::mark_working);
+            let answered =
+                self.acting.clone().run_scoped(self.answer_steps(text.as_bytes(), &mut socket));
+            if self.app.request_memory().run_async(answered).await.is_err() {
                 break;
             }
-            peer.iter().for_each(Peer::waits);
+            peer.iter().for_each(PeerInfo::mark_waiting);
         }
         // The other side may be gone already, so that an error is ignored.
         drop(socket.send(Message::Close(None)).await);
@@ -114,21 +115,21 @@ impl Served {
     ///
     /// # Errors
     /// Returns an error if the socket is closed.
-    async fn steps(&self, text: &[u8], socket: &mut WebSocket) -> Result<(), axum::Error> {
+    async fn answer_steps(&self, text: &[u8], socket: &mut WebSocket) -> Result<(), axum::Error> {
         let request = match from_slice::<StepsRequest>(text) {
             Ok(request) => Arc::new(request),
-            Err(problem) => return send(socket, &problem).await,
+            Err(problem) => return send_json(socket, &problem).await,
         };
         let mut sailed = 0;
         // Few steps at a time: the first arrive early, and other sessions get their turn.
         loop {
-            let (rows, ended) = match self.rows(&request, sailed).await {
+            let (rows, ended) = match self.next_rows(&request, sailed).await {
                 Ok(some) => some,
-                Err(problem) => return send(socket, &problem).await,
+                Err(problem) => return send_json(socket, &problem).await,
             };
             sailed += rows.len();
             for row in &rows {
-                send(socket, row).await?;
+                send_json(socket, row).await?;
             }
             if ended {
                 return Ok(());
@@ -137,23 +138,34 @@ impl Served {
     }
 
     /// Returns the next of the requested steps, and whether they are the last.
-    async fn rows(&self, request: &Arc<StepsRequest>, sailed: usize) -> Result<(Vec<Value>, bool)> {
+    async fn next_rows(
+        &self,
+        request: &Arc<StepsRequest>,
+        sailed: usize,
+    ) -> Result<(Vec<Value>, bool)> {
         // The caller's role for the ship is checked again in each batch.
-        let (handle, request) = (found(&self.app, &self.id).await?, Arc::clone(request));
+        let (handle, request) = (find_session(&self.app, &self.id).await?, Arc::clone(request));
         let most = self.app.limits().prediction_samples;
-        let sail = move || handle.with(|session| session.rows(&request, sailed, TOGETHER, most));
-        Ok(self.app.compute(sail).await??)
+        let sail = move || {
+            handle.with_session(|session| {
+                session.simulate_rows(&request, sailed, STEPS_PER_BATCH, most)
+            })
+        };
+        Ok(self.app.run_blocking(sail).await??)
     }
 }
 
-async fn cut(peer: Option<&Peer>) {
+async fn wait_until_cut(peer: Option<&PeerInfo>) {
     match peer {
         Some(peer) => peer.until_cut().await,
         None => std::future::pending().await,
     }
 }
 
-async fn send(socket: &mut WebSocket, value: &impl serde::Serialize) -> Result<(), axum::Error> {
+async fn send_json(
+    socket: &mut WebSocket,
+    value: &impl serde::Serialize,
+) -> Result<(), axum::Error> {
     let text = serde_json::to_string(value).map_err(axum::Error::new)?;
     socket.send(Message::Text(text.into())).await
 }

@@ -5,19 +5,21 @@ use axum::extract::State;
 use axum::http::StatusCode;
 use serde_json::{Value, json};
 use sistership_auth::Role;
-use sistership_jobs::predictions::session::{Handle, Session, SessionRequest, StepsRequest};
+use sistership_jobs::predictions::session::{
+    PredictionSession, SessionHandle, SessionRequest, StepsRequest,
+};
 use sistership_model::Model;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-use super::model_ref::resolve;
+use super::model_ref::resolve_version;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::rights::{current, on_ship};
-use crate::web::{Id, Payload, Place, Reply};
+use crate::rights::{check_ship_role, current_actor};
+use crate::web::{DocumentBody, Id, PathParams, StoredReply};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn session_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .routes(routes!(open, list))
         .routes(routes!(show, close))
@@ -25,16 +27,16 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 }
 
 /// Returns the owner of the sessions that a request may see: the caller.
-pub(super) fn owner() -> Result<String> {
-    let acting = current().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+pub(super) fn session_owner() -> Result<String> {
+    let acting = current_actor().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
     Ok(acting.principal.name.clone())
 }
 
 /// Returns a session of the caller, who must still have a role for its ship.
-pub(super) async fn found(app: &App, id: &str) -> Result<Handle> {
-    let handle = app.sessions().find(id, &owner()?)?;
+pub(super) async fn find_session(app: &App, id: &str) -> Result<SessionHandle> {
+    let handle = app.sessions().find_session(id, &session_owner()?)?;
     let ship = handle.about["model"].as_str().unwrap_or_default();
-    on_ship(app.store(), Role::Reader, ship).await?;
+    check_ship_role(app.store(), Role::Reader, ship).await?;
     Ok(handle)
 }
 
@@ -48,22 +50,23 @@ pub(super) async fn found(app: &App, id: &str) -> Result<Handle> {
     responses((status = 201, body = Object, headers(("Location" = String)),
         description = "As `GET /v1/sessions/{id}`"))
 )]
-async fn open(State(app): State<App>, payload: Payload) -> Result<Reply> {
-    let request: SessionRequest = payload.json()?;
-    let owner = owner()?;
+async fn open(State(app): State<App>, payload: DocumentBody) -> Result<StoredReply> {
+    let request: SessionRequest = payload.parse_json()?;
+    let owner = session_owner()?;
     // Before the model is read, as a refusal must be cheap.
-    app.sessions().room(&owner)?;
-    let version = resolve(app.store(), "model", &request.model).await?;
-    let model: Model = app.archive().model(&version).await?;
-    let law = app.law(&model.law).await?;
-    let session = app.compute(move || Session::new(&request, &model, &law)).await??;
+    app.sessions().check_room(&owner)?;
+    let version = resolve_version(app.store(), "model", &request.model).await?;
+    let model: Model = app.archive().model_with_weights(&version).await?;
+    let law = app.stored_law(&model.law).await?;
+    let session =
+        app.run_blocking(move || PredictionSession::new(&request, &model, &law)).await??;
     let (id, head) = (Uuid::new_v4().to_string(), version.head);
     let about = json!({
         "model": head.model, "version": head.number, "sha256": head.sha256, "law": head.law,
     });
-    let answer = view(&id, &about, session.view());
+    let answer = session_view(&id, &about, session.current_view());
     app.sessions().open(&id, &owner, about, session)?;
-    Ok(Reply::new(StatusCode::CREATED, &answer)?.at(&["v1", "sessions", &id]))
+    Ok(StoredReply::new(StatusCode::CREATED, &answer)?.with_location(&["v1", "sessions", &id]))
 }
 
 /// List the caller's sessions
@@ -73,8 +76,9 @@ async fn open(State(app): State<App>, payload: Payload) -> Result<Reply> {
         description = "`items`: `id`, `model`, `version`, `sha256`, `law` of each"))
 )]
 async fn list(State(app): State<App>) -> Result<Json<Value>> {
-    let own = app.sessions().of(&owner()?);
-    let items: Vec<Value> = own.iter().map(|(id, about)| view(id, about, json!({}))).collect();
+    let own = app.sessions().list_sessions(&session_owner()?);
+    let items: Vec<Value> =
+        own.iter().map(|(id, about)| session_view(id, about, json!({}))).collect();
     Ok(Json(json!({ "items": items })))
 }
 
@@ -87,11 +91,13 @@ async fn list(State(app): State<App>) -> Result<Json<Value>> {
         which 95 % of the draws are; `stopped` where the motion has left the physical range, with \
         `reason`; `outside` where it is outside what the model's trials covered"))
 )]
-async fn show(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Value>> {
-    let handle = found(&app, &id).await?;
+async fn show(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<Value>> {
+    let handle = find_session(&app, &id).await?;
     let about = handle.about.clone();
-    let now = app.compute(move || handle.with(|session| Ok(session.view()))).await??;
-    Ok(Json(view(&id, &about, now)))
+    let now = app
+        .run_blocking(move || handle.with_session(|session| Ok(session.current_view())))
+        .await??;
+    Ok(Json(session_view(&id, &about, now)))
 }
 
 /// Advance a session by steps
@@ -109,13 +115,13 @@ async fn show(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<Value
 )]
 async fn steps(
     State(app): State<App>,
-    Place(id): Place<Id>,
-    payload: Payload,
+    PathParams(id): PathParams<Id>,
+    payload: DocumentBody,
 ) -> Result<Json<Value>> {
-    let request: StepsRequest = payload.json()?;
-    let (handle, most) = (found(&app, &id).await?, app.limits().prediction_samples);
-    let sail = move || handle.with(|session| session.sail(&request, most));
-    Ok(Json(app.compute(sail).await??))
+    let request: StepsRequest = payload.parse_json()?;
+    let (handle, most) = (find_session(&app, &id).await?, app.limits().prediction_samples);
+    let sail = move || handle.with_session(|session| session.simulate(&request, most));
+    Ok(Json(app.run_blocking(sail).await??))
 }
 
 /// End a session
@@ -123,12 +129,12 @@ async fn steps(
     delete, path = "/v1/sessions/{id}", tag = "predictions", params(("id" = inline(Id), Path)),
     responses((status = 204))
 )]
-async fn close(State(app): State<App>, Place(id): Place<Id>) -> Result<StatusCode> {
-    app.sessions().close(&id, &owner()?)?;
+async fn close(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<StatusCode> {
+    app.sessions().close(&id, &session_owner()?)?;
     Ok(StatusCode::NO_CONTENT)
 }
 
-fn view(id: &str, about: &Value, mut now: Value) -> Value {
+fn session_view(id: &str, about: &Value, mut now: Value) -> Value {
     now["id"] = json!(id);
     about.as_object().into_iter().flatten().for_each(|(name, value)| now[name] = value.clone());
     now

@@ -9,16 +9,16 @@ use sistership_store::Ship;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::described::Vessel as VesselBody;
+use super::described::VesselBodySchema as VesselBody;
 use super::ships::ShipDetail;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::{EntityTags, RequestKey};
-use crate::web::{Conditions, Key, Name, Payload, Place, Reply};
-use sistership_jobs::publish::publish;
+use crate::web::{DocumentBody, IdempotencyKey, Name, PathParams, RequestConditions, StoredReply};
+use sistership_jobs::publish::publish_models;
 use sistership_jobs::seed::new_ship;
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn ship_change_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .routes(routes!(create))
         .routes(routes!(replace, delete))
@@ -26,15 +26,15 @@ pub(super) fn routes() -> OpenApiRouter<App> {
 }
 
 /// Parses and checks a vessel as JSON or YAML.
-async fn vessel(app: &App, payload: &Payload) -> Result<Vessel> {
+async fn parse_vessel(app: &App, payload: &DocumentBody) -> Result<Vessel> {
     if payload.is_json() {
-        return Ok(Vessel::from_file("body", payload.json::<VesselFile>()?)?);
+        return Ok(Vessel::from_file("body", payload.parse_json::<VesselFile>()?)?);
     }
     let text = payload
-        .text()
-        .map_err(|_| payload.wrong("application/yaml` or `application/json"))?
+        .yaml_text()
+        .map_err(|_| payload.wrong_type("application/yaml` or `application/json"))?
         .to_owned();
-    Ok(app.compute(move || Vessel::parse("body", &text)).await??)
+    Ok(app.run_blocking(move || Vessel::parse("body", &text)).await??)
 }
 
 /// Create a ship
@@ -49,26 +49,30 @@ async fn vessel(app: &App, payload: &Payload) -> Result<Vessel> {
     request_body(content((VesselBody = "application/json"), (String = "application/yaml"))),
     responses((status = 201, body = ShipDetail, headers(("ETag" = String), ("Location" = String))))
 )]
-async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
-    let vessel = vessel(&app, &payload).await?;
-    key.once(&app, payload.bytes(), |app| async move { created(&app, &vessel).await }).await
+async fn create(
+    State(app): State<App>,
+    key: IdempotencyKey,
+    payload: DocumentBody,
+) -> Result<Response> {
+    let vessel = parse_vessel(&app, &payload).await?;
+    key.run_once(&app, payload.bytes(), |app| async move { create_ship(&app, &vessel).await }).await
 }
 
 /// Stores a new ship and the models that it publishes.
-pub(super) async fn kept(app: &App, vessel: &Vessel) -> Result<Ship> {
-    let zoo = app.laws().await?;
+pub(super) async fn store_ship(app: &App, vessel: &Vessel) -> Result<Ship> {
+    let zoo = app.stored_laws().await?;
     // Models that the zoo's laws refuse must not become versions.
     zoo.check_models(vessel)?;
     let new = new_ship(vessel).map_err(Problem::internal)?;
     let ship = app.store().ships().create(&new).await?;
-    publish(app.store(), &zoo, vessel, &ship.document).await?;
+    publish_models(app.store(), &zoo, vessel, &ship.document).await?;
     Ok(ship)
 }
 
-async fn created(app: &App, vessel: &Vessel) -> Result<Reply> {
-    let ship = ShipDetail::of(app, kept(app, vessel).await?).await?;
-    let reply = Reply::new(StatusCode::CREATED, &ship)?;
-    Ok(reply.at(&["v1", "ships", &ship.name]).tagged(ship.etag()))
+async fn create_ship(app: &App, vessel: &Vessel) -> Result<StoredReply> {
+    let ship = ShipDetail::load(app, store_ship(app, vessel).await?).await?;
+    let reply = StoredReply::new(StatusCode::CREATED, &ship)?;
+    Ok(reply.with_location(&["v1", "ships", &ship.name]).with_etag(ship.etag()))
 }
 
 /// Replace a ship's document, if it is as you last read it
@@ -81,27 +85,27 @@ async fn created(app: &App, vessel: &Vessel) -> Result<Reply> {
 )]
 async fn replace(
     State(app): State<App>,
-    Place(name): Place<Name>,
-    conditions: Conditions,
-    payload: Payload,
+    PathParams(name): PathParams<Name>,
+    conditions: RequestConditions,
+    payload: DocumentBody,
 ) -> Result<Response> {
     // The revision is compared before the body is parsed, and by the store again when it writes.
     let current = app.store().ships().get(&name).await?;
-    let revision = conditions.revision(&format!("ship `{name}`"), current.revision)?;
-    let vessel = vessel(&app, &payload).await?;
+    let revision = conditions.required_revision(&format!("ship `{name}`"), current.revision)?;
+    let vessel = parse_vessel(&app, &payload).await?;
     if vessel.name() != &*name {
         return Err(Problem::invalid(
             "name",
             format!("is `{}`, but the path says `{name}`; a ship keeps its name", vessel.name()),
         ));
     }
-    let zoo = app.laws().await?;
+    let zoo = app.stored_laws().await?;
     // The same check as for a new ship, before anything is written.
     zoo.check_models(&vessel)?;
     let new = new_ship(&vessel).map_err(Problem::internal)?;
     let ship: Ship = app.store().ships().update(&new, revision).await?;
-    publish(app.store(), &zoo, &vessel, &ship.document).await?;
-    Ok(ShipDetail::of(&app, ship).await?.answer())
+    publish_models(app.store(), &zoo, &vessel, &ship.document).await?;
+    Ok(ShipDetail::load(&app, ship).await?.etag_response())
 }
 
 /// Delete a ship; its versions stay, and `undelete` restores it
@@ -113,8 +117,8 @@ async fn replace(
 )]
 async fn delete(
     State(app): State<App>,
-    Place(name): Place<Name>,
-    conditions: Conditions,
+    PathParams(name): PathParams<Name>,
+    conditions: RequestConditions,
 ) -> Result<Response> {
     let current = app.store().ships().get(&name).await?;
     let revision = conditions.optional_revision(&format!("ship `{name}`"), current.revision)?;
@@ -127,7 +131,7 @@ async fn delete(
     post, path = "/v1/ships/{ship}/undelete", tag = "ships", params(("ship" = inline(Name), Path)),
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
 )]
-async fn undelete(State(app): State<App>, Place(name): Place<Name>) -> Result<Response> {
+async fn undelete(State(app): State<App>, PathParams(name): PathParams<Name>) -> Result<Response> {
     let ship = app.store().ships().undelete(&name).await?;
-    Ok(ShipDetail::of(&app, ship).await?.answer())
+    Ok(ShipDetail::load(&app, ship).await?.etag_response())
 }

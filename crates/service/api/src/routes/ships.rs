@@ -13,15 +13,15 @@ use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::web::conditions::tag;
+use crate::web::conditions::entity_tag;
 use crate::web::field::EntityTags;
-use crate::web::{Conditions, Listing, Name, Params, Place};
+use crate::web::{Listing, Name, PathParams, QueryParams, RequestConditions};
 use sistership_jobs::condition::Condition;
 use sistership_jobs::derive::DeriveError;
 use sistership_jobs::search;
-use sistership_web_support::ship_search::{self, Query};
+use sistership_web_support::ship_search::{self, ShipSearchQuery};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn ship_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get))
 }
 
@@ -63,16 +63,16 @@ pub(super) struct ShipDetail {
 }
 
 impl ShipHead {
-    fn of(ship: FoundShip) -> Self {
+    fn from_found(ship: FoundShip) -> Self {
         let FoundShip { name, title, category, revision, created_us, updated_us, value } = ship;
         Self { name, title, category, revision, created_us, updated_us, value }
     }
 }
 
 impl ShipDetail {
-    pub(super) async fn of(app: &App, ship: Ship) -> Result<Self> {
+    pub(super) async fn load(app: &App, ship: Ship) -> Result<Self> {
         // The condition is derived from diagnoses and drift, and may change without the ship.
-        let condition = Condition::of(app.store(), &ship.name).await?;
+        let condition = Condition::read_current(app.store(), &ship.name).await?;
         let document = serde_json::from_str(&ship.document).map_err(Problem::internal)?;
         let Ship { name, title, category, revision, created_us, updated_us, .. } = ship;
         Ok(Self { name, title, category, revision, created_us, updated_us, condition, document })
@@ -81,10 +81,10 @@ impl ShipDetail {
     /// Returns the tag of the revision and of the data that the condition is derived from: either
     /// changes the answer, but only the revision guards changes.
     pub(super) fn etag(&self) -> String {
-        tag(format!("{}{}", self.revision, self.condition.tag()))
+        entity_tag(format!("{}{}", self.revision, self.condition.entity_tag()))
     }
 
-    pub(super) fn answer(self) -> Response {
+    pub(super) fn etag_response(self) -> Response {
         ([(header::ETAG, self.etag())], Json(self)).into_response()
     }
 }
@@ -94,21 +94,22 @@ impl ShipDetail {
 /// In order of name; with ranges in increasing order of the first of them; with `similar_to` the
 /// most similar first. Particulars and metrics follow a change of ship or champion within about a
 /// second.
-#[utoipa::path(get, path = "/v1/ships", tag = "ships", params(Query),
+#[utoipa::path(get, path = "/v1/ships", tag = "ships", params(ShipSearchQuery),
     responses((status = 200, body = Listing<ShipHead>)))]
 async fn list(
     State(app): State<App>,
-    Params(query): Params<Vec<(String, String)>>,
+    QueryParams(query): QueryParams<Vec<(String, String)>>,
 ) -> Result<Json<Listing<ShipHead>>> {
-    let (asked, page) = ship_search::read(query)?;
-    let found = search::ships(app.archive(), app.catalogue().vectors(), &asked, &page).await;
+    let (asked, page) = ship_search::parse_query(query)?;
+    let found =
+        search::search_ships(app.archive(), app.catalogue().known_vectors(), &asked, &page).await;
     let ships = found.map_err(|error| match error {
         DeriveError::Store(StoreError::NotFound { kind: "ship", .. }) => {
             Problem::invalid("similar_to", error.to_string())
         }
         other => other.into(),
     })?;
-    Ok(Json(Listing::of(ships, ShipHead::of)))
+    Ok(Json(Listing::from_list(ships, ShipHead::from_found)))
 }
 
 /// Get a ship; a change must present its ETag
@@ -121,14 +122,14 @@ async fn list(
 )]
 async fn get(
     State(app): State<App>,
-    Place(name): Place<Name>,
-    conditions: Conditions,
+    PathParams(name): PathParams<Name>,
+    conditions: RequestConditions,
 ) -> Result<Response> {
-    let ship = ShipDetail::of(&app, app.store().ships().get(&name).await?).await?;
+    let ship = ShipDetail::load(&app, app.store().ships().get(&name).await?).await?;
     let etag = ship.etag();
     // A client that has this revision already gets no body.
-    match conditions.has(&etag) {
+    match conditions.matches_current(&etag) {
         true => Ok((StatusCode::NOT_MODIFIED, [(header::ETAG, etag)]).into_response()),
-        false => Ok(ship.answer()),
+        false => Ok(ship.etag_response()),
     }
 }

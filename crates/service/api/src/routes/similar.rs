@@ -5,7 +5,7 @@ use axum::extract::State;
 use serde::Deserialize;
 use serde_json::Value;
 use sistership_model::version::RecipeTrial;
-use sistership_priors::similarity::Definition;
+use sistership_priors::similarity::VectorDefinition;
 use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -13,27 +13,27 @@ use utoipa_axum::routes;
 use super::trials::all_of_ship;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::rights::visible;
-use crate::web::{Name, Params, Place};
+use crate::rights::filter_visible;
+use crate::web::{Name, PathParams, QueryParams};
 use sistership_auth::Role;
-use sistership_jobs::archive::vessel;
+use sistership_jobs::archive::parse_vessel;
 use sistership_jobs::budget;
 use sistership_jobs::champions::SourceModels;
 use sistership_jobs::memory::trial_bytes;
 use sistership_web_support::ship_search::vectors;
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn similarity_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(similar))
 }
 
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct Query {
+struct SimilarQuery {
     /// `mei-2019` or `kanazawa-2023`; by default Mei's if the ship has every component of it,
     /// otherwise Kanazawa's.
     #[param(schema_with = vectors)]
-    vector: Option<Definition>,
+    vector: Option<VectorDefinition>,
     /// True if eligible ships are evaluated on the trials of the ship, if it has any.
     #[serde(default = "yes")]
     trials: bool,
@@ -56,23 +56,25 @@ fn yes() -> bool {
 )]
 async fn similar(
     State(app): State<App>,
-    Place(name): Place<Name>,
-    Params(query): Params<Query>,
+    PathParams(name): PathParams<Name>,
+    QueryParams(query): QueryParams<SimilarQuery>,
 ) -> Result<Json<Value>> {
     let ship = app.store().ships().get(&name).await?;
-    let target = vessel(&ship.name, &ship.document)?;
+    let target = parse_vessel(&ship.name, &ship.document)?;
     let trials = if query.trials { all_of_ship(&app, &name).await? } else { Vec::new() };
-    budget::take(trials.iter().map(|trial| trial_bytes(trial.sample_rows)).sum()).await?;
+    budget::reserve_for_request(trials.iter().map(|trial| trial_bytes(trial.sample_rows)).sum())
+        .await?;
     let named =
         trials.into_iter().map(|trial| RecipeTrial { name: trial.name, sha256: trial.object_key });
-    let trials = app.archive().trials(&named.collect::<Vec<_>>()).await?;
+    let trials = app.archive().read_trials(&named.collect::<Vec<_>>()).await?;
     let zoo = app.zoo_around(&target).await?;
-    let models = SourceModels::read(app.archive(), &zoo).await?;
-    let ranked =
-        move || models.rank(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>());
-    let mut ranked = app.compute(ranked).await?;
+    let models = SourceModels::for_zoo(app.archive(), &zoo).await?;
+    let ranked = move || {
+        models.rank_sources(&zoo, &target, query.vector, &trials.iter().collect::<Vec<_>>())
+    };
+    let mut ranked = app.run_blocking(ranked).await?;
     // Filtered after the ranking, so that the correlations do not depend on the caller.
     ranked.ranking =
-        visible(app.store(), Role::Reader, ranked.ranking, |ranked| &ranked.ship).await?;
+        filter_visible(app.store(), Role::Reader, ranked.ranking, |ranked| &ranked.ship).await?;
     Ok(Json(serde_json::to_value(ranked).map_err(Problem::internal)?))
 }

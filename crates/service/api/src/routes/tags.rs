@@ -8,9 +8,9 @@ use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::Result;
-use crate::web::{Name, Place, Word};
+use crate::web::{Name, PathParams, Word};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn tag_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(put, remove))
 }
 
@@ -19,9 +19,12 @@ pub(super) fn routes() -> OpenApiRouter<App> {
     get, path = "/v1/ships/{ship}/tags", tag = "ships", params(("ship" = inline(Name), Path)),
     responses((status = 200, body = Vec<String>))
 )]
-async fn list(State(app): State<App>, Place(ship): Place<Name>) -> Result<Json<Vec<String>>> {
+async fn list(
+    State(app): State<App>,
+    PathParams(ship): PathParams<Name>,
+) -> Result<Json<Vec<String>>> {
     app.store().ships().get(&ship).await?;
-    Ok(Json(app.store().ships().tags(&ship).await?))
+    Ok(Json(app.store().ships().list_tags(&ship).await?))
 }
 
 /// Add a tag to a ship, by which it can be found
@@ -32,9 +35,9 @@ async fn list(State(app): State<App>, Place(ship): Place<Name>) -> Result<Json<V
 )]
 async fn put(
     State(app): State<App>,
-    Place((ship, tag)): Place<(Name, Word)>,
+    PathParams((ship, tag)): PathParams<(Name, Word)>,
 ) -> Result<StatusCode> {
-    app.store().ships().tag(&ship, &tag).await?;
+    app.store().ships().add_tag(&ship, &tag).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
@@ -46,8 +49,8 @@ async fn put(
 )]
 async fn remove(
     State(app): State<App>,
-    Place((ship, tag)): Place<(Name, Word)>,
+    PathParams((ship, tag)): PathParams<(Name, Word)>,
 ) -> Result<StatusCode> {
-    app.store().ships().untag(&ship, &tag).await?;
+    app.store().ships().remove_tag(&ship, &tag).await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -6,7 +6,7 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use sistership_store::{MAX_LIMIT, Page, Trial};
+use sistership_store::{MAX_LIMIT, PageRequest, Trial};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -14,9 +14,9 @@ use utoipa_axum::routes;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::{Cursor, Limit};
-use crate::web::{Id, Listing, Name, Params, Place, page};
+use crate::web::{Id, Listing, Name, PathParams, QueryParams, page};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn trial_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .routes(routes!(list))
         .routes(routes!(get, delete))
@@ -49,7 +49,7 @@ pub(super) struct TrialView {
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct Query {
+struct TrialQuery {
     /// The ship.
     #[param(inline)]
     ship: Name,
@@ -62,7 +62,7 @@ struct Query {
 }
 
 impl TrialView {
-    pub(super) fn of(trial: Trial) -> Self {
+    pub(super) fn from_trial(trial: Trial) -> Self {
         let read = |text: &str| serde_json::from_str(text).unwrap_or_default();
         let (warnings, manifest) = (read(&trial.warnings), read(&trial.manifest));
         let Trial {
@@ -85,15 +85,15 @@ impl TrialView {
     responses((status = 200, body = Listing<TrialView>)))]
 async fn list(
     State(app): State<App>,
-    Params(query): Params<Query>,
+    QueryParams(query): QueryParams<TrialQuery>,
 ) -> Result<Json<Listing<TrialView>>> {
     app.store().ships().get(&query.ship).await?;
     let trials = app
         .store()
         .trials()
-        .list(&query.ship, &page::page(query.limit, query.after.as_ref())?)
+        .list(&query.ship, &page::parse_page(query.limit, query.after.as_ref())?)
         .await?;
-    Ok(Json(Listing::of(trials, TrialView::of)))
+    Ok(Json(Listing::from_list(trials, TrialView::from_trial)))
 }
 
 /// Get a trial
@@ -101,8 +101,8 @@ async fn list(
     get, path = "/v1/trials/{id}", tag = "trials", params(("id" = inline(Id), Path)),
     responses((status = 200, body = TrialView))
 )]
-async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<TrialView>> {
-    Ok(Json(TrialView::of(app.store().trials().get(&id).await?)))
+async fn get(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<TrialView>> {
+    Ok(Json(TrialView::from_trial(app.store().trials().get(&id).await?)))
 }
 
 /// Delete a trial; versions that were made with it stay, and `undelete` restores it
@@ -110,7 +110,7 @@ async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<TrialV
     delete, path = "/v1/trials/{id}", tag = "trials", params(("id" = inline(Id), Path)),
     responses((status = 204, description = "Deleted"))
 )]
-async fn delete(State(app): State<App>, Place(id): Place<Id>) -> Result<Response> {
+async fn delete(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Response> {
     app.store().trials().delete(&id).await?;
     Ok(StatusCode::NO_CONTENT.into_response())
 }
@@ -120,8 +120,11 @@ async fn delete(State(app): State<App>, Place(id): Place<Id>) -> Result<Response
     post, path = "/v1/trials/{id}/undelete", tag = "trials", params(("id" = inline(Id), Path)),
     responses((status = 200, body = TrialView))
 )]
-async fn undelete(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<TrialView>> {
-    Ok(Json(TrialView::of(app.store().trials().undelete(&id).await?)))
+async fn undelete(
+    State(app): State<App>,
+    PathParams(id): PathParams<Id>,
+) -> Result<Json<TrialView>> {
+    Ok(Json(TrialView::from_trial(app.store().trials().undelete(&id).await?)))
 }
 
 /// Returns all trials of a ship.
@@ -129,19 +132,19 @@ async fn undelete(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<T
 /// # Errors
 /// Returns an error if there are too many for one job.
 pub(super) async fn all_of_ship(app: &App, ship: &str) -> Result<Vec<Trial>> {
-    let (mut all, mut page) = (Vec::new(), Page::first(MAX_LIMIT));
+    let (mut all, mut page) = (Vec::new(), PageRequest::first_page(MAX_LIMIT));
     loop {
         let list = app.store().trials().list(ship, &page).await?;
         all.extend(list.items);
         // After each page, so that a ship with very many trials is not read to the end.
-        bounded(app, all.len())?;
+        check_trial_count(app, all.len())?;
         let Some(next) = list.next else { return Ok(all) };
-        page = Page::after(next, MAX_LIMIT);
+        page = PageRequest::after_key(next, MAX_LIMIT);
     }
 }
 
 /// Checks the number of trials of one job.
-pub(super) fn bounded(app: &App, count: usize) -> Result<()> {
+pub(super) fn check_trial_count(app: &App, count: usize) -> Result<()> {
     let most = app.limits().refinement_trials;
     match count <= most {
         true => Ok(()),

@@ -14,17 +14,17 @@ use super::binary::Binary;
 use super::trials::TrialView;
 use crate::app::App;
 use crate::problem::Result;
-use crate::upload::{Kept, RawQuery, Upload, checked, keep};
+use crate::upload::{RawQuery, StoredTrial, TrialUpload, check_upload, store_upload};
 use crate::web::field::RequestKey;
-use crate::web::{Key, Reply};
+use crate::web::{IdempotencyKey, StoredReply};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn upload_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(upload)).routes(routes!(check))
 }
 
 /// Result of an upload.
 #[derive(Debug, Serialize, ToSchema)]
-struct Uploaded {
+struct UploadResult {
     ship: String,
     /// The trials, in the order of the manifest; samples that were stored before give the existing
     /// trial.
@@ -59,29 +59,38 @@ struct Form {
     ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
     request_body(content((Form = "multipart/form-data"), (String = "text/csv"),
     (Binary = "application/vnd.apache.parquet"))),
-    responses((status = 201, body = Uploaded, headers(("Location" = String))))
+    responses((status = 201, body = UploadResult, headers(("Location" = String))))
 )]
-async fn upload(State(app): State<App>, key: Key, upload: Upload) -> Result<Response> {
+async fn upload(
+    State(app): State<App>,
+    key: IdempotencyKey,
+    upload: TrialUpload,
+) -> Result<Response> {
     // The fingerprint stands for the files when the request is compared with an earlier one.
     let fingerprint = upload.fingerprint()?;
-    key.once(&app, fingerprint.as_bytes(), |app| async move { kept(&app, upload).await }).await
+    key.run_once(
+        &app,
+        fingerprint.as_bytes(),
+        |app| async move { upload_reply(&app, upload).await },
+    )
+    .await
 }
 
-async fn kept(app: &App, upload: Upload) -> Result<Reply> {
+async fn upload_reply(app: &App, upload: TrialUpload) -> Result<StoredReply> {
     let ship = upload.ship().to_owned();
-    let (kept, job): (Vec<Kept>, _) = keep(app, upload).await?;
+    let (kept, job): (Vec<StoredTrial>, _) = store_upload(app, upload).await?;
     // With a single trial the answer refers to it, otherwise to the list of the ship.
     let only = match kept.as_slice() {
         [only] => Some(only.row.id.clone()),
         _ => None,
     };
     let new = kept.iter().filter(|trial| trial.new).count();
-    let trials = kept.into_iter().map(|trial| TrialView::of(trial.row)).collect();
-    let uploaded = Uploaded { ship, trials, new, diagnosis: job.map(|job| job.id) };
-    let reply = Reply::new(StatusCode::CREATED, &uploaded)?.with_jobs();
+    let trials = kept.into_iter().map(|trial| TrialView::from_trial(trial.row)).collect();
+    let uploaded = UploadResult { ship, trials, new, diagnosis: job.map(|job| job.id) };
+    let reply = StoredReply::new(StatusCode::CREATED, &uploaded)?.with_jobs();
     Ok(match only {
-        Some(id) => reply.at(&["v1", "trials", &id]),
-        None => reply.at_list(&["v1", "trials"], ("ship", &uploaded.ship)),
+        Some(id) => reply.with_location(&["v1", "trials", &id]),
+        None => reply.with_list_location(&["v1", "trials"], ("ship", &uploaded.ship)),
     })
 }
 
@@ -96,7 +105,7 @@ async fn kept(app: &App, upload: Upload) -> Result<Reply> {
     responses((status = 200, body = Object, description = "`trials`: `file`, `rows`, `duration_s`, \
         `errors`, `warnings` of each"))
 )]
-async fn check(State(app): State<App>, upload: Upload) -> Result<Json<Value>> {
-    let outcomes = checked(&upload, &app).await?;
+async fn check(State(app): State<App>, upload: TrialUpload) -> Result<Json<Value>> {
+    let outcomes = check_upload(&upload, &app).await?;
     Ok(Json(json!({ "trials": outcomes })))
 }

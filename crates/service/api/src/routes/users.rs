@@ -5,19 +5,21 @@ use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
-use sistership_store::{Identity, User};
+use sistership_store::{IdentityRow, User};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::rights::{Kind, current};
+use crate::rights::{AuthenticationKind, current_actor};
 use crate::web::field::{Line, Password, Remark, RequestKey, UserName};
-use crate::web::{Key, Listing, Paged, Params, Payload, Place, Reply};
-use sistership_web_support::roles::{RoleRequest, RoleView, grants};
+use crate::web::{
+    DocumentBody, IdempotencyKey, Listing, PageQuery, PathParams, QueryParams, StoredReply,
+};
+use sistership_web_support::roles::{RoleRequest, RoleView, parse_grants};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn user_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .routes(routes!(me))
         .routes(routes!(list, create))
@@ -117,15 +119,16 @@ pub(super) struct RolesRequest {
 }
 
 impl UserView {
-    async fn of(app: &App, user: User) -> Result<Self> {
-        let roles = app.store().grants().of(&User::principal(&user.name)).await?;
+    async fn load(app: &App, user: User) -> Result<Self> {
+        let roles =
+            app.store().grants().list_by_principal(&User::principal_name(&user.name)).await?;
         // The answer says whether there is a password; its hash stays internal.
         let (enabled, has_password) = (user.is_enabled(), user.password_hash.is_some());
-        let identities = app.store().identities().of(&user.name).await?;
-        let identity = |Identity { issuer, subject, .. }| IdentityView { issuer, subject };
+        let identities = app.store().identities().list_by_user(&user.name).await?;
+        let identity = |IdentityRow { issuer, subject, .. }| IdentityView { issuer, subject };
         let identities = identities.into_iter().map(identity).collect();
         let User { name, title, created_us, .. } = user;
-        let roles = roles.into_iter().map(RoleView::of).collect();
+        let roles = roles.into_iter().map(RoleView::from_row).collect();
         Ok(Self { name, title, roles, enabled, has_password, identities, created_us })
     }
 }
@@ -133,30 +136,30 @@ impl UserView {
 /// Get the caller and its roles
 #[utoipa::path(get, path = "/v1/me", tag = "access", responses((status = 200, body = Me)))]
 async fn me() -> Result<Json<Me>> {
-    let acting = current().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+    let acting = current_actor().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
     let kind = match acting.principal.kind {
-        Kind::Local => "local",
-        Kind::ServerKey => "server-key",
-        Kind::Key => "key",
-        Kind::Session { .. } => "user",
+        AuthenticationKind::Local => "local",
+        AuthenticationKind::ServerKey => "server-key",
+        AuthenticationKind::Key => "key",
+        AuthenticationKind::Session { .. } => "user",
     };
-    let roles = acting.principal.rights.grants().iter().map(RoleView::of_grant).collect();
+    let roles = acting.principal.rights.grants().iter().map(RoleView::from_grant).collect();
     Ok(Json(Me { name: acting.principal.name.clone(), kind, roles }))
 }
 
 /// List the users by name
-#[utoipa::path(get, path = "/v1/users", tag = "access", params(Paged),
+#[utoipa::path(get, path = "/v1/users", tag = "access", params(PageQuery),
     responses((status = 200, body = Listing<UserView>)))]
 async fn list(
     State(app): State<App>,
-    Params(query): Params<Paged>,
+    QueryParams(query): QueryParams<PageQuery>,
 ) -> Result<Json<Listing<UserView>>> {
-    let users = app.store().users().list(&query.page()?).await?;
+    let users = app.store().users().list(&query.requested_page()?).await?;
     let mut items = Vec::new();
     for user in users.items {
-        items.push(UserView::of(&app, user).await?);
+        items.push(UserView::load(&app, user).await?);
     }
-    let next = users.next.as_ref().and_then(crate::web::page::cursor);
+    let next = users.next.as_ref().and_then(crate::web::page::encode_cursor);
     Ok(Json(Listing { items, next }))
 }
 
@@ -168,45 +171,58 @@ async fn list(
     request_body = UserRequest,
     responses((status = 201, body = UserView, headers(("Location" = String))))
 )]
-async fn create(State(app): State<App>, key: Key, payload: Payload) -> Result<Response> {
-    let request: UserRequest = payload.json()?;
-    key.once(&app, payload.bytes(), |app| async move { created(&app, request).await }).await
+async fn create(
+    State(app): State<App>,
+    key: IdempotencyKey,
+    payload: DocumentBody,
+) -> Result<Response> {
+    let request: UserRequest = payload.parse_json()?;
+    key.run_once(&app, payload.bytes(), |app| async move { create_user(&app, request).await }).await
 }
 
-async fn created(app: &App, request: UserRequest) -> Result<Reply> {
+async fn create_user(app: &App, request: UserRequest) -> Result<StoredReply> {
     let UserRequest { name, title, password, roles } = request;
     let title = title.map_or_else(|| name.to_string(), Remark::into_string);
     // Roles are checked before the password is hashed, which takes memory and time.
-    let roles = grants(roles)?;
+    let roles = parse_grants(roles)?;
     let user = app.accounts().create_user(&name, &title, password.as_deref(), &roles).await?;
     let name = user.name.clone();
-    let reply = Reply::new(StatusCode::CREATED, &UserView::of(app, user).await?)?;
-    Ok(reply.at(&["v1", "users", &name]))
+    let reply = StoredReply::new(StatusCode::CREATED, &UserView::load(app, user).await?)?;
+    Ok(reply.with_location(&["v1", "users", &name]))
 }
 
 /// Get a user
 #[utoipa::path(get, path = "/v1/users/{user}", tag = "access",
     params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
-async fn get(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
+async fn get(
+    State(app): State<App>,
+    PathParams(name): PathParams<UserName>,
+) -> Result<Json<UserView>> {
     let user = app.store().users().get(&name).await?;
-    Ok(Json(UserView::of(&app, user).await?))
+    Ok(Json(UserView::load(&app, user).await?))
 }
 
 /// Disable a user: all sessions end and all rights are suspended; the name stays taken
 #[utoipa::path(delete, path = "/v1/users/{user}", tag = "access",
     params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
-async fn disable(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
+async fn disable(
+    State(app): State<App>,
+    PathParams(name): PathParams<UserName>,
+) -> Result<Json<UserView>> {
     // The user is disabled, not deleted: the audit refers to the name.
-    let user = app.accounts().enable(&name, false).await?;
-    Ok(Json(UserView::of(&app, user).await?))
+    let user = app.accounts().set_enabled(&name, false).await?;
+    Ok(Json(UserView::load(&app, user).await?))
 }
 
 /// Enable a disabled user, with the same rights as before
 #[utoipa::path(post, path = "/v1/users/{user}/enable", tag = "access",
     params(("user" = inline(UserName), Path)), responses((status = 200, body = UserView)))]
-async fn enable(State(app): State<App>, Place(name): Place<UserName>) -> Result<Json<UserView>> {
-    let user = app.accounts().enable(&name, true).await?;
-    Ok(Json(UserView::of(&app, user).await?))
+async fn enable(
+    State(app): State<App>,
+    PathParams(name): PathParams<UserName>,
+) -> Result<Json<UserView>> {
+    let user = app.accounts().set_enabled(&name, true).await?;
+    Ok(Json(UserView::load(&app, user).await?))
 }
 
 /// Set the password of a user, which ends all sessions
@@ -217,10 +233,10 @@ async fn enable(State(app): State<App>, Place(name): Place<UserName>) -> Result<
 )]
 async fn set_password(
     State(app): State<App>,
-    Place(name): Place<UserName>,
-    payload: Payload,
+    PathParams(name): PathParams<UserName>,
+    payload: DocumentBody,
 ) -> Result<StatusCode> {
-    let PasswordRequest { password } = payload.json()?;
+    let PasswordRequest { password } = payload.parse_json()?;
     app.accounts().set_password(&name, &password).await?;
     Ok(StatusCode::NO_CONTENT)
 }
@@ -232,13 +248,13 @@ async fn set_password(
 )]
 async fn set_roles(
     State(app): State<App>,
-    Place(name): Place<UserName>,
-    payload: Payload,
+    PathParams(name): PathParams<UserName>,
+    payload: DocumentBody,
 ) -> Result<Json<UserView>> {
-    let RolesRequest { roles } = payload.json()?;
-    app.accounts().set_roles(&User::principal(&name), &grants(roles)?).await?;
+    let RolesRequest { roles } = payload.parse_json()?;
+    app.accounts().set_roles(&User::principal_name(&name), &parse_grants(roles)?).await?;
     let user = app.store().users().get(&name).await?;
-    Ok(Json(UserView::of(&app, user).await?))
+    Ok(Json(UserView::load(&app, user).await?))
 }
 
 /// Replace all identities of a user at OpenID providers
@@ -249,15 +265,15 @@ async fn set_roles(
 )]
 async fn set_identities(
     State(app): State<App>,
-    Place(name): Place<UserName>,
-    payload: Payload,
+    PathParams(name): PathParams<UserName>,
+    payload: DocumentBody,
 ) -> Result<Json<UserView>> {
-    let IdentitiesRequest { identities } = payload.json()?;
+    let IdentitiesRequest { identities } = payload.parse_json()?;
     let pair = |one: IdentityRequest| (one.issuer.into_string(), one.subject.into_string());
     let those: Vec<(String, String)> = identities.into_iter().map(pair).collect();
-    app.store().identities().replace(&name, &those).await?;
+    app.store().identities().replace_identities(&name, &those).await?;
     // A principal in the cache might act under an identity that is gone.
-    app.accounts().forget();
+    app.accounts().clear_cache();
     let user = app.store().users().get(&name).await?;
-    Ok(Json(UserView::of(&app, user).await?))
+    Ok(Json(UserView::load(&app, user).await?))
 }

@@ -4,28 +4,28 @@ use axum::extract::State;
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
-use sistership_jobs::validated::{ToValidate, Validation};
+use sistership_jobs::validated::{Validation, ValidationInputs};
 use sistership_report::render_validation;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::reports::POLICY;
+use super::reports::REPORT_POLICY;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::web::{Name, Number, Params, Place, accept};
+use crate::web::{Name, Number, PathParams, QueryParams, accept};
 
 const JSON: &str = "application/json";
 const HTML: &str = "text/html";
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn validation_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(validation))
 }
 
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
-struct Query {
+struct ValidationQuery {
     /// `json` or `html`; takes precedence over `Accept`.
     #[param(inline)]
     format: Option<ValidationFormat>,
@@ -49,21 +49,21 @@ enum ValidationFormat {
 )]
 async fn validation(
     State(app): State<App>,
-    Place((model, number)): Place<(Name, Number)>,
-    Params(query): Params<Query>,
+    PathParams((model, number)): PathParams<(Name, Number)>,
+    QueryParams(query): QueryParams<ValidationQuery>,
     headers: HeaderMap,
 ) -> Result<Response> {
     let media = match query.format {
         Some(ValidationFormat::Json) => JSON,
         Some(ValidationFormat::Html) => HTML,
-        None => accept::choose(&headers, &[JSON, HTML])?,
+        None => accept::choose_media(&headers, &[JSON, HTML])?,
     };
     let version = app.store().versions().get(&model, number.get()).await?;
-    let asked = ToValidate::gather(app.archive(), &version).await?;
+    let asked = ValidationInputs::load(app.archive(), &version).await?;
     // Validation simulates and propagates uncertainty, with the memory of a job.
-    let _share = app.job_memory().take(asked.demand(), app.limits().memory_wait).await?;
-    let samples = app.archive().trials(&asked.samples()).await?;
-    let done = app.compute(move || asked.validation(&samples)).await?;
+    let _share = app.job_memory().reserve(asked.memory_demand(), app.limits().memory_wait).await?;
+    let samples = app.archive().read_trials(&asked.recipe_trials()).await?;
+    let done = app.run_blocking(move || asked.run_validation(&samples)).await?;
     let done = done.map_err(|error| Problem::invalid("number", error.to_string()))?;
     let rendered = render_validation(&done).map_err(Problem::internal)?;
     let body = if media == HTML { rendered.html } else { rendered.json.to_string() };
@@ -71,7 +71,7 @@ async fn validation(
     let head = [
         (header::CONTENT_TYPE, media),
         (header::VARY, "accept"),
-        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::CONTENT_SECURITY_POLICY, REPORT_POLICY),
     ];
     Ok((head, body).into_response())
 }

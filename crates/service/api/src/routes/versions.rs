@@ -6,7 +6,7 @@ use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use serde_json::Value;
-use sistership_store::{Page, StoreError};
+use sistership_store::{PageRequest, StoreError};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -14,15 +14,15 @@ use utoipa_axum::routes;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::EntityTags;
-use crate::web::{Conditions, Listing, Name, Number, Paged, Params, Place};
+use crate::web::{Listing, Name, Number, PageQuery, PathParams, QueryParams, RequestConditions};
 use sistership_jobs::verify::{self, Verification};
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn version_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get)).routes(routes!(bytes))
 }
 
 /// Returns the endpoint that takes as long as a refinement.
-pub(super) fn verification() -> OpenApiRouter<App> {
+pub(super) fn verification_route() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(verify_again))
 }
 
@@ -59,7 +59,7 @@ struct VersionDetail {
 }
 
 impl VersionHead {
-    pub(super) fn of(head: sistership_store::VersionHead) -> Self {
+    pub(super) fn from_head(head: sistership_store::VersionHead) -> Self {
         let sistership_store::VersionHead {
             id,
             model,
@@ -79,30 +79,31 @@ impl VersionHead {
         app: &App,
         head: sistership_store::VersionHead,
     ) -> Result<Self> {
-        let reports = app.store().reports().by_version(&head.id, &Page::first(1)).await?;
+        let reports =
+            app.store().reports().by_version(&head.id, &PageRequest::first_page(1)).await?;
         let report = reports.items.into_iter().next().map(|report| report.id);
-        Ok(Self { report, ..Self::of(head) })
+        Ok(Self { report, ..Self::from_head(head) })
     }
 }
 
 /// List the versions of a model, the latest first
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions", tag = "models",
-    params(("model" = inline(Name), Path), Paged),
+    params(("model" = inline(Name), Path), PageQuery),
     responses((status = 200, body = Listing<VersionHead>))
 )]
 async fn list(
     State(app): State<App>,
-    Place(model): Place<Name>,
-    Params(query): Params<Paged>,
+    PathParams(model): PathParams<Name>,
+    QueryParams(query): QueryParams<PageQuery>,
 ) -> Result<Json<Listing<VersionHead>>> {
-    exists(&app, &model).await?;
-    let versions = app.store().versions().list(&model, &query.page()?).await?;
-    Ok(Json(Listing::of(versions, VersionHead::of)))
+    check_exists(&app, &model).await?;
+    let versions = app.store().versions().list(&model, &query.requested_page()?).await?;
+    Ok(Json(Listing::from_list(versions, VersionHead::from_head)))
 }
 
 /// Checks that a model exists. Before its first version, that of its ship is enough.
-pub(super) async fn exists(app: &App, model: &str) -> Result<()> {
+pub(super) async fn check_exists(app: &App, model: &str) -> Result<()> {
     match app.store().versions().latest(model).await {
         // A ship without versions has an empty list, but an unknown name is an error.
         Err(StoreError::NotFound { .. }) => Ok(app.store().ships().get(model).await.map(drop)?),
@@ -118,7 +119,7 @@ pub(super) async fn exists(app: &App, model: &str) -> Result<()> {
 )]
 async fn get(
     State(app): State<App>,
-    Place((model, number)): Place<(Name, Number)>,
+    PathParams((model, number)): PathParams<(Name, Number)>,
 ) -> Result<Json<VersionDetail>> {
     let version = app.store().versions().get(&model, number.get()).await?;
     let document = serde_json::from_str(&version.document).map_err(Problem::internal)?;
@@ -139,15 +140,15 @@ async fn get(
 )]
 async fn bytes(
     State(app): State<App>,
-    Place((model, number)): Place<(Name, Number)>,
-    conditions: Conditions,
+    PathParams((model, number)): PathParams<(Name, Number)>,
+    conditions: RequestConditions,
 ) -> Result<Response> {
     let version = app.store().versions().get(&model, number.get()).await?;
     // The document never changes, so that its hash is its ETag.
     let etag = format!("\"{}\"", version.head.sha256);
     let head =
         [(header::ETAG, etag.clone()), (header::CONTENT_TYPE, "application/json".to_owned())];
-    match conditions.has(&etag) {
+    match conditions.matches_current(&etag) {
         true => Ok((StatusCode::NOT_MODIFIED, head).into_response()),
         false => Ok((head, version.document).into_response()),
     }
@@ -162,13 +163,16 @@ async fn bytes(
 )]
 async fn verify_again(
     State(app): State<App>,
-    Place((model, number)): Place<(Name, Number)>,
+    PathParams((model, number)): PathParams<(Name, Number)>,
 ) -> Result<Json<Verification>> {
     let number = number.get();
     // The request does the work of a job, within the memory of the jobs.
     let _share = app
         .job_memory()
-        .take(verify::demand(app.archive(), &model, number).await?, app.limits().memory_wait)
+        .reserve(
+            verify::memory_demand(app.archive(), &model, number).await?,
+            app.limits().memory_wait,
+        )
         .await?;
-    Ok(Json(verify::verify(app.archive(), &model, number).await?))
+    Ok(Json(verify::verify_version(app.archive(), &model, number).await?))
 }

@@ -6,7 +6,7 @@ use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use sistership_auth::secret;
+use sistership_auth::random_secret;
 use sistership_store::{Delivery, NewWebhook, Webhook};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -15,12 +15,12 @@ use utoipa_axum::routes;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::{Positive, Remark, WebAddress};
-use crate::web::{Id, Listing, Name, Paged, Params, Payload, Place};
+use crate::web::{DocumentBody, Id, Listing, Name, PageQuery, PathParams, QueryParams};
 use sistership_jobs::condition::DRIFT_LIMIT;
 use sistership_jobs::webhooks::check_url;
-use sistership_web_support::reply::path;
+use sistership_web_support::reply::encode_path;
 
-pub(super) fn routes() -> OpenApiRouter<App> {
+pub(super) fn webhook_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .routes(routes!(list, create))
         .routes(routes!(get, end))
@@ -120,8 +120,8 @@ struct DeliveryView {
 }
 
 impl WebhookView {
-    async fn of(app: &App, row: Webhook) -> Result<Self> {
-        let events = app.store().webhooks().events(&row.id).await?;
+    async fn load(app: &App, row: Webhook) -> Result<Self> {
+        let events = app.store().webhooks().list_events(&row.id).await?;
         let Webhook { id, title, url, ship, drift_above, created_us, ended_us, .. } = row;
         // The remaining columns hold the secret and stay internal.
         Ok(Self { id, title, url, ship, events, drift_above, created_us, ended_us })
@@ -129,7 +129,7 @@ impl WebhookView {
 }
 
 impl DeliveryView {
-    fn of(row: Delivery) -> Self {
+    fn from_delivery(row: Delivery) -> Self {
         let Delivery {
             id, event, body, created_us, attempts, due_us, delivered_us, answer, ..
         } = row;
@@ -140,18 +140,18 @@ impl DeliveryView {
 }
 
 /// List the webhooks by id, including ended ones
-#[utoipa::path(get, path = "/v1/webhooks", tag = "webhooks", params(Paged),
+#[utoipa::path(get, path = "/v1/webhooks", tag = "webhooks", params(PageQuery),
     responses((status = 200, body = Listing<WebhookView>)))]
 async fn list(
     State(app): State<App>,
-    Params(query): Params<Paged>,
+    QueryParams(query): QueryParams<PageQuery>,
 ) -> Result<Json<Listing<WebhookView>>> {
-    let webhooks = app.store().webhooks().list(&query.page()?).await?;
+    let webhooks = app.store().webhooks().list(&query.requested_page()?).await?;
     let mut items = Vec::new();
     for webhook in webhooks.items {
-        items.push(WebhookView::of(&app, webhook).await?);
+        items.push(WebhookView::load(&app, webhook).await?);
     }
-    let next = webhooks.next.as_ref().and_then(crate::web::page::cursor);
+    let next = webhooks.next.as_ref().and_then(crate::web::page::encode_cursor);
     Ok(Json(Listing { items, next }))
 }
 
@@ -165,22 +165,22 @@ async fn list(
     post, path = "/v1/webhooks", tag = "webhooks", request_body = WebhookRequest,
     responses((status = 201, body = NewWebhookView, headers(("Location" = String))))
 )]
-async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
-    let WebhookRequest { title, url, ship, events, drift_above } = payload.json()?;
+async fn create(State(app): State<App>, payload: DocumentBody) -> Result<Response> {
+    let WebhookRequest { title, url, ship, events, drift_above } = payload.parse_json()?;
     // The address is checked again at each delivery, as a name may lead elsewhere later.
     check_url(&url, app.limits().webhooks_private)
         .map_err(|message| Problem::invalid("url", message))?;
     let new = NewWebhook {
         title: title.into_string(),
         url: url.into_string(),
-        secret: secret().map_err(Problem::internal)?,
+        secret: random_secret().map_err(Problem::internal)?,
         ship: ship.map(Name::into_string),
         drift_above: drift_above.map_or(DRIFT_LIMIT, Positive::get),
         events: events.into_iter().map(|event| event.as_str().to_owned()).collect(),
     };
     let row = app.store().webhooks().create(&new).await?;
-    let location = path(&["v1", "webhooks", &row.id]);
-    let about = WebhookView::of(&app, row).await?;
+    let location = encode_path(&["v1", "webhooks", &row.id]);
+    let about = WebhookView::load(&app, row).await?;
     let view = NewWebhookView { secret: new.secret, about };
     // Neither the browser nor a proxy may store the secret.
     let head = [(header::LOCATION, location), (header::CACHE_CONTROL, "no-store".to_owned())];
@@ -190,33 +190,33 @@ async fn create(State(app): State<App>, payload: Payload) -> Result<Response> {
 /// Get a webhook
 #[utoipa::path(get, path = "/v1/webhooks/{id}", tag = "webhooks",
     params(("id" = inline(Id), Path)), responses((status = 200, body = WebhookView)))]
-async fn get(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<WebhookView>> {
+async fn get(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<WebhookView>> {
     let webhook = app.store().webhooks().get(&id).await?;
-    Ok(Json(WebhookView::of(&app, webhook).await?))
+    Ok(Json(WebhookView::load(&app, webhook).await?))
 }
 
 /// Delete a webhook permanently
 #[utoipa::path(delete, path = "/v1/webhooks/{id}", tag = "webhooks",
     params(("id" = inline(Id), Path)), responses((status = 200, body = WebhookView)))]
-async fn end(State(app): State<App>, Place(id): Place<Id>) -> Result<Json<WebhookView>> {
-    let webhook = app.store().webhooks().end(&id).await?;
-    Ok(Json(WebhookView::of(&app, webhook).await?))
+async fn end(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<WebhookView>> {
+    let webhook = app.store().webhooks().end_webhook(&id).await?;
+    Ok(Json(WebhookView::load(&app, webhook).await?))
 }
 
 /// List the deliveries of a webhook, the latest first
 #[utoipa::path(
     get, path = "/v1/webhooks/{id}/deliveries", tag = "webhooks",
-    params(("id" = inline(Id), Path), Paged),
+    params(("id" = inline(Id), Path), PageQuery),
     responses((status = 200, body = Listing<DeliveryView>))
 )]
 async fn deliveries(
     State(app): State<App>,
-    Place(id): Place<Id>,
-    Params(query): Params<Paged>,
+    PathParams(id): PathParams<Id>,
+    QueryParams(query): QueryParams<PageQuery>,
 ) -> Result<Json<Listing<DeliveryView>>> {
     app.store().webhooks().get(&id).await?;
-    let deliveries = app.store().webhooks().deliveries(&id, &query.page()?).await?;
-    Ok(Json(Listing::of(deliveries, DeliveryView::of)))
+    let deliveries = app.store().webhooks().list_deliveries(&id, &query.requested_page()?).await?;
+    Ok(Json(Listing::from_list(deliveries, DeliveryView::from_delivery)))
 }
 
 /// Send a delivery again that has not arrived
@@ -227,7 +227,9 @@ async fn deliveries(
 )]
 async fn again(
     State(app): State<App>,
-    Place((id, delivery)): Place<(Id, Id)>,
+    PathParams((id, delivery)): PathParams<(Id, Id)>,
 ) -> Result<Json<DeliveryView>> {
-    Ok(Json(DeliveryView::of(app.store().webhooks().again(&id, &delivery).await?)))
+    Ok(Json(DeliveryView::from_delivery(
+        app.store().webhooks().retry_delivery(&id, &delivery).await?,
+    )))
 }

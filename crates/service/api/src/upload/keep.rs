@@ -4,32 +4,32 @@ use std::io::BufWriter;
 
 use bytes::Bytes;
 use sistership_store::{
-    Inserted, Job, NewJob, NewTrial, Objects, StoreError, Trial, is_out_of_space,
+    InsertOutcome, Job, NewJob, NewTrial, ObjectStorage, StoreError, Trial, is_out_of_space,
 };
 use sistership_trials::samples::{self, SamplesError};
 use sistership_trials::{ManifestFile, Refusal, read_trial};
 use tempfile::NamedTempFile;
 
-use super::reading::lost;
-use super::room::room;
+use super::reading::read_failure;
+use super::room::reserve_memory;
 use crate::app::App;
-use crate::jobs::{DIAGNOSIS, DiagnosisJob};
+use crate::jobs::{DIAGNOSIS_JOB_KIND, DiagnosisJob};
 use crate::problem::{Problem, Result};
-use crate::rights::on_ship;
+use crate::rights::check_ship_role;
 use sistership_auth::Role;
 use sistership_jobs::budget;
-use sistership_jobs::line::{CHAMPION, alias};
-use sistership_web_support::spool::{Spool, temporary};
-use sistership_web_support::upload::{Arrived, Upload};
+use sistership_jobs::line::{CHAMPION, find_alias};
+use sistership_web_support::spool::{SpoolFolder, temporary_file};
+use sistership_web_support::upload::{TrialUpload, UploadedTrial};
 
 /// Number of attempts to store samples again that were removed before their rows were written.
 const TRIES: usize = 3;
 
 /// A stored trial, with the information whether it was new.
-pub(crate) type Kept = Inserted<Trial>;
+pub(crate) type StoredTrial = InsertOutcome<Trial>;
 
 /// A trial that has passed every check.
-struct Accepted {
+struct AcceptedTrial {
     new: NewTrial,
     /// Its samples as they will be stored, on disk, so that the trials of one upload are not in
     /// memory together.
@@ -38,19 +38,22 @@ struct Accepted {
 
 /// Stores the trials of an upload: all of them, or none if one is refused. The job that diagnoses
 /// the ship's champion on the new ones is queued with them.
-pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option<Job>)> {
+pub(crate) async fn store_upload(
+    app: &App,
+    upload: TrialUpload,
+) -> Result<(Vec<StoredTrial>, Option<Job>)> {
     // The ship may be in the body, so that the router could not check the role.
     let (ship, diagnose) = (upload.ship().to_owned(), upload.diagnose);
-    on_ship(app.store(), Role::Engineer, &ship).await?;
+    check_ship_role(app.store(), Role::Engineer, &ship).await?;
     match app.store().ships().get(&ship).await {
-        Err(StoreError::NotFound { .. }) => return Err(no_ship(&ship)),
+        Err(StoreError::NotFound { .. }) => return Err(unknown_ship(&ship)),
         other => drop(other?),
     }
-    let accepted = accept(&upload, app).await?;
-    let champion = if diagnose { diagnosable(app, &ship).await? } else { None };
-    let job = |kept: &[Kept]| champion.and_then(|number| follow_up(&ship, number, kept));
+    let accepted = read_upload(&upload, app).await?;
+    let champion = if diagnose { champion_number(app, &ship).await? } else { None };
+    let job = |kept: &[StoredTrial]| champion.and_then(|number| follow_up_job(&ship, number, kept));
     for _ in 0..TRIES {
-        let rows = rows(&accepted, put_samples(app.objects(), &accepted).await?);
+        let rows = trial_rows(&accepted, put_samples(app.objects(), &accepted).await?);
         match app.store().trials().insert_all_and_enqueue(&rows, app.objects(), job).await {
             // The objects had existed without a row and were removed as garbage between the two
             // steps.
@@ -62,13 +65,13 @@ pub(crate) async fn keep(app: &App, upload: Upload) -> Result<(Vec<Kept>, Option
 }
 
 /// Returns the number of the ship's champion.
-async fn diagnosable(app: &App, ship: &str) -> Result<Option<i64>> {
-    Ok(alias(app.store(), ship, CHAMPION).await?.map(|champion| champion.version_number))
+async fn champion_number(app: &App, ship: &str) -> Result<Option<i64>> {
+    Ok(find_alias(app.store(), ship, CHAMPION).await?.map(|champion| champion.version_number))
 }
 
 /// Returns the job that diagnoses a champion on the new trials, and on these together with earlier
 /// ones.
-fn follow_up(ship: &str, number: i64, kept: &[Kept]) -> Option<NewJob> {
+fn follow_up_job(ship: &str, number: i64, kept: &[StoredTrial]) -> Option<NewJob> {
     let trials: Vec<String> =
         kept.iter().filter(|trial| trial.new).map(|trial| trial.row.id.clone()).collect();
     let (ship, settings) = (ship.to_owned(), Default::default());
@@ -77,10 +80,10 @@ fn follow_up(ship: &str, number: i64, kept: &[Kept]) -> Option<NewJob> {
         DiagnosisJob { ship: ship.clone(), number, trials, with_earlier, settings, key_sha256 };
     // An upload without a new trial needs no diagnosis.
     let request = serde_json::to_string(&asked).ok().filter(|_| !asked.trials.is_empty())?;
-    Some(NewJob { kind: DIAGNOSIS.to_owned(), ship: Some(ship), request })
+    Some(NewJob { kind: DIAGNOSIS_JOB_KIND.to_owned(), ship: Some(ship), request })
 }
 
-fn no_ship(ship: &str) -> Problem {
+fn unknown_ship(ship: &str) -> Problem {
     Problem::invalid(
         "ship",
         format!("there is no ship `{ship}`; create it with POST /v1/ships first, or mend the name"),
@@ -91,16 +94,16 @@ fn no_ship(ship: &str) -> Problem {
 ///
 /// # Errors
 /// Returns the refusals of all files together.
-async fn accept(upload: &Upload, app: &App) -> Result<Vec<Accepted>> {
+async fn read_upload(upload: &TrialUpload, app: &App) -> Result<Vec<AcceptedTrial>> {
     let (mut accepted, mut refused) = (Vec::new(), Vec::new());
     for mut trial in upload.trials() {
         // The share of memory is held until the samples are on disk.
-        let (share, inner) = (room(app, &mut trial).await?, app.clone());
+        let (share, inner) = (reserve_memory(app, &mut trial).await?, app.clone());
         let read = move || {
             let _share = share;
-            read(&trial, inner.spool())
+            read_arrived(&trial, inner.spool())
         };
-        match app.compute(read).await?? {
+        match app.run_blocking(read).await?? {
             Ok(trial) => accepted.push(trial),
             Err(refusal) => refused.push(refusal),
         }
@@ -109,32 +112,35 @@ async fn accept(upload: &Upload, app: &App) -> Result<Vec<Accepted>> {
 }
 
 /// Reads a trial, and writes its samples to a temporary file.
-fn read(arrived: &Arrived, spool: &Spool) -> Result<std::result::Result<Accepted, Refusal>> {
-    let source = arrived.open().map_err(|error| lost(&arrived.name, &error));
+fn read_arrived(
+    arrived: &UploadedTrial,
+    spool: &SpoolFolder,
+) -> Result<std::result::Result<AcceptedTrial, Refusal>> {
+    let source = arrived.open().map_err(|error| read_failure(&arrived.name, &error));
     match source.and_then(|source| read_trial(source, &arrived.mapping)) {
-        Ok(trial) => Accepted::new(&arrived.manifest, &trial, spool).map(Ok),
+        Ok(trial) => AcceptedTrial::new(&arrived.manifest, &trial, spool).map(Ok),
         Err(refusal) => Ok(Err(refusal)),
     }
 }
 
-impl Accepted {
+impl AcceptedTrial {
     fn new(
         only: &ManifestFile,
         trial: &sistership_model::trial::Trial,
-        spool: &Spool,
+        spool: &SpoolFolder,
     ) -> Result<Self> {
-        let samples = temporary(spool)?;
-        samples::write_parquet(BufWriter::new(samples.as_file()), trial).map_err(unwritten)?;
+        let samples = temporary_file(spool)?;
+        samples::write_parquet(BufWriter::new(samples.as_file()), trial).map_err(write_problem)?;
         let new = NewTrial {
             ship: only.manifest.ship.clone(),
             sha256: String::new(),
             name: trial.name.clone(),
-            manifest: json(only)?,
-            conventions: json(&only.manifest.conventions)?,
+            manifest: to_json(only)?,
+            conventions: to_json(&only.manifest.conventions)?,
             manoeuvre: trial.manoeuvre.clone(),
             sample_rows: i64::try_from(trial.len()).map_err(Problem::internal)?,
             duration_s: trial.duration_s(),
-            warnings: json(&trial.warnings)?,
+            warnings: to_json(&trial.warnings)?,
             object_key: String::new(),
         };
         Ok(Self { new, samples })
@@ -142,7 +148,7 @@ impl Accepted {
 }
 
 /// Maps an error of writing samples: the lack of space is among its causes.
-fn unwritten(error: SamplesError) -> Problem {
+fn write_problem(error: SamplesError) -> Problem {
     let first: &(dyn std::error::Error + 'static) = &error;
     let mut causes = std::iter::successors(Some(first), |cause| cause.source());
     match causes
@@ -154,25 +160,25 @@ fn unwritten(error: SamplesError) -> Problem {
     }
 }
 
-fn json(value: &impl serde::Serialize) -> Result<String> {
+fn to_json(value: &impl serde::Serialize) -> Result<String> {
     serde_json::to_string(value).map_err(Problem::internal)
 }
 
 /// Stores the samples; their rows are written afterwards, so that a row always has its samples.
-async fn put_samples(objects: &Objects, accepted: &[Accepted]) -> Result<Vec<String>> {
+async fn put_samples(objects: &ObjectStorage, accepted: &[AcceptedTrial]) -> Result<Vec<String>> {
     let mut keys = Vec::with_capacity(accepted.len());
     for trial in accepted {
         let size = trial.samples.as_file().metadata().map_err(Problem::internal)?.len();
         // The memory of one file at a time.
-        let _share = budget::share(size).await?;
+        let _share = budget::reserve_share(size).await?;
         let bytes = tokio::fs::read(trial.samples.path()).await.map_err(Problem::internal)?;
         keys.push(objects.put(Bytes::from(bytes)).await?);
     }
     Ok(keys)
 }
 
-fn rows(accepted: &[Accepted], keys: Vec<String>) -> Vec<NewTrial> {
-    let row = |(trial, key): (&Accepted, String)| NewTrial {
+fn trial_rows(accepted: &[AcceptedTrial], keys: Vec<String>) -> Vec<NewTrial> {
+    let row = |(trial, key): (&AcceptedTrial, String)| NewTrial {
         sha256: key.clone(),
         object_key: key,
         ..trial.new.clone()

@@ -4,7 +4,9 @@ mod keep;
 mod reading;
 mod room;
 
-pub(crate) use keep::{Kept, keep};
-pub(crate) use reading::{checked, each};
-pub(crate) use sistership_web_support::spool::{Spooled, hex, spool, unwritten};
-pub(crate) use sistership_web_support::upload::{RawQuery, Upload};
+pub(crate) use keep::{StoredTrial, store_upload};
+pub(crate) use reading::{check_upload, read_each};
+pub(crate) use sistership_web_support::spool::{
+    SpooledFile, hex_digits, spool_stream, write_problem,
+};
+pub(crate) use sistership_web_support::upload::{RawQuery, TrialUpload};

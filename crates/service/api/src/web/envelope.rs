@@ -13,34 +13,37 @@ use uuid::Uuid;
 
 use crate::app::App;
 use crate::problem::{MEDIA, Problem};
-use sistership_listener::Peer;
-use sistership_web_support::large::counted;
+use sistership_listener::PeerInfo;
+use sistership_web_support::large::count_large;
 
 /// Gives the request an id, logs and counts it, and turns every error into a problem with that id.
-pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Next) -> Response {
+pub(crate) async fn wrap_request(State(app): State<App>, request: Request, next: Next) -> Response {
     let id = Uuid::now_v7();
-    let (method, route) = (request.method().clone(), route(&request));
-    let peer = request.extensions().get::<Peer>().cloned();
+    let (method, route) = (request.method().clone(), route_path(&request));
+    let peer = request.extensions().get::<PeerInfo>().cloned();
     let for_people = is_for_people(&request);
     let span = tracing::info_span!("request", %id, method = %request.method(), path = request.uri().path());
     async move {
         let start = Instant::now();
         // The memory that the request takes is released when this scope ends, whatever the handler
         // does.
-        let response = app.held().scope(async { counted(next.run(request).await).await }).await;
+        let response = app
+            .request_memory()
+            .run_async(async { count_large(next.run(request).await).await })
+            .await;
         let slow = peer.is_some_and(|peer| peer.is_too_slow());
-        let response = finish(if slow { too_slow() } else { response }, id, for_people);
+        let response = finish_response(if slow { too_slow() } else { response }, id, for_people);
         let elapsed = start.elapsed();
         // From then on the maintenance checks for space more often.
         if response.status() == StatusCode::INSUFFICIENT_STORAGE {
-            app.no_room().store(true, Ordering::Relaxed);
+            app.is_out_of_space().store(true, Ordering::Relaxed);
         }
         tracing::info!(
             status = response.status().as_u16(),
             elapsed_ms = elapsed.as_millis() as u64,
             "answered"
         );
-        app.metrics().answered(&method, &route, response.status(), elapsed);
+        app.metrics().count_answer(&method, &route, response.status(), elapsed);
         response
     }
     .instrument(span)
@@ -48,7 +51,7 @@ pub(crate) async fn envelope(State(app): State<App>, request: Request, next: Nex
 }
 
 /// The path as the router declares it, with names in place of ids.
-fn route(request: &Request) -> String {
+fn route_path(request: &Request) -> String {
     request.extensions().get::<MatchedPath>().map_or("none", MatchedPath::as_str).to_owned()
 }
 
@@ -59,9 +62,9 @@ fn is_for_people(request: &Request) -> bool {
     page && !request.uri().path().starts_with("/v1")
 }
 
-fn finish(response: Response, id: Uuid, for_people: bool) -> Response {
+fn finish_response(response: Response, id: Uuid, for_people: bool) -> Response {
     let failed = response.status().is_client_error() || response.status().is_server_error();
-    let mut response = if failed { problem(response, id, for_people) } else { response };
+    let mut response = if failed { problem_response(response, id, for_people) } else { response };
     let headers = response.headers_mut();
     if let Ok(id) = HeaderValue::try_from(id.to_string()) {
         headers.insert("x-request-id", id);
@@ -79,14 +82,14 @@ fn too_slow() -> Response {
 
 /// Returns the response with a problem as its body; its other headers stay (`Allow`,
 /// `WWW-Authenticate`).
-fn problem(response: Response, id: Uuid, for_people: bool) -> Response {
+fn problem_response(response: Response, id: Uuid, for_people: bool) -> Response {
     let (mut parts, _) = response.into_parts();
     let mut problem = parts
         .extensions
         .remove::<Problem>()
-        .unwrap_or_else(|| Problem::new(parts.status, reason(parts.status)));
+        .unwrap_or_else(|| Problem::new(parts.status, status_advice(parts.status)));
     problem.instance = Some(format!("urn:uuid:{id}"));
-    let page = for_people.then(|| problem.page()).flatten();
+    let page = for_people.then(|| problem.to_page()).flatten();
     let (fresh, body) = problem.into_response().into_parts();
     // The length is that of the body that is replaced.
     parts.headers.remove(header::CONTENT_LENGTH);
@@ -97,7 +100,7 @@ fn problem(response: Response, id: Uuid, for_people: bool) -> Response {
     };
     let head = [
         (header::CONTENT_TYPE, "text/html; charset=utf-8"),
-        (header::CONTENT_SECURITY_POLICY, sistership_pages::policy()),
+        (header::CONTENT_SECURITY_POLICY, sistership_pages::security_policy()),
     ];
     head.into_iter().for_each(|(name, value)| {
         parts.headers.insert(name, HeaderValue::from_static(value));
@@ -107,7 +110,7 @@ fn problem(response: Response, id: Uuid, for_people: bool) -> Response {
 }
 
 /// Advice on an error that a layer made.
-fn reason(status: StatusCode) -> &'static str {
+fn status_advice(status: StatusCode) -> &'static str {
     match status {
         StatusCode::METHOD_NOT_ALLOWED => {
             "this path does not know the method; the header `Allow` lists those it knows"
@@ -124,7 +127,7 @@ fn reason(status: StatusCode) -> &'static str {
 }
 
 /// Answer to a path without a route.
-pub(crate) async fn nowhere(request: Request) -> Problem {
+pub(crate) async fn no_route(request: Request) -> Problem {
     Problem::not_found(format!(
         "there is no {}; /openapi.json lists what there is",
         request.uri().path()
@@ -132,7 +135,7 @@ pub(crate) async fn nowhere(request: Request) -> Problem {
 }
 
 /// Answer if a handler panicked.
-pub(crate) fn panicked(reason: Box<dyn std::any::Any + Send>) -> Response {
+pub(crate) fn panic_response(reason: Box<dyn std::any::Any + Send>) -> Response {
     let text = reason
         .downcast_ref::<String>()
         .map(String::as_str)

@@ -8,74 +8,81 @@ use axum::http::request::Parts;
 use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use futures::FutureExt as _;
-use sistership_store::{Begun, PROLONG_EVERY, Store, Ticket, UnitOfWork, sha256_hex};
+use sistership_store::{PROLONG_EVERY, RequestClaim, RequestTicket, Store, UnitOfWork, sha256_hex};
 use tracing::Instrument as _;
 
-use super::{Reply, field::RequestKey};
+use super::{StoredReply, field::RequestKey};
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
-use crate::rights::{Kind, carried, current};
-use sistership_jobs::budget::{Held, carried_on};
+use crate::rights::{AuthenticationKind, carry_actor, current_actor};
+use sistership_jobs::budget::{RequestMemory, run_with_request_memory};
 
 const HEADER: &str = "idempotency-key";
 
 /// Identity of a request: its key, if it has one, and the method, path and query it belongs to.
 #[derive(Debug)]
-pub(crate) struct Key {
+pub(crate) struct IdempotencyKey {
     /// Key of the caller.
     pub value: Option<String>,
     scope: String,
 }
 
-impl<S: Send + Sync> FromRequestParts<S> for Key {
+impl<S: Send + Sync> FromRequestParts<S> for IdempotencyKey {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self> {
-        let value = parts.headers.get(HEADER).map(check).transpose()?;
+        let value = parts.headers.get(HEADER).map(check_key).transpose()?;
         let query = parts.uri.query().unwrap_or_default();
         let scope = format!("{} {}", parts.method, parts.uri.path());
         Ok(Self { value, scope: if query.is_empty() { scope } else { format!("{scope}?{query}") } })
     }
 }
 
-fn check(value: &HeaderValue) -> Result<String> {
+fn check_key(value: &HeaderValue) -> Result<String> {
     let key = value.to_str().unwrap_or_default().parse::<RequestKey>();
     key.map(RequestKey::into_string).map_err(|message| {
         Problem::bad_request(format!("Idempotency-Key: {message}"))
-            .with(Fault::at("Idempotency-Key", message))
+            .with_fault(Fault::at_field("Idempotency-Key", message))
     })
 }
 
-impl Key {
+impl IdempotencyKey {
     /// Carries a request out, once for each key. The work gets a handle of the server whose store
     /// keeps all that is written together with the answer, or nothing of it. It runs to its end
     /// even if the caller hangs up.
-    pub(crate) async fn once<W, F>(self, app: &App, body: &[u8], work: W) -> Result<Response>
+    pub(crate) async fn run_once<W, F>(self, app: &App, body: &[u8], work: W) -> Result<Response>
     where
         W: FnOnce(App) -> F + Send + 'static,
-        F: Future<Output = Result<Reply>> + Send + 'static,
+        F: Future<Output = Result<StoredReply>> + Send + 'static,
     {
-        let scope = own(self.scope);
+        let scope = caller_scope(self.scope);
         let ticket = match &self.value {
             None => None,
             Some(key) => {
-                match app.store().idempotency().begin(&scope, key, &sha256_hex(body)).await? {
-                    Begun::New(ticket) => Some(ticket),
-                    Begun::Replay { body, .. } => return replay(&body),
-                    Begun::InProgress => return Err(in_progress()),
-                    Begun::Mismatch => return Err(mismatch()),
+                match app
+                    .store()
+                    .idempotency()
+                    .begin_request(&scope, key, &sha256_hex(body))
+                    .await?
+                {
+                    RequestClaim::New(ticket) => Some(ticket),
+                    RequestClaim::Replay { body, .. } => return replay_reply(&body),
+                    RequestClaim::InProgress => return Err(in_progress()),
+                    RequestClaim::Mismatch => return Err(key_mismatch()),
                 }
             }
         };
-        Ok(finished(carried_out(app.clone(), ticket, work)).await?.into_response())
+        Ok(detach(carry_out(app.clone(), ticket, work)).await?.into_response())
     }
 }
 
 /// Scope of a key: the same key sent under another name gets no answer of somebody else.
-fn own(scope: String) -> String {
-    match current().map(|acting| acting.principal) {
+fn caller_scope(scope: String) -> String {
+    match current_actor().map(|acting| acting.principal) {
         // Local programs and the server's key act for one owner, and share a scope.
-        Some(who) if !matches!(who.kind, Kind::Local | Kind::ServerKey) => {
+        Some(who)
+            if !matches!(who.kind, AuthenticationKind::Local | AuthenticationKind::ServerKey) =>
+        {
             format!("{scope} by {}", who.name)
         }
         _ => scope,
@@ -84,51 +91,52 @@ fn own(scope: String) -> String {
 
 /// Waits for work that goes on even if the caller does not wait. The future is boxed before it is
 /// moved, as it is large.
-fn finished<T: Send + 'static>(
+fn detach<T: Send + 'static>(
     work: impl Future<Output = Result<T>> + Send + 'static,
 ) -> impl Future<Output = Result<T>> + Send {
-    let work = carried_on(Held::current(), carried(work.boxed())).in_current_span();
+    let work = run_with_request_memory(RequestMemory::current(), carry_actor(work.boxed()))
+        .in_current_span();
     async move { tokio::spawn(work).await.map_err(Problem::internal)? }
 }
 
 /// Commits the work with its answer; a request that failed is forgotten, so that it can be tried
 /// again.
-async fn carried_out<W, F>(app: App, ticket: Option<Ticket>, work: W) -> Result<Reply>
+async fn carry_out<W, F>(app: App, ticket: Option<RequestTicket>, work: W) -> Result<StoredReply>
 where
     W: FnOnce(App) -> F,
-    F: Future<Output = Result<Reply>> + Send + 'static,
+    F: Future<Output = Result<StoredReply>> + Send + 'static,
 {
-    let unit = app.store().unit();
-    let work = finished(work(app.within(unit.store())));
-    let kept = match held(app.store(), ticket.as_ref(), work).await {
-        Ok(reply) => keep(unit, ticket.as_ref(), reply).await,
+    let unit = app.store().begin_unit();
+    let work = detach(work(app.with_store(unit.store())));
+    let kept = match with_ticket(app.store(), ticket.as_ref(), work).await {
+        Ok(reply) => commit_reply(unit, ticket.as_ref(), reply).await,
         Err(problem) => {
-            unit.undo().await;
+            unit.rollback().await;
             // After the commit only: a worker that wakes earlier would not find the job.
             Err(problem)
         }
     };
     match (&kept, &ticket) {
         (Ok(reply), _) if reply.queued => app.wake_all(),
-        (Err(_), Some(ticket)) => abandon(app.store(), ticket).await,
+        (Err(_), Some(ticket)) => abandon_ticket(app.store(), ticket).await,
         _ => {}
     }
     kept
 }
 
 /// Returns the outcome of the work and keeps the ticket alive meanwhile.
-async fn held(
+async fn with_ticket(
     store: &Store,
-    ticket: Option<&Ticket>,
-    work: impl Future<Output = Result<Reply>>,
-) -> Result<Reply> {
+    ticket: Option<&RequestTicket>,
+    work: impl Future<Output = Result<StoredReply>>,
+) -> Result<StoredReply> {
     let Some(ticket) = ticket else { return work.await };
     // The ticket expires unless it is renewed, so that a request whose process has ended can be
     // repeated.
     let prolonging = async {
         loop {
             tokio::time::sleep(PROLONG_EVERY).await;
-            if let Err(error) = store.idempotency().prolong(ticket).await {
+            if let Err(error) = store.idempotency().prolong_ticket(ticket).await {
                 tracing::warn!(%error, "a request could not say that it goes on");
             }
         }
@@ -140,21 +148,25 @@ async fn held(
     }
 }
 
-async fn keep(unit: UnitOfWork, ticket: Option<&Ticket>, reply: Reply) -> Result<Reply> {
+async fn commit_reply(
+    unit: UnitOfWork,
+    ticket: Option<&RequestTicket>,
+    reply: StoredReply,
+) -> Result<StoredReply> {
     let text = serde_json::to_string(&reply).map_err(Problem::internal)?;
-    unit.keep(ticket.map(|ticket| (ticket, i64::from(reply.status), text.as_str()))).await?;
+    unit.commit(ticket.map(|ticket| (ticket, i64::from(reply.status), text.as_str()))).await?;
     Ok(reply)
 }
 
 /// Gives up a ticket. If that fails, a later request takes it over once it has expired.
-async fn abandon(store: &Store, ticket: &Ticket) {
-    if let Err(error) = store.idempotency().abandon(ticket).await {
+async fn abandon_ticket(store: &Store, ticket: &RequestTicket) {
+    if let Err(error) = store.idempotency().abandon_ticket(ticket).await {
         tracing::warn!(%error, "a request that came to nothing could not be forgotten");
     }
 }
 
-fn replay(text: &str) -> Result<Response> {
-    let reply: Reply = serde_json::from_str(text).map_err(Problem::internal)?;
+fn replay_reply(text: &str) -> Result<Response> {
+    let reply: StoredReply = serde_json::from_str(text).map_err(Problem::internal)?;
     let mut response = reply.into_response();
     response.headers_mut().insert("idempotency-replayed", HeaderValue::from_static("true"));
     Ok(response)
@@ -167,7 +179,7 @@ fn in_progress() -> Problem {
     )
 }
 
-fn mismatch() -> Problem {
+fn key_mismatch() -> Problem {
     let detail =
         "this Idempotency-Key was used for another request; use a new key for a new request";
     Problem::new(StatusCode::UNPROCESSABLE_ENTITY, detail)

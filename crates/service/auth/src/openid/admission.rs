@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use crate::{Grant, Role, Scope, check_name};
 use serde_json::{Map, Value};
 
-use crate::openid::failure::{Failure, Result};
+use crate::openid::failure::{Result, SignInFailure};
 
 /// Rules of admission of persons with an account at a provider.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Admission {
+pub struct AdmissionRules {
     /// True if a person without an account here gets one.
     pub auto_create: bool,
     /// Role of every person who signs in at the provider, in addition to those of their groups.
@@ -22,7 +22,7 @@ pub struct Admission {
     pub group_roles: Vec<(String, Grant)>,
 }
 
-impl Admission {
+impl AdmissionRules {
     /// Returns true if the provider's groups determine the roles.
     pub fn by_groups(&self) -> bool {
         !self.group_roles.is_empty()
@@ -30,8 +30,8 @@ impl Admission {
 
     /// Returns the roles of a person with these claims; for each scope the highest role of any
     /// group.
-    pub fn roles(&self, claims: &Map<String, Value>) -> Vec<Grant> {
-        let groups = words(claims.get(&self.groups_claim));
+    pub fn granted_roles(&self, claims: &Map<String, Value>) -> Vec<Grant> {
+        let groups = text_list(claims.get(&self.groups_claim));
         let given = self.group_roles.iter().filter(|(group, _)| groups.contains(&group.as_str()));
         let given = given.map(|(_, grant)| grant).chain(&self.default_role);
         // Ordered by scope, so that the same groups give the same list.
@@ -46,15 +46,17 @@ impl Admission {
     /// Returns true if the claims have the name and the groups that are needed; otherwise the
     /// UserInfo endpoint may have them.
     pub fn is_answered_by(&self, claims: &Map<String, Value>) -> bool {
-        let named = !self.auto_create || self.called(claims).is_some();
+        let named = !self.auto_create || self.claimed_name(claims).is_some();
         named && (!self.by_groups() || claims.contains_key(&self.groups_claim))
     }
 
     /// Returns the name in the claims, not checked.
-    fn called<'a>(&self, claims: &'a Map<String, Value>) -> Option<&'a str> {
+    fn claimed_name<'a>(&self, claims: &'a Map<String, Value>) -> Option<&'a str> {
         match &self.name_claim {
-            Some(claim) => text(claims, claim),
-            None => text(claims, "preferred_username").or_else(|| text(claims, "email")),
+            Some(claim) => text_claim(claims, claim),
+            None => {
+                text_claim(claims, "preferred_username").or_else(|| text_claim(claims, "email"))
+            }
         }
     }
 
@@ -62,12 +64,12 @@ impl Admission {
     ///
     /// # Errors
     /// Returns an error if the claims have no name, or one that is not valid here.
-    pub fn name(&self, claims: &Map<String, Value>) -> Result<String> {
-        let found = self.called(claims);
+    pub fn account_name(&self, claims: &Map<String, Value>) -> Result<String> {
+        let found = self.claimed_name(claims);
         let claim =
             self.name_claim.as_deref().unwrap_or("preferred_username` or a verified `email");
         let Some(found) = found else {
-            return Err(Failure::Lacking(format!(
+            return Err(SignInFailure::Lacking(format!(
                 "the provider does not say `{claim}`, by which you would have a name here"
             )));
         };
@@ -75,7 +77,7 @@ impl Admission {
         let name = found.to_lowercase();
         match check_name(&name) {
             Ok(()) => Ok(name),
-            Err(why) => Err(Failure::Lacking(format!(
+            Err(why) => Err(SignInFailure::Lacking(format!(
                 "the provider calls you `{}`, and a name here {why}",
                 name.chars().take(64).collect::<String>()
             ))),
@@ -84,7 +86,7 @@ impl Admission {
 }
 
 /// Returns a claim of text; an email address only if the provider has verified it.
-fn text<'a>(claims: &'a Map<String, Value>, claim: &str) -> Option<&'a str> {
+fn text_claim<'a>(claims: &'a Map<String, Value>, claim: &str) -> Option<&'a str> {
     if claim == "email" && claims.get("email_verified") != Some(&Value::Bool(true)) {
         return None;
     }
@@ -92,7 +94,7 @@ fn text<'a>(claims: &'a Map<String, Value>, claim: &str) -> Option<&'a str> {
 }
 
 /// Returns the texts of a list, or a single text as a list of one.
-fn words(value: Option<&Value>) -> Vec<&str> {
+fn text_list(value: Option<&Value>) -> Vec<&str> {
     match value {
         Some(Value::Array(items)) => items.iter().filter_map(Value::as_str).collect(),
         Some(Value::String(word)) => vec![word],
@@ -106,11 +108,11 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    fn admission(group_roles: &[(&str, &str)]) -> Admission {
+    fn admission(group_roles: &[(&str, &str)]) -> AdmissionRules {
         let grant = |&(group, role): &(&str, &str)| (group.to_owned(), role.parse().unwrap());
-        Admission {
+        AdmissionRules {
             auto_create: true,
-            default_role: Some(Grant::everywhere(Role::Reader)),
+            default_role: Some(Grant::on_server(Role::Reader)),
             name_claim: None,
             groups_claim: "groups".into(),
             group_roles: group_roles.iter().map(grant).collect(),
@@ -130,26 +132,27 @@ mod tests {
             ("pilots", "reader@ship:kcs"),
         ];
         let roles = |groups: Value| {
-            let grants = admission(&rules).roles(&claims(json!({ "groups": groups })));
+            let grants = admission(&rules).granted_roles(&claims(json!({ "groups": groups })));
             grants.iter().map(ToString::to_string).collect::<Vec<_>>()
         };
         assert_eq!(roles(json!(["yard", "owners", "other"])), ["approver", "engineer@ship:kcs"]);
         assert_eq!(roles(json!("pilots")), ["reader", "reader@ship:kcs"]);
         assert_eq!(roles(json!(["Yard", 7])), ["reader"]);
         assert_eq!(roles(Value::Null), ["reader"]);
-        let alone = Admission { default_role: None, ..admission(&rules) };
-        assert!(alone.roles(&claims(json!({ "groups": [] }))).is_empty());
+        let alone = AdmissionRules { default_role: None, ..admission(&rules) };
+        assert!(alone.granted_roles(&claims(json!({ "groups": [] }))).is_empty());
     }
 
     #[test]
     fn names_are_those_that_accounts_may_have() {
         let all = admission(&[]);
-        let name = |admission: &Admission, value: Value| admission.name(&claims(value));
+        let name =
+            |admission: &AdmissionRules, value: Value| admission.account_name(&claims(value));
         let both = json!({ "preferred_username": "Ann", "email": "a@b.c", "email_verified": true });
         assert_eq!(name(&all, both.clone()), Ok("ann".into()));
         let mail = json!({ "email": "Ann@Yard.example", "email_verified": true });
         assert_eq!(name(&all, mail), Ok("ann@yard.example".into()));
-        let by_mail = Admission { name_claim: Some("email".into()), ..all.clone() };
+        let by_mail = AdmissionRules { name_claim: Some("email".into()), ..all.clone() };
         assert_eq!(name(&by_mail, both), Ok("a@b.c".into()));
         for wrong in [
             json!({}),
@@ -159,7 +162,7 @@ mod tests {
             json!({ "preferred_username": "local" }),
             json!({ "preferred_username": 7 }),
         ] {
-            assert!(matches!(name(&all, wrong.clone()), Err(Failure::Lacking(_))), "{wrong}");
+            assert!(matches!(name(&all, wrong.clone()), Err(SignInFailure::Lacking(_))), "{wrong}");
         }
     }
 }

@@ -6,8 +6,8 @@ use crate::Grant;
 use clap::Args;
 use serde::Deserialize;
 
-use crate::openid::admission::Admission;
-use crate::openid::settings::{Settings, SettingsError, is_safe, url};
+use crate::openid::admission::AdmissionRules;
+use crate::openid::settings::{ProviderSettings, SettingsError, is_safe, parse_url};
 
 /// Environment variable of the client secret.
 const SECRET: &str = "SISTERSHIP_OIDC_CLIENT_SECRET";
@@ -114,17 +114,17 @@ impl OpenIdArguments {
     ///
     /// # Errors
     /// Returns an error that names all invalid settings.
-    pub fn settings(&self, file: &Self) -> Result<Option<Settings>, SettingsError> {
+    pub fn resolve_settings(&self, file: &Self) -> Result<Option<ProviderSettings>, SettingsError> {
         // All faults are collected, so that one start of the server shows all of them.
         let mut faults = Vec::new();
-        let secret = self.secret(file, &mut faults);
-        let wanted = self.clone().or(file);
-        let settings = wanted.checked(secret, &mut faults);
+        let secret = self.read_secret(file, &mut faults);
+        let wanted = self.clone().merged_with(file);
+        let settings = wanted.check_settings(secret, &mut faults);
         if faults.is_empty() { Ok(settings) } else { Err(SettingsError(faults)) }
     }
 
     /// Fills values that are not set from another source.
-    fn or(self, other: &Self) -> Self {
+    fn merged_with(self, other: &Self) -> Self {
         let first = |a: Option<String>, b: &Option<String>| a.or_else(|| b.clone());
         Self {
             issuer: first(self.issuer, &other.issuer),
@@ -149,7 +149,7 @@ impl OpenIdArguments {
 
     /// Reads the client secret: the file of the flag takes precedence over the environment, and
     /// that over the configuration file.
-    fn secret(&self, file: &Self, faults: &mut Vec<String>) -> Option<String> {
+    fn read_secret(&self, file: &Self, faults: &mut Vec<String>) -> Option<String> {
         let read = |path: &Path| match std::fs::read_to_string(path) {
             Ok(text) if !text.trim().is_empty() => Ok(text.trim().to_owned()),
             Ok(_) => Err(format!("oidc client_secret_file: {} is empty", path.display())),
@@ -165,7 +165,11 @@ impl OpenIdArguments {
         found.map_err(|fault| faults.push(fault)).ok()
     }
 
-    fn checked(self, client_secret: Option<String>, faults: &mut Vec<String>) -> Option<Settings> {
+    fn check_settings(
+        self,
+        client_secret: Option<String>,
+        faults: &mut Vec<String>,
+    ) -> Option<ProviderSettings> {
         let Some(issuer) = self.issuer.clone() else {
             // Any other setting shows that the issuer was forgotten.
             if self != Self::default() {
@@ -175,7 +179,7 @@ impl OpenIdArguments {
             }
             return None;
         };
-        let host = url(&issuer).and_then(|url| url.host_str().map(str::to_owned));
+        let host = parse_url(&issuer).and_then(|url| url.host_str().map(str::to_owned));
         checked_url("issuer", &issuer, faults);
         let client_id = self.client_id.clone().unwrap_or_default();
         if client_id.is_empty() || !client_id.bytes().all(|byte| byte.is_ascii_graphic()) {
@@ -188,8 +192,16 @@ impl OpenIdArguments {
             faults.push("oidc scopes: must have `openid` among them".into());
         }
         let title = self.title.clone().or(host).unwrap_or_default();
-        let admission = self.admission(faults);
-        Some(Settings { issuer, client_id, client_secret, base_url, title, scopes, admission })
+        let admission = self.admission_rules(faults);
+        Some(ProviderSettings {
+            issuer,
+            client_id,
+            client_secret,
+            base_url,
+            title,
+            scopes,
+            admission,
+        })
     }
 
     fn base_url(&self, faults: &mut Vec<String>) -> String {
@@ -202,7 +214,7 @@ impl OpenIdArguments {
             return String::new();
         };
         // The pages of the server are at the root of its address.
-        if url(text).is_some_and(|url| url.path() != "/") {
+        if parse_url(text).is_some_and(|url| url.path() != "/") {
             faults.push(
                 "oidc base_url: must end with the host and port: the pages stand at its root"
                     .into(),
@@ -212,7 +224,7 @@ impl OpenIdArguments {
         text.trim_end_matches('/').to_owned()
     }
 
-    fn admission(self, faults: &mut Vec<String>) -> Admission {
+    fn admission_rules(self, faults: &mut Vec<String>) -> AdmissionRules {
         let mut group_roles = Vec::new();
         for rule in &self.group_roles {
             match group_role(rule) {
@@ -232,7 +244,7 @@ impl OpenIdArguments {
                     .into(),
             );
         }
-        Admission {
+        AdmissionRules {
             auto_create: self.auto_create,
             default_role,
             name_claim: self.name_claim,
@@ -250,7 +262,7 @@ fn group_role(rule: &str) -> Result<(String, Grant), String> {
 }
 
 fn checked_url(name: &str, text: &str, faults: &mut Vec<String>) {
-    match url(text) {
+    match parse_url(text) {
         Some(url) if url.query().is_some() => faults.push(format!("oidc {name}: must have no `?`")),
         // Plain http is allowed for addresses of this machine only.
         Some(url) if !is_safe(&url) => faults.push(format!(
@@ -278,14 +290,14 @@ mod tests {
     #[test]
     fn flags_win_over_the_file_and_defaults_are_filled_in() {
         let none = OpenIdArguments::default();
-        assert_eq!(none.settings(&none), Ok(None));
+        assert_eq!(none.resolve_settings(&none), Ok(None));
         let flags = OpenIdArguments { title: Some("Yard".into()), ..none.clone() };
         let file = OpenIdArguments { title: Some("Other".into()), ..least() };
-        let settings = flags.settings(&file).unwrap().unwrap();
+        let settings = flags.resolve_settings(&file).unwrap().unwrap();
         assert_eq!((settings.title(), settings.scopes.as_str()), ("Yard", "openid profile email"));
         assert_eq!(settings.redirect_uri(), "https://ships.example/sign-in/oidc/callback");
-        assert!(settings.is_secure() && !settings.admission().auto_create);
-        assert_eq!(least().settings(&none).unwrap().unwrap().title(), "id.example");
+        assert!(settings.is_secure() && !settings.admission_rules().auto_create);
+        assert_eq!(least().resolve_settings(&none).unwrap().unwrap().title(), "id.example");
     }
 
     #[test]
@@ -293,11 +305,11 @@ mod tests {
         let path = std::env::temp_dir().join(format!("oidc-secret-{}", std::process::id()));
         std::fs::write(&path, "very secret\n").unwrap();
         let with = OpenIdArguments { client_secret_file: Some(path.clone()), ..least() };
-        let settings = with.settings(&OpenIdArguments::default()).unwrap().unwrap();
+        let settings = with.resolve_settings(&OpenIdArguments::default()).unwrap().unwrap();
         assert_eq!(settings.client_secret.as_deref(), Some("very secret"));
         assert!(!format!("{settings:?}").contains("very secret"));
         std::fs::remove_file(path).unwrap();
-        let gone = with.settings(&OpenIdArguments::default()).unwrap_err();
+        let gone = with.resolve_settings(&OpenIdArguments::default()).unwrap_err();
         assert!(gone.to_string().starts_with("oidc client_secret_file: "), "{gone}");
     }
 
@@ -313,7 +325,8 @@ mod tests {
             auto_create: true,
             ..OpenIdArguments::default()
         };
-        let SettingsError(faults) = wrong.settings(&OpenIdArguments::default()).unwrap_err();
+        let SettingsError(faults) =
+            wrong.resolve_settings(&OpenIdArguments::default()).unwrap_err();
         let named: Vec<&str> =
             faults.iter().map(|fault| fault.split_once(": ").unwrap().0).collect();
         let expected = [
@@ -333,7 +346,8 @@ mod tests {
         let refused = |change: fn(&mut OpenIdArguments), name: &str| {
             let mut wanted = least();
             change(&mut wanted);
-            let error = wanted.settings(&OpenIdArguments::default()).unwrap_err().to_string();
+            let error =
+                wanted.resolve_settings(&OpenIdArguments::default()).unwrap_err().to_string();
             assert!(error.starts_with(&format!("oidc {name}: ")), "{error}");
         };
         refused(|wanted| wanted.issuer = None, "issuer");
@@ -345,6 +359,6 @@ mod tests {
         refused(|wanted| wanted.auto_create = true, "auto_create");
         let mut here = least();
         here.base_url = Some("http://127.0.0.1:8080".into());
-        assert!(here.settings(&OpenIdArguments::default()).is_ok());
+        assert!(here.resolve_settings(&OpenIdArguments::default()).is_ok());
     }
 }

@@ -5,10 +5,10 @@ use serde_json::{Map, Value};
 
 /// The claims of an ID token.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Claims {
+pub(crate) struct TokenClaims {
     pub iss: String,
     pub sub: String,
-    pub aud: Audience,
+    pub aud: TokenAudience,
     pub azp: Option<String>,
     pub nonce: Option<String>,
     /// All other claims.
@@ -19,14 +19,14 @@ pub(crate) struct Claims {
 /// Audience of a token.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
-pub(crate) enum Audience {
+pub(crate) enum TokenAudience {
     One(String),
     Several(Vec<String>),
 }
 
-impl Audience {
+impl TokenAudience {
     /// Returns the clients for which the token is meant.
-    pub fn all(&self) -> &[String] {
+    pub fn client_ids(&self) -> &[String] {
         match self {
             Self::One(one) => std::slice::from_ref(one),
             Self::Several(several) => several,

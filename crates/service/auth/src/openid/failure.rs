@@ -3,7 +3,7 @@
 
 /// Reason for a failed sign-in at a provider.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Failure {
+pub enum SignInFailure {
     /// The provider does not answer.
     #[error("the provider cannot be reached ({0}); try again later, or sign in with a password")]
     Unreachable(String),
@@ -28,4 +28,4 @@ pub enum Failure {
 }
 
 /// Result of a sign-in, or of a part of it.
-pub type Result<T, E = Failure> = std::result::Result<T, E>;
+pub type Result<T, E = SignInFailure> = std::result::Result<T, E>;

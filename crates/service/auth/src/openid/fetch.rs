@@ -5,42 +5,42 @@ use std::time::Duration;
 use reqwest::{Client, RequestBuilder, StatusCode, redirect};
 use serde::de::DeserializeOwned;
 
-use crate::openid::failure::{Failure, Result};
+use crate::openid::failure::{Result, SignInFailure};
 
 /// Maximum time for one answer of a provider.
-const PATIENCE: Duration = Duration::from_secs(10);
+const TIMEOUT: Duration = Duration::from_secs(10);
 /// Maximum size of an answer, bytes.
-const LONGEST: usize = 1 << 20;
+const MAX_ANSWER_BYTES: usize = 1 << 20;
 
 /// Creates the client for requests to the provider. The process must have installed its
 /// cryptography before.
 ///
 /// # Errors
 /// Returns an error if the system has no trusted certificates.
-pub(crate) fn client() -> Result<Client> {
+pub(crate) fn build_client() -> Result<Client> {
     let client = Client::builder()
-        .timeout(PATIENCE)
-        .connect_timeout(PATIENCE / 2)
+        .timeout(TIMEOUT)
+        .connect_timeout(TIMEOUT / 2)
         .redirect(redirect::Policy::none())
         .user_agent(concat!("sistership/", env!("CARGO_PKG_VERSION")));
-    client.build().map_err(|_| Failure::Unreachable("no trusted certificates".to_owned()))
+    client.build().map_err(|_| SignInFailure::Unreachable("no trusted certificates".to_owned()))
 }
 
 /// Returns status and body of an answer.
 ///
 /// # Errors
 /// Returns an error if there is no answer in time, if it is a server error, or if it is too long.
-pub(crate) async fn answer(request: RequestBuilder) -> Result<(StatusCode, Vec<u8>)> {
-    let mut response = request.send().await.map_err(|error| words(&error))?;
+pub(crate) async fn fetch_answer(request: RequestBuilder) -> Result<(StatusCode, Vec<u8>)> {
+    let mut response = request.send().await.map_err(|error| describe_error(&error))?;
     let status = response.status();
     if status.is_server_error() {
-        return Err(Failure::Unreachable(format!("it answers {}", status.as_u16())));
+        return Err(SignInFailure::Unreachable(format!("it answers {}", status.as_u16())));
     }
     // Read in chunks, so that the bound applies before the whole answer is in memory.
     let mut body = Vec::new();
-    while let Some(chunk) = response.chunk().await.map_err(|error| words(&error))? {
-        if body.len() + chunk.len() > LONGEST {
-            return Err(Failure::Provider("its answer is too long".to_owned()));
+    while let Some(chunk) = response.chunk().await.map_err(|error| describe_error(&error))? {
+        if body.len() + chunk.len() > MAX_ANSWER_BYTES {
+            return Err(SignInFailure::Provider("its answer is too long".to_owned()));
         }
         body.extend_from_slice(&chunk);
     }
@@ -51,11 +51,11 @@ pub(crate) async fn answer(request: RequestBuilder) -> Result<(StatusCode, Vec<u
 ///
 /// # Errors
 /// Returns an error for another status, or if there is no answer.
-pub(crate) async fn document(request: RequestBuilder, what: &str) -> Result<Vec<u8>> {
-    match answer(request).await? {
+pub(crate) async fn fetch_document(request: RequestBuilder, what: &str) -> Result<Vec<u8>> {
+    match fetch_answer(request).await? {
         (StatusCode::OK, body) => Ok(body),
         (status, _) => {
-            Err(Failure::Provider(format!("its {what} is answered {}", status.as_u16())))
+            Err(SignInFailure::Provider(format!("its {what} is answered {}", status.as_u16())))
         }
     }
 }
@@ -64,13 +64,14 @@ pub(crate) async fn document(request: RequestBuilder, what: &str) -> Result<Vec<
 ///
 /// # Errors
 /// Returns an error if it does not have the expected form.
-pub(crate) fn read<T: DeserializeOwned>(body: &[u8], what: &str) -> Result<T> {
-    serde_json::from_slice(body)
-        .map_err(|_| Failure::Provider(format!("its {what} is not what the standard asks for")))
+pub(crate) fn parse_document<T: DeserializeOwned>(body: &[u8], what: &str) -> Result<T> {
+    serde_json::from_slice(body).map_err(|_| {
+        SignInFailure::Provider(format!("its {what} is not what the standard asks for"))
+    })
 }
 
 /// Returns the kind of a failed request without its URL, which may contain a code.
-fn words(error: &reqwest::Error) -> Failure {
+fn describe_error(error: &reqwest::Error) -> SignInFailure {
     let kind = if error.is_timeout() {
         "no answer in time"
     } else if error.is_connect() {
@@ -78,5 +79,5 @@ fn words(error: &reqwest::Error) -> Failure {
     } else {
         "the request broke off"
     };
-    Failure::Unreachable(kind.to_owned())
+    SignInFailure::Unreachable(kind.to_owned())
 }

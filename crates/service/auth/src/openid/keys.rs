@@ -7,25 +7,25 @@ use serde_json::Value;
 
 /// The published key set of a provider.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Keys(Vec<Jwk>);
+pub(crate) struct KeySet(Vec<Jwk>);
 
 #[derive(Deserialize)]
-struct Published {
+struct KeySetDocument {
     keys: Vec<Value>,
 }
 
-impl Keys {
+impl KeySet {
     /// Parses a key set; unknown kinds of keys are skipped (RFC 7517, 5).
     pub fn read(bytes: &[u8]) -> Option<Self> {
-        let Published { keys } = serde_json::from_slice(bytes).ok()?;
+        let KeySetDocument { keys } = serde_json::from_slice(bytes).ok()?;
         let read = keys.into_iter().filter_map(|key| serde_json::from_value(key).ok());
         Some(Self(read.collect()))
     }
 
     /// Returns the key that a token names; if it names none, the only key that could have signed
     /// it.
-    pub fn of(&self, header: &Header) -> Option<DecodingKey> {
-        let fitting = self.0.iter().filter_map(|key| Some((key, fitting(key, header.alg)?)));
+    pub fn find_key(&self, header: &Header) -> Option<DecodingKey> {
+        let fitting = self.0.iter().filter_map(|key| Some((key, signing_key(key, header.alg)?)));
         let mut fitting =
             fitting.filter(|(key, _)| header.kid.is_none() || key.common.key_id == header.kid);
         let (_, found) = fitting.next()?;
@@ -35,7 +35,7 @@ impl Keys {
 }
 
 /// Returns a key if it is meant for signatures by this algorithm.
-fn fitting(key: &Jwk, algorithm: Algorithm) -> Option<DecodingKey> {
+fn signing_key(key: &Jwk, algorithm: Algorithm) -> Option<DecodingKey> {
     let signs = key.common.public_key_use.as_ref();
     if signs.is_some_and(|purpose| *purpose != PublicKeyUse::Signature) {
         return None;
@@ -64,9 +64,9 @@ mod tests {
     }
 
     fn found(keys: &[Value], kid: Option<&str>) -> bool {
-        let keys = Keys::read(json!({ "keys": keys }).to_string().as_bytes()).unwrap();
+        let keys = KeySet::read(json!({ "keys": keys }).to_string().as_bytes()).unwrap();
         let header = Header { kid: kid.map(str::to_owned), ..Header::new(Algorithm::EdDSA) };
-        keys.of(&header).is_some()
+        keys.find_key(&header).is_some()
     }
 
     #[test]
@@ -90,6 +90,6 @@ mod tests {
         }
         assert!(found(&[edwards(json!({ "use": "sig", "alg": "EdDSA" }))], None));
         assert!(!found(&[json!({ "kty": "oct", "k": "c2VjcmV0" })], None));
-        assert!(Keys::read(b"{}").is_none() && Keys::read(b"[]").is_none());
+        assert!(KeySet::read(b"{}").is_none() && KeySet::read(b"[]").is_none());
     }
 }

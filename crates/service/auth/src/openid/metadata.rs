@@ -2,12 +2,12 @@
 
 use serde::Deserialize;
 
-use crate::openid::failure::{Failure, Result};
-use crate::openid::settings::{is_safe, url};
+use crate::openid::failure::{Result, SignInFailure};
+use crate::openid::settings::{is_safe, parse_url};
 
 /// Discovery document of a provider.
 #[derive(Debug, Clone, Deserialize)]
-pub(crate) struct Metadata {
+pub(crate) struct ProviderMetadata {
     issuer: String,
     pub authorization_endpoint: String,
     pub token_endpoint: String,
@@ -24,22 +24,22 @@ fn by_default() -> Vec<String> {
 }
 
 /// Returns the URL of the discovery document of an issuer.
-pub(crate) fn place(issuer: &str) -> String {
+pub(crate) fn discovery_url(issuer: &str) -> String {
     format!("{}/.well-known/openid-configuration", issuer.trim_end_matches('/'))
 }
 
-impl Metadata {
+impl ProviderMetadata {
     /// Checks that the document is that of this issuer, and that all endpoints use a safe
     /// connection.
     ///
     /// # Errors
     /// Returns an error that describes the violation.
-    pub fn checked(self, issuer: &str) -> Result<Self> {
+    pub fn check_issuer(self, issuer: &str) -> Result<Self> {
         // Compared as text, without normalisation (OpenID Connect Discovery 1.0).
         if self.issuer != issuer {
             let own: String = self.issuer.chars().take(200).collect();
             let why = format!("it calls itself `{own}`, and the setting is `{issuer}`");
-            return Err(Failure::Provider(why));
+            return Err(SignInFailure::Provider(why));
         }
         let places = [
             ("authorization_endpoint", Some(&self.authorization_endpoint)),
@@ -49,8 +49,8 @@ impl Metadata {
         ];
         for (name, place) in places {
             let Some(place) = place else { continue };
-            if !url(place).is_some_and(|url| is_safe(&url)) {
-                return Err(Failure::Provider(format!("its {name} is no https address")));
+            if !parse_url(place).is_some_and(|url| is_safe(&url)) {
+                return Err(SignInFailure::Provider(format!("its {name} is no https address")));
             }
         }
         Ok(self)

@@ -18,10 +18,10 @@ pub mod testing;
 mod ticket;
 mod token;
 
-pub use admission::Admission;
+pub use admission::AdmissionRules;
 pub use arguments::OpenIdArguments;
-pub use failure::{Failure, Result};
-pub use identity::Identity;
-pub use provider::{Answer, Begun, Finished, Provider};
-pub use settings::{Settings, SettingsError};
-pub use ticket::{LIFETIME_S, Purpose};
+pub use failure::{Result, SignInFailure};
+pub use identity::ProviderIdentity;
+pub use provider::{CallbackQuery, OpenIdProvider, SignInResult, SignInStart};
+pub use settings::{ProviderSettings, SettingsError};
+pub use ticket::{LIFETIME_S, SignInPurpose};

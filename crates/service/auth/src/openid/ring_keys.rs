@@ -10,12 +10,12 @@ use ring::signature::{RsaParameters, RsaPublicKeyComponents, VerificationAlgorit
 
 static PROVIDER: CryptoProvider = CryptoProvider {
     signer_factory: no_signer,
-    verifier_factory: verifier,
+    verifier_factory: make_verifier,
     key_utils: KeyUtils::new_unimplemented(),
 };
 
 /// Makes ring the verifier of token signatures. A second call changes nothing.
-pub(crate) fn provide() {
+pub(crate) fn install_verifier() {
     // An error means that it was installed before.
     let _ = PROVIDER.install_default();
 }
@@ -24,46 +24,47 @@ fn no_signer(_: &Algorithm, _: &EncodingKey) -> Result<Box<dyn JwtSigner>> {
     Err(ErrorKind::UnsupportedAlgorithm.into())
 }
 
-fn verifier(algorithm: &Algorithm, key: &DecodingKey) -> Result<Box<dyn JwtVerifier>> {
+fn make_verifier(algorithm: &Algorithm, key: &DecodingKey) -> Result<Box<dyn JwtVerifier>> {
     // The algorithm that the token names must belong to the kind of key.
     if key.family() != algorithm.family() {
         return Err(ErrorKind::InvalidKeyFormat.into());
     }
-    let key = Key::of(*algorithm, key.kind()).ok_or(ErrorKind::UnsupportedAlgorithm)?;
+    let key = PublicKey::from_decoding_key(*algorithm, key.kind())
+        .ok_or(ErrorKind::UnsupportedAlgorithm)?;
     Ok(Box::new(RingVerifier { algorithm: *algorithm, key }))
 }
 
 struct RingVerifier {
     algorithm: Algorithm,
-    key: Key,
+    key: PublicKey,
 }
 
-enum Key {
+enum PublicKey {
     Rsa { parameters: &'static RsaParameters, modulus: Vec<u8>, exponent: Vec<u8> },
     Curve { algorithm: &'static dyn VerificationAlgorithm, point: Vec<u8> },
 }
 
-impl Key {
-    fn of(algorithm: Algorithm, kind: &DecodingKeyKind) -> Option<Self> {
+impl PublicKey {
+    fn from_decoding_key(algorithm: Algorithm, kind: &DecodingKeyKind) -> Option<Self> {
         match kind {
             DecodingKeyKind::RsaModulusExponent { n, e } => {
-                let (modulus, exponent) = (stripped(n), stripped(e));
-                Some(Self::Rsa { parameters: rsa(algorithm)?, modulus, exponent })
+                let (modulus, exponent) = (strip_leading_zeros(n), strip_leading_zeros(e));
+                Some(Self::Rsa { parameters: rsa_parameters(algorithm)?, modulus, exponent })
             }
             DecodingKeyKind::SecretOrDer(point) => {
-                Some(Self::Curve { algorithm: curve(algorithm)?, point: point.clone() })
+                Some(Self::Curve { algorithm: curve_algorithm(algorithm)?, point: point.clone() })
             }
         }
     }
 }
 
 /// Removes leading zero bytes, which some providers write and ring does not accept.
-fn stripped(number: &[u8]) -> Vec<u8> {
+fn strip_leading_zeros(number: &[u8]) -> Vec<u8> {
     number.iter().copied().skip_while(|byte| *byte == 0).collect()
 }
 
 /// Returns the parameters of RSA with 2048 bits and more (NIST SP 800-131A, revision 2).
-fn rsa(algorithm: Algorithm) -> Option<&'static RsaParameters> {
+fn rsa_parameters(algorithm: Algorithm) -> Option<&'static RsaParameters> {
     match algorithm {
         Algorithm::RS256 => Some(&ring_signature::RSA_PKCS1_2048_8192_SHA256),
         Algorithm::RS384 => Some(&ring_signature::RSA_PKCS1_2048_8192_SHA384),
@@ -75,7 +76,7 @@ fn rsa(algorithm: Algorithm) -> Option<&'static RsaParameters> {
     }
 }
 
-fn curve(algorithm: Algorithm) -> Option<&'static dyn VerificationAlgorithm> {
+fn curve_algorithm(algorithm: Algorithm) -> Option<&'static dyn VerificationAlgorithm> {
     match algorithm {
         Algorithm::ES256 => Some(&ring_signature::ECDSA_P256_SHA256_FIXED),
         Algorithm::ES384 => Some(&ring_signature::ECDSA_P384_SHA384_FIXED),
@@ -91,10 +92,10 @@ impl Verifier<Vec<u8>> for RingVerifier {
         presented: &Vec<u8>,
     ) -> std::result::Result<(), signature::Error> {
         let checked = match &self.key {
-            Key::Rsa { parameters, modulus: n, exponent: e } => {
+            PublicKey::Rsa { parameters, modulus: n, exponent: e } => {
                 RsaPublicKeyComponents { n, e }.verify(parameters, message, presented)
             }
-            Key::Curve { algorithm, point } => {
+            PublicKey::Curve { algorithm, point } => {
                 ring_signature::UnparsedPublicKey::new(*algorithm, point).verify(message, presented)
             }
         };
@@ -118,7 +119,7 @@ mod tests {
     /// Returns whether a signed text is accepted under a key, unchanged and with its last letters
     /// changed.
     fn holds(key: Value, algorithm: Algorithm, signed: &str) -> (bool, bool) {
-        provide();
+        install_verifier();
         let key = serde_json::from_value::<Jwk>(key).unwrap();
         let key = DecodingKey::from_jwk(&key).unwrap();
         let (message, signature) = signed.rsplit_once('.').unwrap();
@@ -169,7 +170,7 @@ mod tests {
     #[test]
     fn a_secret_that_both_know_is_no_key() {
         let secret = DecodingKey::from_secret(b"secret");
-        assert!(verifier(&Algorithm::HS256, &secret).is_err());
-        assert!(verifier(&Algorithm::RS256, &secret).is_err());
+        assert!(make_verifier(&Algorithm::HS256, &secret).is_err());
+        assert!(make_verifier(&Algorithm::RS256, &secret).is_err());
     }
 }

@@ -5,7 +5,7 @@ use std::net::IpAddr;
 
 use reqwest::Url;
 
-use crate::openid::admission::Admission;
+use crate::openid::admission::AdmissionRules;
 
 /// Path to which the provider sends browsers back, below the server's own URL.
 const CALLBACK: &str = "/sign-in/oidc/callback";
@@ -13,7 +13,7 @@ const CALLBACK: &str = "/sign-in/oidc/callback";
 /// Settings of the OpenID provider of a server; created by
 /// [`crate::openid::OpenIdArguments::settings`].
 #[derive(Clone, PartialEq, Eq)]
-pub struct Settings {
+pub struct ProviderSettings {
     pub(crate) issuer: String,
     pub(crate) client_id: String,
     pub(crate) client_secret: Option<String>,
@@ -21,7 +21,7 @@ pub struct Settings {
     pub(crate) base_url: String,
     pub(crate) title: String,
     pub(crate) scopes: String,
-    pub(crate) admission: Admission,
+    pub(crate) admission: AdmissionRules,
 }
 
 /// All faults of the settings, each with the name of the setting.
@@ -29,7 +29,7 @@ pub struct Settings {
 #[error("{}", .0.join("; "))]
 pub struct SettingsError(pub Vec<String>);
 
-impl Settings {
+impl ProviderSettings {
     /// Returns the display name of the provider.
     pub fn title(&self) -> &str {
         &self.title
@@ -41,7 +41,7 @@ impl Settings {
     }
 
     /// Returns the rules of admission.
-    pub fn admission(&self) -> &Admission {
+    pub fn admission_rules(&self) -> &AdmissionRules {
         &self.admission
     }
 
@@ -55,7 +55,7 @@ impl Settings {
     }
 }
 
-impl fmt::Debug for Settings {
+impl fmt::Debug for ProviderSettings {
     /// Formats the settings without the secret.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.debug_struct("Settings")
@@ -68,7 +68,7 @@ impl fmt::Debug for Settings {
 }
 
 /// Parses a URL without user name, password and fragment.
-pub(crate) fn url(text: &str) -> Option<Url> {
+pub(crate) fn parse_url(text: &str) -> Option<Url> {
     let url = Url::parse(text).ok()?;
     let plain = url.username().is_empty() && url.password().is_none() && url.fragment().is_none();
     (plain && url.has_host()).then_some(url)

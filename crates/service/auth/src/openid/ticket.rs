@@ -2,7 +2,7 @@
 //! which state, nonce and verifier are derived, and the target afterwards, sealed so that its age
 //! cannot be forged.
 
-use crate::{hex, same, secret, sha256, sign};
+use crate::{constant_time_eq, hash_text, secret, sign_message, to_hex};
 use base64::Engine as _;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD;
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ pub const LIFETIME_S: i64 = 600;
 /// Purpose of a sign-in.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Purpose {
+pub enum SignInPurpose {
     /// Begin a session.
     SignIn,
     /// Link the identity to this user.
@@ -22,47 +22,47 @@ pub enum Purpose {
 
 /// A sign-in in progress.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Ticket {
+pub(crate) struct SignInTicket {
     secret: String,
     /// Start, seconds of the Unix epoch.
     since_s: i64,
     /// Purpose.
-    pub purpose: Purpose,
+    pub purpose: SignInPurpose,
     /// Target of the browser afterwards.
     pub next: String,
 }
 
-impl Ticket {
+impl SignInTicket {
     /// Creates a ticket; none if the system gives no random numbers.
-    pub fn new(purpose: Purpose, next: &str, since_s: i64) -> Option<Self> {
-        Some(Self { secret: secret().ok()?, since_s, purpose, next: next.to_owned() })
+    pub fn new(purpose: SignInPurpose, next: &str, since_s: i64) -> Option<Self> {
+        Some(Self { secret: random_secret().ok()?, since_s, purpose, next: next.to_owned() })
     }
 
     /// Returns the `state`, which the provider sends back unchanged: only the answer to this
     /// browser has it.
     pub fn state(&self) -> String {
-        sign(&self.secret, b"state")
+        sign_message(&self.secret, b"state")
     }
 
     /// Returns the `nonce`, which shows that the ID token was made for this sign-in.
     pub fn nonce(&self) -> String {
-        sign(&self.secret, b"nonce")
+        sign_message(&self.secret, b"nonce")
     }
 
     /// Returns the PKCE verifier (RFC 7636, 4.1), needed in addition to the code: 64 of the allowed
     /// characters.
     pub fn verifier(&self) -> String {
-        sign(&self.secret, b"verifier")
+        sign_message(&self.secret, b"verifier")
     }
 
     /// Returns the PKCE challenge of [`Self::verifier`] (RFC 7636, 4.2).
     pub fn challenge(&self) -> String {
-        BASE64_URL_SAFE_NO_PAD.encode(sha256(&self.verifier()))
+        BASE64_URL_SAFE_NO_PAD.encode(hash_text(&self.verifier()))
     }
 
     /// Returns the hash by which a second use is recognised.
     pub fn sha256(&self) -> String {
-        hex(&sha256(&self.secret))
+        to_hex(&hash_text(&self.secret))
     }
 
     /// Returns the expiry, seconds of the Unix epoch.
@@ -71,17 +71,17 @@ impl Ticket {
     }
 
     /// Returns the ticket as text with a seal, for the browser; none if it cannot be written.
-    pub fn sealed(&self, key: &str) -> Option<String> {
+    pub fn to_sealed(&self, key: &str) -> Option<String> {
         let body = BASE64_URL_SAFE_NO_PAD.encode(serde_json::to_vec(self).ok()?);
-        let seal = sign(key, body.as_bytes());
+        let seal = sign_message(key, body.as_bytes());
         Some(format!("{body}.{seal}"))
     }
 
     /// Reads a sealed ticket; none if the seal is wrong, or it has expired.
-    pub fn opened(text: &str, key: &str, now_s: i64) -> Option<Self> {
+    pub fn from_sealed(text: &str, key: &str, now_s: i64) -> Option<Self> {
         let (body, seal) = text.split_once('.')?;
         // The seal is checked before the content is parsed.
-        if !same(seal.as_bytes(), sign(key, body.as_bytes()).as_bytes()) {
+        if !constant_time_eq(seal.as_bytes(), sign_message(key, body.as_bytes()).as_bytes()) {
             return None;
         }
         let ticket: Self =
@@ -97,25 +97,25 @@ mod tests {
 
     #[test]
     fn a_ticket_is_good_for_its_time_under_its_seal() {
-        let ticket = Ticket::new(Purpose::Link("ann".into()), "/ships", 1000).unwrap();
-        let sealed = ticket.sealed("key").unwrap();
-        assert!(Ticket::opened(&sealed, "key", 1000) == Some(ticket.clone()));
-        assert!(Ticket::opened(&sealed, "key", 1599) == Some(ticket.clone()));
+        let ticket = SignInTicket::new(SignInPurpose::Link("ann".into()), "/ships", 1000).unwrap();
+        let sealed = ticket.to_sealed("key").unwrap();
+        assert!(SignInTicket::from_sealed(&sealed, "key", 1000) == Some(ticket.clone()));
+        assert!(SignInTicket::from_sealed(&sealed, "key", 1599) == Some(ticket.clone()));
         for (key, now_s) in [("key", 1600), ("key", 999), ("other", 1000), ("", 1000)] {
-            assert!(Ticket::opened(&sealed, key, now_s).is_none(), "{key} {now_s}");
+            assert!(SignInTicket::from_sealed(&sealed, key, now_s).is_none(), "{key} {now_s}");
         }
-        let later = Ticket { since_s: 2000, ..ticket.clone() };
-        let forged = later.sealed("key").unwrap().split_once('.').unwrap().0.to_owned();
+        let later = SignInTicket { since_s: 2000, ..ticket.clone() };
+        let forged = later.to_sealed("key").unwrap().split_once('.').unwrap().0.to_owned();
         let seal = sealed.split_once('.').unwrap().1;
-        assert!(Ticket::opened(&format!("{forged}.{seal}"), "key", 2000).is_none());
+        assert!(SignInTicket::from_sealed(&format!("{forged}.{seal}"), "key", 2000).is_none());
         for wrong in ["", ".", "a.b", &sealed[1..]] {
-            assert!(Ticket::opened(wrong, "key", 1000).is_none(), "{wrong}");
+            assert!(SignInTicket::from_sealed(wrong, "key", 1000).is_none(), "{wrong}");
         }
     }
 
     #[test]
     fn nothing_that_is_told_tells_anything_else() {
-        let ticket = Ticket::new(Purpose::SignIn, "/", 0).unwrap();
+        let ticket = SignInTicket::new(SignInPurpose::SignIn, "/", 0).unwrap();
         let told = [ticket.state(), ticket.nonce(), ticket.challenge(), ticket.sha256()];
         for (index, text) in told.iter().enumerate() {
             assert!(!told[..index].contains(text) && *text != ticket.verifier());

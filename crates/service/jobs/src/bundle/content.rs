@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// source versions of each version are included.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Content {
+pub struct BundleContent {
     /// The ship that was exported.
     pub ship: String,
     /// Texts of laws by name.
@@ -33,13 +33,13 @@ pub struct ShipRecord {
     /// Its name.
     pub name: String,
     /// Title, category and document at each revision.
-    pub revisions: Vec<Revision>,
+    pub revisions: Vec<ShipRevision>,
 }
 
 /// A ship at a revision.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Revision {
+pub struct ShipRevision {
     /// Name for people.
     pub title: String,
     /// Its kind.
@@ -109,7 +109,7 @@ pub struct ReportRecord {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bundle {
     /// Everything but the objects.
-    pub content: Content,
+    pub content: BundleContent,
     /// Samples of trials and weights of learned corrections as they are stored, by their SHA-256.
     pub objects: BTreeMap<String, Bytes>,
 }

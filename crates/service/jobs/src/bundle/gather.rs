@@ -3,13 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use sistership_model::version;
-use sistership_store::{MAX_LIMIT, Page, StoreError, Trial, Version};
+use sistership_store::{MAX_LIMIT, PageRequest, StoreError, Trial, Version};
 
-use super::content::{Bundle, Content, ReportRecord, ShipRecord, TrialRecord, VersionRecord};
+use super::content::{Bundle, BundleContent, ReportRecord, ShipRecord, TrialRecord, VersionRecord};
 use super::error::BundleError;
-use super::history::revisions;
-use crate::archive::{Archive, document};
-use crate::recipe::Recipe;
+use super::history::ship_revisions;
+use crate::archive::{Archive, version_document};
+use crate::recipe::DerivationRecipe;
 use crate::version::VersionDocument;
 
 type Result<T> = std::result::Result<T, BundleError>;
@@ -19,8 +19,9 @@ type Result<T> = std::result::Result<T, BundleError>;
 ///
 /// # Errors
 /// Returns an error that names what is missing, or what a bundle cannot hold.
-pub async fn gather(archive: &Archive, ship: &str) -> Result<Bundle> {
-    let mut gathering = Gathering { archive, needed: BTreeMap::new(), bundle: empty(ship) };
+pub async fn collect_bundle(archive: &Archive, ship: &str) -> Result<Bundle> {
+    let mut gathering =
+        BundleBuilder { archive, needed: BTreeMap::new(), bundle: empty_bundle(ship) };
     archive.store.ships().get(ship).await?;
     let latest = match archive.store.versions().latest(ship).await {
         Ok(latest) => latest.head.number,
@@ -28,29 +29,29 @@ pub async fn gather(archive: &Archive, ship: &str) -> Result<Bundle> {
         Err(error) => return Err(error.into()),
     };
     gathering.needed.insert(ship.to_owned(), latest);
-    gathering.lines().await?;
-    gathering.ships().await?;
-    gathering.trials(ship).await?;
-    gathering.aliases(ship).await?;
+    gathering.add_versions().await?;
+    gathering.add_ships().await?;
+    gathering.add_trials(ship).await?;
+    gathering.add_aliases(ship).await?;
     Ok(gathering.bundle)
 }
 
-fn empty(ship: &str) -> Bundle {
-    let content = Content { ship: ship.to_owned(), ..Content::default() };
+fn empty_bundle(ship: &str) -> Bundle {
+    let content = BundleContent { ship: ship.to_owned(), ..BundleContent::default() };
     Bundle { content, objects: BTreeMap::new() }
 }
 
-struct Gathering<'a> {
+struct BundleBuilder<'a> {
     archive: &'a Archive,
     /// Number of the last version that is needed of each ship.
     needed: BTreeMap<String, i64>,
     bundle: Bundle,
 }
 
-impl Gathering<'_> {
+impl BundleBuilder<'_> {
     /// Adds versions until each ship has those that are needed; the sources of a version may add
     /// more.
-    async fn lines(&mut self) -> Result<()> {
+    async fn add_versions(&mut self) -> Result<()> {
         let has = |gathering: &Self, line: &String| {
             gathering.bundle.content.lines.get(line).map_or(0, Vec::len) as i64
         };
@@ -64,34 +65,34 @@ impl Gathering<'_> {
         while let Some(line) = open(self) {
             let number = has(self, &line) + 1;
             let version = self.archive.store.versions().get(&line, number).await?;
-            let record = self.version(&version).await?;
+            let record = self.version_record(&version).await?;
             self.bundle.content.lines.entry(line).or_default().push(record);
         }
         Ok(())
     }
 
-    async fn version(&mut self, version: &Version) -> Result<VersionRecord> {
+    async fn version_record(&mut self, version: &Version) -> Result<VersionRecord> {
         let head = &version.head;
-        let VersionDocument { recipe, model, .. } = document(version)?;
+        let VersionDocument { recipe, model, .. } = version_document(version)?;
         // The prior of a family is none of the documents that a bundle can hold.
-        if recipe.prior().is_some() {
+        if recipe.family_prior().is_some() {
             return Err(BundleError::Prior(format!("{}/{}", head.model, head.number)));
         }
-        for source in recipe.versions() {
-            self.need(&source.ship, source.number);
+        for source in recipe.source_versions() {
+            self.require_version(&source.ship, source.number);
         }
         let parent = match &head.parent {
             Some(id) => {
                 let parent = self.archive.store.versions().by_id(id).await?.head;
-                self.need(&parent.model, parent.number);
+                self.require_version(&parent.model, parent.number);
                 Some((parent.model, parent.number))
             }
             None => None,
         };
-        self.inputs(head.model.as_str(), &head.law, &recipe).await?;
+        self.add_inputs(head.model.as_str(), &head.law, &recipe).await?;
         let weights = model.branch.map(|branch| branch.weights_sha256);
         if let Some(hash) = &weights {
-            self.object(hash).await?;
+            self.add_object(hash).await?;
         }
         Ok(VersionRecord {
             parent,
@@ -100,22 +101,26 @@ impl Gathering<'_> {
             sha256: head.sha256.clone(),
             document: version.document.clone(),
             weights,
-            reports: self.reports(&head.id).await?,
+            reports: self.version_reports(&head.id).await?,
         })
     }
 
-    fn need(&mut self, line: &str, number: i64) {
+    fn require_version(&mut self, line: &str, number: i64) {
         // All versions before the needed one follow, because numbers must have no gaps.
         let last = self.needed.entry(line.to_owned()).or_default();
         *last = number.max(*last);
     }
 
     /// Adds the laws, libraries of effects and samples that a recipe names.
-    async fn inputs(&mut self, ship: &str, law: &str, recipe: &Recipe) -> Result<()> {
+    async fn add_inputs(&mut self, ship: &str, law: &str, recipe: &DerivationRecipe) -> Result<()> {
         let store = &self.archive.store;
         let mut laws = BTreeSet::from([law.to_owned()]);
         // A refinement across laws also reads the law of its source.
-        if let Recipe::Plain(version::Recipe::Refinement { across: Some(across), .. }) = recipe {
+        if let DerivationRecipe::Plain(version::VersionRecipe::Refinement {
+            across: Some(across),
+            ..
+        }) = recipe
+        {
             laws.insert(across.law.clone());
         }
         for name in laws {
@@ -123,15 +128,15 @@ impl Gathering<'_> {
             self.bundle.content.laws.insert(name, text);
         }
         if let Some(hash) = recipe.effects_sha256() {
-            let library = store.effects().get(hash).await?.document;
+            let library = store.effect_libraries().get(hash).await?.document;
             if !self.bundle.content.effects.contains(&library) {
                 self.bundle.content.effects.push(library);
             }
         }
         for trial in recipe.trials() {
-            self.object(&trial.sha256).await?;
-            match store.trials().find(ship, &trial.sha256).await {
-                Ok(row) => self.trial(row),
+            self.add_object(&trial.sha256).await?;
+            match store.trials().find_by_hash(ship, &trial.sha256).await {
+                Ok(row) => self.add_trial(row),
                 // The trial was deleted or belongs to another ship: the recipe needs only its
                 // samples.
                 Err(StoreError::NotFound { .. }) => {}
@@ -141,7 +146,7 @@ impl Gathering<'_> {
         Ok(())
     }
 
-    async fn object(&mut self, hash: &str) -> Result<()> {
+    async fn add_object(&mut self, hash: &str) -> Result<()> {
         if !self.bundle.objects.contains_key(hash) {
             let bytes = self.archive.objects.get(hash).await?;
             self.bundle.objects.insert(hash.to_owned(), bytes);
@@ -149,7 +154,7 @@ impl Gathering<'_> {
         Ok(())
     }
 
-    fn trial(&mut self, row: Trial) {
+    fn add_trial(&mut self, row: Trial) {
         let record = TrialRecord {
             ship: row.ship,
             sha256: row.sha256,
@@ -168,9 +173,9 @@ impl Gathering<'_> {
     }
 
     /// Returns the reports on a version, oldest first.
-    async fn reports(&self, version: &str) -> Result<Vec<ReportRecord>> {
+    async fn version_reports(&self, version: &str) -> Result<Vec<ReportRecord>> {
         let reports = self.archive.store.reports();
-        let heads = reports.by_version(version, &Page::first(MAX_LIMIT)).await?;
+        let heads = reports.by_version(version, &PageRequest::first_page(MAX_LIMIT)).await?;
         let mut all = Vec::new();
         // The store lists the newest first.
         for head in heads.items.iter().rev() {
@@ -181,30 +186,31 @@ impl Gathering<'_> {
         Ok(all)
     }
 
-    async fn ships(&mut self) -> Result<()> {
+    async fn add_ships(&mut self) -> Result<()> {
         for name in self.needed.keys().cloned().collect::<Vec<_>>() {
-            let revisions = revisions(self.archive, &name).await?;
+            let revisions = ship_revisions(self.archive, &name).await?;
             self.bundle.content.ships.push(ShipRecord { name, revisions });
         }
         Ok(())
     }
 
     /// Adds every trial of the ship, also those that no version was derived from.
-    async fn trials(&mut self, ship: &str) -> Result<()> {
-        let mut page = Page::first(MAX_LIMIT);
+    async fn add_trials(&mut self, ship: &str) -> Result<()> {
+        let mut page = PageRequest::first_page(MAX_LIMIT);
         loop {
             let found = self.archive.store.trials().list(ship, &page).await?;
             for row in found.items {
-                self.object(&row.object_key).await?;
-                self.trial(row);
+                self.add_object(&row.object_key).await?;
+                self.add_trial(row);
             }
             let Some(next) = found.next else { return Ok(()) };
-            page = Page::after(next, MAX_LIMIT);
+            page = PageRequest::after_key(next, MAX_LIMIT);
         }
     }
 
-    async fn aliases(&mut self, ship: &str) -> Result<()> {
-        let aliases = self.archive.store.aliases().list(ship, &Page::first(MAX_LIMIT)).await?;
+    async fn add_aliases(&mut self, ship: &str) -> Result<()> {
+        let aliases =
+            self.archive.store.aliases().list(ship, &PageRequest::first_page(MAX_LIMIT)).await?;
         let places = aliases.items.into_iter().map(|alias| (alias.alias, alias.version_number));
         self.bundle.content.aliases.extend(places);
         Ok(())

@@ -11,8 +11,8 @@ mod take;
 #[cfg(test)]
 mod tests;
 
-pub use content::{Bundle, Content};
+pub use content::{Bundle, BundleContent};
 pub use error::BundleError;
-pub use gather::gather;
-pub use signature::{SigningKey, VerifyingKey, trusted};
-pub use take::{Taken, take};
+pub use gather::collect_bundle;
+pub use signature::{SigningKey, VerifyingKey, check_signer};
+pub use take::{BundleImport, import_bundle};

@@ -7,7 +7,7 @@ use std::fmt;
 use ring::signature::{ED25519, Ed25519KeyPair, KeyPair as _, UnparsedPublicKey};
 use rustls_pki_types::pem::PemObject as _;
 use rustls_pki_types::{PrivatePkcs8KeyDer, SubjectPublicKeyInfoDer};
-use sistership_model::version::sha256;
+use sistership_model::version::sha256_hex;
 
 use super::error::BundleError;
 
@@ -19,7 +19,7 @@ pub struct SigningKey(Ed25519KeyPair);
 
 impl fmt::Debug for SigningKey {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "SigningKey({})", self.verifying())
+        write!(out, "SigningKey({})", self.verifying_key())
     }
 }
 
@@ -39,14 +39,14 @@ impl SigningKey {
     }
 
     /// Returns the key that verifies its signatures.
-    pub fn verifying(&self) -> VerifyingKey {
+    pub fn verifying_key(&self) -> VerifyingKey {
         let key = self.0.public_key().as_ref();
         VerifyingKey([&PREFIX[..], key].concat())
     }
 
-    pub(super) fn sign(&self, manifest: &[u8]) -> Signature {
+    pub(super) fn sign_manifest(&self, manifest: &[u8]) -> ManifestSignature {
         let bytes = self.0.sign(manifest).as_ref().to_vec();
-        Signature { key: self.verifying(), bytes }
+        ManifestSignature { key: self.verifying_key(), bytes }
     }
 }
 
@@ -57,7 +57,7 @@ pub struct VerifyingKey(Vec<u8>);
 /// The SHA-256 of the key, hexadecimal, as `openssl pkey -pubout -outform DER | sha256sum` has it.
 impl fmt::Display for VerifyingKey {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(&sha256(&self.0))
+        out.write_str(&sha256_hex(&self.0))
     }
 }
 
@@ -77,20 +77,20 @@ impl VerifyingKey {
     }
 
     /// Key in DER, as in a bundle.
-    pub(super) fn der(&self) -> &[u8] {
+    pub(super) fn as_der(&self) -> &[u8] {
         &self.0
     }
 }
 
 /// Signature with the key that it claims; not yet verified.
-pub(super) struct Signature {
+pub(super) struct ManifestSignature {
     pub(super) key: VerifyingKey,
     pub(super) bytes: Vec<u8>,
 }
 
-impl Signature {
+impl ManifestSignature {
     /// Returns the key if the signature is valid for the manifest.
-    pub(super) fn of(self, manifest: &[u8]) -> Option<VerifyingKey> {
+    pub(super) fn verify_manifest(self, manifest: &[u8]) -> Option<VerifyingKey> {
         let key = UnparsedPublicKey::new(&ED25519, &self.key.0[PREFIX.len()..]);
         key.verify(manifest, &self.bytes).ok().map(|()| self.key)
     }
@@ -101,7 +101,10 @@ impl Signature {
 ///
 /// # Errors
 /// Returns an error that names the signer.
-pub fn trusted(signer: Option<&VerifyingKey>, keys: &[VerifyingKey]) -> Result<(), BundleError> {
+pub fn check_signer(
+    signer: Option<&VerifyingKey>,
+    keys: &[VerifyingKey],
+) -> Result<(), BundleError> {
     match signer {
         _ if keys.is_empty() => Ok(()),
         None => Err(BundleError::File("is not signed, and a key is asked for".to_owned())),
@@ -129,14 +132,14 @@ mod tests {
     #[test]
     fn the_signature_of_the_standard_is_made_and_taken() {
         let key = SigningKey::from_pem(PRIVATE.as_bytes()).unwrap();
-        let made = key.sign(&[0x72]);
+        let made = key.sign_manifest(&[0x72]);
         assert_eq!(hex(&made.bytes), SIGNATURE);
         assert_eq!(
-            hex(&made.key.der()[PREFIX.len()..]),
+            hex(&made.key.as_der()[PREFIX.len()..]),
             "3d4017c3e843895a92b70aa74d1b7ebc9c982ccf2ec4968cc0cd55f12af4660c"
         );
-        assert_eq!(key.sign(&[0x72]).of(&[0x72]), Some(key.verifying()));
-        assert_eq!(made.of(&[0x73]), None);
+        assert_eq!(key.sign_manifest(&[0x72]).verify_manifest(&[0x72]), Some(key.verifying_key()));
+        assert_eq!(made.verify_manifest(&[0x73]), None);
     }
 
     #[test]

@@ -4,20 +4,22 @@
 //! they are, so that an import that was interrupted can be repeated.
 
 use serde::Serialize;
-use sistership_model::version::sha256;
-use sistership_store::{Expect, NewReport, NewShip, NewTrial, NewVersion, Version};
+use sistership_model::version::sha256_hex;
+use sistership_store::{ExpectedRevision, NewReport, NewShip, NewTrial, NewVersion, Version};
 
-use super::content::{Bundle, Content, ReportRecord, Revision, ShipRecord, VersionRecord};
+use super::content::{
+    Bundle, BundleContent, ReportRecord, ShipRecord, ShipRevision, VersionRecord,
+};
 use super::error::BundleError;
-use super::history::{found, revisions};
+use super::history::{optional, ship_revisions};
 use crate::archive::Archive;
-use crate::line::{LATEST, step};
+use crate::line::{LATEST, server_move};
 
 type Result<T> = std::result::Result<T, BundleError>;
 
 /// Result of an import: the rows that are new to the archive.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
-pub struct Taken {
+pub struct BundleImport {
     /// The ship.
     pub ship: String,
     /// New ships.
@@ -35,50 +37,50 @@ pub struct Taken {
 /// # Errors
 /// Returns an error that names everything in the archive that contradicts the bundle; nothing is
 /// written then.
-pub async fn take(archive: &Archive, bundle: &Bundle) -> Result<Taken> {
+pub async fn import_bundle(archive: &Archive, bundle: &Bundle) -> Result<BundleImport> {
     let content = &bundle.content;
-    let conflicts = conflicts(archive, content).await?;
+    let conflicts = find_conflicts(archive, content).await?;
     if !conflicts.is_empty() {
         return Err(BundleError::Conflicts(conflicts));
     }
-    let mut taken = Taken { ship: content.ship.clone(), ..Taken::default() };
+    let mut taken = BundleImport { ship: content.ship.clone(), ..BundleImport::default() };
     for (name, text) in &content.laws {
         archive.store.laws().insert(name, text).await?;
     }
     for library in &content.effects {
-        archive.store.effects().keep(library).await?;
+        archive.store.effect_libraries().insert_absent(library).await?;
     }
     for ship in &content.ships {
-        taken.ships.extend(ship_taken(archive, ship).await?.then(|| ship.name.clone()));
+        taken.ships.extend(import_ship(archive, ship).await?.then(|| ship.name.clone()));
     }
     // Objects are durable before the rows of trials and versions that refer to them.
     for bytes in bundle.objects.values() {
         archive.objects.put(bytes.clone()).await?;
     }
-    taken.trials = trials_taken(archive, content).await?;
-    versions_taken(archive, content, &mut taken).await?;
-    aliases_taken(archive, content).await?;
+    taken.trials = import_trials(archive, content).await?;
+    import_versions(archive, content, &mut taken).await?;
+    import_aliases(archive, content).await?;
     Ok(taken)
 }
 
 /// Lists rows of the archive that have the same name and other content.
-async fn conflicts(archive: &Archive, content: &Content) -> Result<Vec<String>> {
+async fn find_conflicts(archive: &Archive, content: &BundleContent) -> Result<Vec<String>> {
     let mut all = Vec::new();
     for (name, text) in &content.laws {
-        let known = found(archive.store.laws().get(name).await)?;
-        if known.is_some_and(|law| law.sha256 != sha256(text.as_bytes())) {
+        let known = optional(archive.store.laws().get(name).await)?;
+        if known.is_some_and(|law| law.sha256 != sha256_hex(text.as_bytes())) {
             all.push(format!("the law `{name}` is another one here"));
         }
     }
     for ship in &content.ships {
-        let known = revisions(archive, &ship.name).await?;
+        let known = ship_revisions(archive, &ship.name).await?;
         // One history may be longer than the other; the common part must agree.
         if known.iter().zip(&ship.revisions).any(|(here, there)| here.document != there.document) {
             all.push(format!("the ship `{}` has another history here", ship.name));
         }
     }
     for (line, number, version) in content.versions() {
-        let known = found(archive.store.versions().get(line, number).await)?;
+        let known = optional(archive.store.versions().get(line, number).await)?;
         if known.is_some_and(|known| known.head.sha256 != version.sha256) {
             all.push(format!("version {line}/{number} is another one here"));
         }
@@ -87,11 +89,11 @@ async fn conflicts(archive: &Archive, content: &Content) -> Result<Vec<String>> 
 }
 
 /// Adds the revisions of a ship that are missing; returns true if the ship is new.
-async fn ship_taken(archive: &Archive, ship: &ShipRecord) -> Result<bool> {
-    let known = revisions(archive, &ship.name).await?.len();
+async fn import_ship(archive: &Archive, ship: &ShipRecord) -> Result<bool> {
+    let known = ship_revisions(archive, &ship.name).await?.len();
     for (before, revision) in ship.revisions.iter().enumerate().skip(known) {
         // Revisions are added one by one, so that the archive has the same history.
-        let Revision { title, category, document } = revision.clone();
+        let ShipRevision { title, category, document } = revision.clone();
         let new = NewShip { name: ship.name.clone(), title, category, document };
         match before {
             0 => archive.store.ships().create(&new).await?,
@@ -101,7 +103,7 @@ async fn ship_taken(archive: &Archive, ship: &ShipRecord) -> Result<bool> {
     Ok(known == 0)
 }
 
-async fn trials_taken(archive: &Archive, content: &Content) -> Result<usize> {
+async fn import_trials(archive: &Archive, content: &BundleContent) -> Result<usize> {
     let new = |trial: &super::content::TrialRecord| NewTrial {
         ship: trial.ship.clone(),
         sha256: trial.sha256.clone(),
@@ -121,16 +123,20 @@ async fn trials_taken(archive: &Archive, content: &Content) -> Result<usize> {
 
 /// Creates the versions that are missing, parents first: each pass creates those whose parent
 /// exists.
-async fn versions_taken(archive: &Archive, content: &Content, taken: &mut Taken) -> Result<()> {
+async fn import_versions(
+    archive: &Archive,
+    content: &BundleContent,
+    taken: &mut BundleImport,
+) -> Result<()> {
     let mut open: Vec<(&str, i64, &VersionRecord)> = content.versions().collect();
     while !open.is_empty() {
         let (mut later, before) = (Vec::new(), open.len());
         for (line, number, version) in open {
             let name = format!("{line}/{number}");
-            if found(archive.store.versions().get(line, number).await)?.is_some() {
+            if optional(archive.store.versions().get(line, number).await)?.is_some() {
                 taken.known += 1;
-            } else if let Some(parent) = ready(archive, line, number, version).await? {
-                version_taken(archive, (line, number), version, parent).await?;
+            } else if let Some(parent) = resolve_parent(archive, line, number, version).await? {
+                import_version(archive, (line, number), version, parent).await?;
                 taken.versions.push(name);
             } else {
                 later.push((line, number, version));
@@ -148,14 +154,14 @@ async fn versions_taken(archive: &Archive, content: &Content, taken: &mut Taken)
 
 /// Returns the id of the parent, `Some(None)` for a version without parent, or `None` while the
 /// parent or the preceding version is missing.
-async fn ready(
+async fn resolve_parent(
     archive: &Archive,
     line: &str,
     number: i64,
     version: &VersionRecord,
 ) -> Result<Option<Option<String>>> {
     let at = async |line: &str, number: i64| -> Result<Option<Version>> {
-        found(archive.store.versions().get(line, number).await)
+        optional(archive.store.versions().get(line, number).await)
     };
     if number > 1 && at(line, number - 1).await?.is_none() {
         return Ok(None);
@@ -166,7 +172,7 @@ async fn ready(
     }
 }
 
-async fn version_taken(
+async fn import_version(
     archive: &Archive,
     (line, number): (&str, i64),
     version: &VersionRecord,
@@ -180,7 +186,7 @@ async fn version_taken(
         document: version.document.clone(),
         weights: version.weights.clone(),
     };
-    let follow = step(LATEST, Expect::Any, "bundle");
+    let follow = server_move(LATEST, ExpectedRevision::Any, "bundle");
     // The store assigns the number; a concurrent writer can have taken the expected one.
     let made = archive.store.versions().create(&new, &[follow]).await?;
     if (made.number, &made.sha256) != (number, &version.sha256) {
@@ -199,11 +205,11 @@ async fn version_taken(
 }
 
 /// Sets the aliases of the ship that are missing; existing ones are not moved.
-async fn aliases_taken(archive: &Archive, content: &Content) -> Result<()> {
+async fn import_aliases(archive: &Archive, content: &BundleContent) -> Result<()> {
     // `latest` follows the versions by itself.
     for (alias, number) in content.aliases.iter().filter(|(alias, _)| *alias != LATEST) {
-        if found(archive.store.aliases().get(&content.ship, alias).await)?.is_none() {
-            let change = step(alias, Expect::Absent, "bundle");
+        if optional(archive.store.aliases().get(&content.ship, alias).await)?.is_none() {
+            let change = server_move(alias, ExpectedRevision::Absent, "bundle");
             archive.store.aliases().move_to(&content.ship, *number, &change).await?;
         }
     }

@@ -6,12 +6,12 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 use sistership_store::testing::TestDatabase;
-use sistership_store::{Expect, NewReport, NewShip, NewTrial, NewVersion};
+use sistership_store::{ExpectedRevision, NewReport, NewShip, NewTrial, NewVersion};
 
-use super::{Bundle, BundleError, SigningKey, gather, take, trusted};
+use super::{Bundle, BundleError, SigningKey, check_signer, gather, take};
 use crate::archive::Archive;
-use crate::line::{CHAMPION, step};
-use crate::verify::verify;
+use crate::line::{CHAMPION, server_move};
+use crate::verify::verify_version;
 
 const SHIP: &str = "demo-ship";
 
@@ -70,7 +70,7 @@ async fn filled(database: &TestDatabase) -> Archive {
             parent = Some(made.id);
         }
     }
-    let champion = step(CHAMPION, Expect::Absent, "test");
+    let champion = server_move(CHAMPION, ExpectedRevision::Absent, "test");
     archive.store.aliases().move_to(SHIP, 2, &champion).await.unwrap();
     archive
 }
@@ -93,19 +93,19 @@ fn trial(key: &str) -> NewTrial {
 
 /// SQLite into PostgreSQL, or into another SQLite where that is not installed.
 async fn target() -> TestDatabase {
-    TestDatabase::postgres().await.unwrap_or_else(TestDatabase::sqlite)
+    TestDatabase::new_postgres().await.unwrap_or_else(TestDatabase::new_sqlite)
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn hashes_lineage_and_verification_are_kept() {
-    let (from, to) = (TestDatabase::sqlite(), target().await);
+    let (from, to) = (TestDatabase::new_sqlite(), target().await);
     let (source, other) = (filled(&from).await, opened(&to).await);
-    let bundle = gather(&source, SHIP).await.unwrap();
-    let file = bundle.packed(None).unwrap();
-    assert_eq!(file, bundle.packed(None).unwrap(), "the same bytes");
-    let (read, signer) = Bundle::unpacked(&file).unwrap();
+    let bundle = collect_bundle(&source, SHIP).await.unwrap();
+    let file = bundle.to_bytes(None).unwrap();
+    assert_eq!(file, bundle.to_bytes(None).unwrap(), "the same bytes");
+    let (read, signer) = Bundle::from_bytes(&file).unwrap();
     assert_eq!((&read, signer), (&bundle, None));
-    let taken = take(&other, &read).await.unwrap();
+    let taken = import_bundle(&other, &read).await.unwrap();
     assert!(taken.ships.contains(&SHIP.to_owned()) && taken.versions.len() >= 3, "{taken:?}");
     assert!(taken.trials > 0 && taken.known == 0);
     for number in 1..=3 {
@@ -118,14 +118,14 @@ async fn hashes_lineage_and_verification_are_kept() {
             parent(&other, there.head.parent).await,
             "the parent of {number}"
         );
-        let here = verify(&source, SHIP, number).await.unwrap().derived_sha256;
-        let there = verify(&other, SHIP, number).await.unwrap().derived_sha256;
+        let here = verify_version(&source, SHIP, number).await.unwrap().derived_sha256;
+        let there = verify_version(&other, SHIP, number).await.unwrap().derived_sha256;
         assert_eq!(here, there, "the recipe of {number} gives the same in both");
     }
-    let champion = other.store.versions().current(SHIP, CHAMPION).await.unwrap().unwrap();
+    let champion = other.store.versions().current_version(SHIP, CHAMPION).await.unwrap().unwrap();
     assert!(champion.report.is_some(), "the champion has its report");
-    assert_eq!(gather(&other, SHIP).await.unwrap().content.lines, bundle.content.lines);
-    let again = take(&other, &read).await.unwrap();
+    assert_eq!(collect_bundle(&other, SHIP).await.unwrap().content.lines, bundle.content.lines);
+    let again = import_bundle(&other, &read).await.unwrap();
     assert_eq!((again.versions.len(), again.trials), (0, 0), "a second time nothing is new");
     source.store.close().await;
     other.store.close().await;
@@ -138,9 +138,9 @@ async fn parent(archive: &Archive, id: Option<String>) -> Option<(String, i64)> 
 
 #[tokio::test(flavor = "multi_thread")]
 async fn what_contradicts_is_named_and_nothing_is_taken() {
-    let (from, to) = (TestDatabase::sqlite(), TestDatabase::sqlite());
+    let (from, to) = (TestDatabase::new_sqlite(), TestDatabase::new_sqlite());
     let (source, other) = (filled(&from).await, opened(&to).await);
-    let bundle = gather(&source, SHIP).await.unwrap();
+    let bundle = collect_bundle(&source, SHIP).await.unwrap();
     let another = NewShip {
         name: SHIP.to_owned(),
         title: "Another".to_owned(),
@@ -150,7 +150,7 @@ async fn what_contradicts_is_named_and_nothing_is_taken() {
     other.store.ships().create(&another).await.unwrap();
     let law = bundle.content.laws.keys().next().unwrap();
     other.store.laws().insert(law, "another law").await.unwrap();
-    let refused = take(&other, &bundle).await.unwrap_err().to_string();
+    let refused = import_bundle(&other, &bundle).await.unwrap_err().to_string();
     assert!(refused.contains(&format!("`{SHIP}` has another history")), "{refused}");
     assert!(refused.contains(&format!("the law `{law}` is another one")), "{refused}");
     assert!(other.store.versions().latest(SHIP).await.is_err(), "nothing was written");
@@ -158,9 +158,9 @@ async fn what_contradicts_is_named_and_nothing_is_taken() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_damaged_file_is_refused() {
-    let database = TestDatabase::sqlite();
-    let bundle = gather(&filled(&database).await, SHIP).await.unwrap();
-    let refused = |bytes: &[u8]| match Bundle::unpacked(bytes) {
+    let database = TestDatabase::new_sqlite();
+    let bundle = collect_bundle(&filled(&database).await, SHIP).await.unwrap();
+    let refused = |bytes: &[u8]| match Bundle::from_bytes(bytes) {
         Err(BundleError::File(message)) => message,
         other => panic!("{other:?}"),
     };
@@ -168,11 +168,11 @@ async fn a_damaged_file_is_refused() {
     let mut changed = bundle.clone();
     changed.content.lines.get_mut(SHIP).unwrap()[0].document.push(' ');
     assert!(
-        refused(&changed.packed(None).unwrap()).contains("demo-ship/1 is not what its hash says")
+        refused(&changed.to_bytes(None).unwrap()).contains("demo-ship/1 is not what its hash says")
     );
     let mut lacking = bundle.clone();
     lacking.objects.clear();
-    assert!(refused(&lacking.packed(None).unwrap()).contains("lacks the samples"));
+    assert!(refused(&lacking.to_bytes(None).unwrap()).contains("lacks the samples"));
 }
 
 /// Any 32 bytes are a key: the first of RFC 8032, section 7.1, test 2, the other of zeros.
@@ -201,24 +201,24 @@ fn replaced(archive: &[u8], name: &str, bytes: &[u8]) -> Vec<u8> {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_signed_file_is_its_signers() {
-    let database = TestDatabase::sqlite();
-    let bundle = gather(&filled(&database).await, SHIP).await.unwrap();
+    let database = TestDatabase::new_sqlite();
+    let bundle = collect_bundle(&filled(&database).await, SHIP).await.unwrap();
     let [key, other] = KEYS.map(|pem| SigningKey::from_pem(pem.as_bytes()).unwrap());
-    let file = bundle.packed(Some(&key)).unwrap();
-    let (read, signer) = Bundle::unpacked(&file).unwrap();
-    assert_eq!((read, signer.as_ref()), (bundle.clone(), Some(&key.verifying())));
-    trusted(signer.as_ref(), &[other.verifying(), key.verifying()]).unwrap();
-    let refused = |signer| trusted(signer, &[other.verifying()]).unwrap_err().to_string();
+    let file = bundle.to_bytes(Some(&key)).unwrap();
+    let (read, signer) = Bundle::from_bytes(&file).unwrap();
+    assert_eq!((read, signer.as_ref()), (bundle.clone(), Some(&key.verifying_key())));
+    check_signer(signer.as_ref(), &[other.verifying_key(), key.verifying_key()]).unwrap();
+    let refused = |signer| check_signer(signer, &[other.verifying_key()]).unwrap_err().to_string();
     assert!(refused(signer.as_ref()).contains("which is none of the keys"));
     assert!(refused(None).contains("is not signed"));
     let not_signed = "manifest.json is not what manifest.sig has signed";
     for (name, bytes, says) in [
         ("manifest.json", &b"{}"[..], not_signed),
         ("manifest.sig", &[0; 64], not_signed),
-        ("signer.der", other.verifying().der(), not_signed),
+        ("signer.der", other.verifying_key().as_der(), not_signed),
         ("signer.der", &[0; 44], "signer.der is no Ed25519 key"),
     ] {
-        let error = Bundle::unpacked(&replaced(&file, name, bytes)).unwrap_err().to_string();
+        let error = Bundle::from_bytes(&replaced(&file, name, bytes)).unwrap_err().to_string();
         assert!(error.contains(says), "{error}");
     }
 }

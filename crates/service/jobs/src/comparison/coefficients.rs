@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::compared::Compared;
+use super::compared::ComparisonModel;
 
 /// Value of a coefficient in one model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
@@ -27,12 +27,12 @@ pub struct ComparedCoefficient {
 
 /// Lists every coefficient that at least one model has. Models of different laws may use one name
 /// for coefficients of different meaning.
-pub fn side_by_side(compared: &[Compared<'_>]) -> Vec<ComparedCoefficient> {
+pub fn compare_coefficients(compared: &[ComparisonModel<'_>]) -> Vec<ComparedCoefficient> {
     // The union of the names, in alphabetical order.
     let names: BTreeSet<&String> =
         compared.iter().flat_map(|one| one.model.coefficients.keys()).collect();
     let row = |name: &String| {
-        let of = |one: &Compared<'_>| {
+        let of = |one: &ComparisonModel<'_>| {
             let quantity = one.model.coefficients.get(name)?;
             Some(Estimate { value: quantity.value, standard_error: quantity.standard_error })
         };

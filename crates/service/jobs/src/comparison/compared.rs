@@ -4,7 +4,7 @@ use sistership_model::{Law, Model};
 
 /// Model to be compared, with its law.
 #[derive(Debug, Clone, Copy)]
-pub struct Compared<'a> {
+pub struct ComparisonModel<'a> {
     /// Name in the answer.
     pub name: &'a str,
     /// The model.

@@ -2,10 +2,12 @@
 
 use serde::Serialize;
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{Figure, ManoeuvreSettings, StandardManoeuvres, standard};
+use sistership_simulation::manoeuvre::{
+    ManoeuvreSettings, NamedFigure, StandardManoeuvres, simulate_standard_manoeuvres,
+};
 use utoipa::ToSchema;
 
-use super::compared::Compared;
+use super::compared::ComparisonModel;
 
 /// Figure of one model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
@@ -28,7 +30,7 @@ pub struct ComparedFigure {
 }
 
 /// Simulates the standard manoeuvres of a model at its own speed and revolutions.
-pub fn standard_of(one: &Compared<'_>, ship: &Ship) -> StandardManoeuvres {
+pub fn simulate_standard(one: &ComparisonModel<'_>, ship: &Ship) -> StandardManoeuvres {
     // Without revolutions the propeller would brake the ship, and the figures would mean nothing.
     if ship.has_propeller() && ship.revolutions_at(ship.approach_speed_m_s()) == 0.0 {
         let reason = format!(
@@ -37,12 +39,12 @@ pub fn standard_of(one: &Compared<'_>, ship: &Ship) -> StandardManoeuvres {
         );
         return StandardManoeuvres { failures: vec![reason], ..StandardManoeuvres::default() };
     }
-    standard(ship, &ManoeuvreSettings::default())
+    simulate_standard_manoeuvres(ship, &ManoeuvreSettings::default())
 }
 
 /// Lists every figure that at least one model has, in the order of the manoeuvres.
-pub fn side_by_side(all: &[StandardManoeuvres]) -> Vec<ComparedFigure> {
-    let figures: Vec<Vec<Figure>> = all.iter().map(StandardManoeuvres::figures).collect();
+pub fn compare_figures(all: &[StandardManoeuvres]) -> Vec<ComparedFigure> {
+    let figures: Vec<Vec<NamedFigure>> = all.iter().map(StandardManoeuvres::list_figures).collect();
     let mut rows: Vec<ComparedFigure> = Vec::new();
     for (place, figure) in
         figures.iter().enumerate().flat_map(|(k, of)| of.iter().map(move |f| (k, f)))

@@ -11,7 +11,9 @@ mod tests;
 mod trials;
 
 pub use coefficients::{ComparedCoefficient, Estimate};
-pub use compared::Compared;
+pub use compared::ComparisonModel;
 pub use manoeuvres::{ComparedFigure, FigureValue};
-pub use side_by_side::{BETWEEN, Column, Comparison, ComparisonError, MOST_TRIALS, check, compare};
+pub use side_by_side::{
+    Column, Comparison, ComparisonError, MODEL_COUNT_LIMITS, MOST_TRIALS, check_names, compare,
+};
 pub use trials::{ComparedTrial, TrialError};

@@ -6,12 +6,12 @@ use sistership_simulation::{PlantError, Ship};
 use utoipa::ToSchema;
 
 use super::coefficients::{self, ComparedCoefficient};
-use super::compared::Compared;
+use super::compared::ComparisonModel;
 use super::manoeuvres::{self, ComparedFigure};
 use super::trials::{self, ComparedTrial};
 
 /// Smallest and largest number of models in a comparison.
-pub const BETWEEN: [usize; 2] = [2, 5];
+pub const MODEL_COUNT_LIMITS: [usize; 2] = [2, 5];
 
 /// Largest number of trials in a comparison.
 pub const MOST_TRIALS: usize = 20;
@@ -75,15 +75,18 @@ pub enum ComparisonError {
 /// # Errors
 /// Returns an error that names the model that cannot be compared, and the reason.
 pub fn compare(
-    compared: &[Compared<'_>],
+    compared: &[ComparisonModel<'_>],
     trials: &[(&str, &Trial)],
 ) -> Result<Comparison, ComparisonError> {
-    check(&compared.iter().map(|one| one.name).collect::<Vec<_>>())?;
-    let ships: Vec<Ship> = compared.iter().map(ready).collect::<Result<_, _>>()?;
+    check_names(&compared.iter().map(|one| one.name).collect::<Vec<_>>())?;
+    let ships: Vec<Ship> = compared.iter().map(build_ship).collect::<Result<_, _>>()?;
     // Each model is simulated once on each trial; the totals below use these results.
-    let sailed = trials::errors(compared, &ships, trials);
-    let standard: Vec<_> =
-        compared.iter().zip(&ships).map(|(one, ship)| manoeuvres::standard_of(one, ship)).collect();
+    let sailed = trials::simulation_errors(compared, &ships, trials);
+    let standard: Vec<_> = compared
+        .iter()
+        .zip(&ships)
+        .map(|(one, ship)| manoeuvres::simulate_standard(one, ship))
+        .collect();
     let columns = compared.iter().zip(&ships).enumerate().map(|(place, (one, ship))| Column {
         name: one.name.to_owned(),
         model: one.model.name.clone(),
@@ -92,12 +95,12 @@ pub fn compare(
         speed_m_s: ship.approach_speed_m_s(),
         lpp_m: ship.lpp_m(),
         failures: standard[place].failures.clone(),
-        standardised_mse: trials::over_all(&sailed, place),
+        standardised_mse: trials::mean_over_trials(&sailed, place),
     });
     Ok(Comparison {
         models: columns.collect(),
-        coefficients: coefficients::side_by_side(compared),
-        figures: manoeuvres::side_by_side(&standard),
+        coefficients: coefficients::compare_coefficients(compared),
+        figures: manoeuvres::compare_figures(&standard),
         trials: sailed,
     })
 }
@@ -106,8 +109,8 @@ pub fn compare(
 ///
 /// # Errors
 /// Returns an error if the number of names is wrong or one is repeated.
-pub fn check(names: &[&str]) -> Result<(), ComparisonError> {
-    if !(BETWEEN[0]..=BETWEEN[1]).contains(&names.len()) {
+pub fn check_names(names: &[&str]) -> Result<(), ComparisonError> {
+    if !(MODEL_COUNT_LIMITS[0]..=MODEL_COUNT_LIMITS[1]).contains(&names.len()) {
         return Err(ComparisonError::Count(names.len()));
     }
     // A pairwise search is enough for five names.
@@ -117,7 +120,7 @@ pub fn check(names: &[&str]) -> Result<(), ComparisonError> {
     }
 }
 
-fn ready(one: &Compared<'_>) -> Result<Ship, ComparisonError> {
+fn build_ship(one: &ComparisonModel<'_>) -> Result<Ship, ComparisonError> {
     Ship::new(one.model, one.law)
         .map_err(|reason| ComparisonError::Model { name: one.name.to_owned(), reason })
 }

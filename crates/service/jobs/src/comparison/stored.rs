@@ -5,13 +5,13 @@ use std::sync::Arc;
 use sistership_model::version::RecipeTrial;
 use sistership_model::{Law, Model, Trial};
 
-use super::compared::Compared;
+use super::compared::ComparisonModel;
 use super::side_by_side::{Comparison, ComparisonError, compare};
 use crate::memory::trial_bytes;
 
 /// Inputs of a comparison.
 #[derive(Debug, Default)]
-pub struct Asked {
+pub struct ComparisonInputs {
     /// Models with their laws, by the names in the request; weights of learned corrections are
     /// attached.
     pub versions: Vec<(String, Model, Arc<Law>)>,
@@ -19,9 +19,9 @@ pub struct Asked {
     pub trials: Vec<sistership_store::Trial>,
 }
 
-impl Asked {
+impl ComparisonInputs {
     /// Names and hashes of the samples that the comparison reads.
-    pub fn samples(&self) -> Vec<RecipeTrial> {
+    pub fn recipe_trials(&self) -> Vec<RecipeTrial> {
         let of = |trial: &sistership_store::Trial| RecipeTrial {
             name: trial.name.clone(),
             sha256: trial.object_key.clone(),
@@ -31,7 +31,7 @@ impl Asked {
 }
 
 /// Memory that a comparison needs, bytes: the samples, and as much for each simulation of them.
-pub fn demand(asked: &Asked) -> u64 {
+pub fn memory_demand(asked: &ComparisonInputs) -> u64 {
     let samples: u64 = asked.trials.iter().map(|trial| trial_bytes(trial.sample_rows)).sum();
     samples * (1 + asked.versions.len() as u64)
 }
@@ -40,10 +40,13 @@ pub fn demand(asked: &Asked) -> u64 {
 ///
 /// # Errors
 /// Returns an error that names the version that cannot be compared, and the reason.
-pub fn compared(asked: &Asked, samples: &[Trial]) -> Result<Comparison, ComparisonError> {
+pub fn compare_stored(
+    asked: &ComparisonInputs,
+    samples: &[Trial],
+) -> Result<Comparison, ComparisonError> {
     let versions = asked.versions.iter();
-    let versions: Vec<Compared<'_>> =
-        versions.map(|(name, model, law)| Compared { name, model, law }).collect();
+    let versions: Vec<ComparisonModel<'_>> =
+        versions.map(|(name, model, law)| ComparisonModel { name, model, law }).collect();
     // Ids, not names: two ships may have trials with the same name.
     let ids = asked.trials.iter().map(|trial| trial.id.as_str());
     compare(&versions, &ids.zip(samples).collect::<Vec<_>>())

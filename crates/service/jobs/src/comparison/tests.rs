@@ -25,14 +25,14 @@ fn straight(speed_m_s: f64, too_much: [f64; 4]) -> Trial {
 
 #[test]
 fn errors_are_those_worked_by_hand() {
-    let zoo = Zoo::embedded().unwrap();
-    let mut model = zoo.model("mariner").unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let mut model = zoo.find_model("mariner").unwrap();
     // Straight running only: without coefficients the hull has neither drag nor asymmetry.
     model.coefficients.retain(|name, _| name == "Y_v" || name == "N_r");
     let law = zoo.law(&model.law).unwrap();
     let speed = model.speed_m_s.unwrap();
     let trial = straight(speed, [0.0, 0.3, -0.1, 0.2]);
-    let names = ["a", "b"].map(|name| Compared { name, model: &model, law });
+    let names = ["a", "b"].map(|name| ComparisonModel { name, model: &model, law });
     let comparison = compare(&names, &[("run", &trial)]).unwrap();
     // Errors 0, -0.3, 0.1, -0.2: their squares are 0.14, by four 0.035. The log's mean is 0.1 above
     // the speed, its variance (0.01 + 0.04 + 0.04 + 0.01)/4 = 0.025: 0.035/0.025 = 1.4.
@@ -58,16 +58,16 @@ fn errors_over_all_trials_count_by_samples() {
     };
     // (10*3 + 30*1)/40
     let all = [trial(10, Some(3.0)), trial(30, Some(1.0))];
-    assert_eq!(trials::over_all(&all, 0), Some(1.5));
-    assert_eq!(trials::over_all(&[trial(10, Some(3.0)), trial(30, None)], 0), None);
-    assert_eq!(trials::over_all(&[], 0), None);
+    assert_eq!(trials::mean_over_trials(&all, 0), Some(1.5));
+    assert_eq!(trials::mean_over_trials(&[trial(10, Some(3.0)), trial(30, None)], 0), None);
+    assert_eq!(trials::mean_over_trials(&[], 0), None);
 }
 
 #[test]
 fn coefficients_and_figures_stand_side_by_side() {
-    let zoo = Zoo::embedded().unwrap();
-    let models = ["mariner", "kvlcc2"].map(|name| (name, zoo.model(name).unwrap()));
-    let compared = models.each_ref().map(|(name, model)| Compared {
+    let zoo = Zoo::load_embedded().unwrap();
+    let models = ["mariner", "kvlcc2"].map(|name| (name, zoo.find_model(name).unwrap()));
+    let compared = models.each_ref().map(|(name, model)| ComparisonModel {
         name,
         model,
         law: zoo.law(&model.law).unwrap(),
@@ -88,8 +88,8 @@ fn coefficients_and_figures_stand_side_by_side() {
 
 #[test]
 fn what_cannot_be_compared_is_refused() {
-    let said = |names: &[&str]| check(names).unwrap_err().to_string();
+    let said = |names: &[&str]| check_names(names).unwrap_err().to_string();
     assert!(said(&["a"]).contains("two to five") && said(&["a"; 6]).contains("not 6"));
     assert!(said(&["a", "b", "a"]).contains("`a` is named twice"));
-    assert!(check(&["a", "b"]).is_ok());
+    assert!(check_names(&["a", "b"]).is_ok());
 }

@@ -6,10 +6,10 @@ use serde::Serialize;
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::Ship;
 use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 use utoipa::ToSchema;
 
-use super::compared::Compared;
+use super::compared::ComparisonModel;
 
 /// Error of a model's simulation of a trial.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
@@ -38,8 +38,8 @@ pub struct ComparedTrial {
 }
 
 /// Simulates every model on every trial, once from the first sample.
-pub fn errors(
-    compared: &[Compared<'_>],
+pub fn simulation_errors(
+    compared: &[ComparisonModel<'_>],
     ships: &[Ship],
     trials: &[(&str, &Trial)],
 ) -> Vec<ComparedTrial> {
@@ -53,14 +53,14 @@ pub fn errors(
         errors: compared
             .iter()
             .zip(ships)
-            .map(|(one, ship)| error(one, ship, trial, &deviations))
+            .map(|(one, ship)| simulation_error(one, ship, trial, &deviations))
             .collect(),
     };
     trials.iter().map(row).collect()
 }
 
-fn error(
-    one: &Compared<'_>,
+fn simulation_error(
+    one: &ComparisonModel<'_>,
     ship: &Ship,
     trial: &Trial,
     deviations: &BTreeMap<Channel, f64>,
@@ -70,15 +70,15 @@ fn error(
         standardised_mse: None,
         reason: Some(reason),
     };
-    match replay(ship, trial, &ReplaySettings::default()) {
+    match replay_trial(ship, trial, &ReplaySettings::default()) {
         Err(missing) => none(format!("{missing} by law `{}`", one.law.name)),
         Ok(run) => match &run.stopped {
             Some(stopped) => none(stopped.to_string()),
             None => {
-                let error = SquaredError::of(trial, &run);
+                let error = SquaredError::from_trial(trial, &run);
                 TrialError {
                     standardised_mse: Some(standardised_mse(&error, deviations)),
-                    rmse: error.rmse(),
+                    rmse: error.rmse_by_channel(),
                     reason: None,
                 }
             }
@@ -88,7 +88,7 @@ fn error(
 
 /// Mean of a model's standardised squared error over all samples of all trials; `None` if one of
 /// the simulations stopped or there are no samples.
-pub fn over_all(trials: &[ComparedTrial], place: usize) -> Option<f64> {
+pub fn mean_over_trials(trials: &[ComparedTrial], place: usize) -> Option<f64> {
     // Weighted by samples: sum_k(e_k n_k) / sum_k(n_k).
     let weighted = trials.iter().map(|trial| {
         Some((trial.errors[place].standardised_mse? * trial.samples as f64, trial.samples as f64))

@@ -9,7 +9,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use sistership_store::{Diagnosed, VersionHead};
+use sistership_store::{DiagnosisRow, VersionHead};
 
 /// Error probabilities of a diagnosis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +33,7 @@ impl Default for EvidenceLimits {
 
 impl EvidenceLimits {
     /// Step of the cumulative sum after a diagnosis: the log likelihood ratio of its verdict.
-    fn step(self, holds: bool) -> f64 {
+    fn log_likelihood_ratio(self, holds: bool) -> f64 {
         // ln(beta / (1 - alpha)) < 0 for a complete model, ln((1 - beta) / alpha) > 0 otherwise.
         match holds {
             true => (self.miss / (1.0 - self.false_alarm)).ln(),
@@ -44,9 +44,9 @@ impl EvidenceLimits {
 
 /// Verdict of one diagnosis on a version.
 #[derive(Debug, Clone)]
-pub(super) struct Observation<'a> {
+pub(super) struct DiagnosisVerdict<'a> {
     /// The diagnosis.
-    pub row: &'a Diagnosed,
+    pub row: &'a DiagnosisRow,
     /// `complete`, `effects` or `unexplained`.
     pub verdict: &'a str,
     /// Names of the effects that the version lacks.
@@ -57,10 +57,10 @@ pub(super) struct Observation<'a> {
     unexplained: Vec<String>,
 }
 
-impl<'a> Observation<'a> {
+impl<'a> DiagnosisVerdict<'a> {
     /// Reads a diagnosis. For the version that resulted from it, the verdict is the one with the
     /// effects added.
-    fn new(version: &VersionHead, row: &'a Diagnosed) -> Self {
+    fn new(version: &VersionHead, row: &'a DiagnosisRow) -> Self {
         let is_subject = row.version_id == version.id;
         let verdict = match (is_subject, row.verdict.as_str()) {
             // The resulting version contains the effects that were found, so nothing is missing
@@ -68,19 +68,19 @@ impl<'a> Observation<'a> {
             (false, "effects") => COMPLETE,
             (_, verdict) => verdict,
         };
-        let effects = if is_subject { list(&row.effects) } else { Vec::new() };
-        let mut trials = list(&row.trials);
+        let effects = if is_subject { parse_list(&row.effects) } else { Vec::new() };
+        let mut trials = parse_list(&row.trials);
         trials.sort();
-        Self { row, verdict, effects, trials, unexplained: list(&row.unexplained) }
+        Self { row, verdict, effects, trials, unexplained: parse_list(&row.unexplained) }
     }
 
     /// True if the diagnosis finds nothing missing.
-    pub fn holds(&self) -> bool {
+    pub fn is_complete(&self) -> bool {
         self.verdict == COMPLETE
     }
 
     /// Returns the first trial that contradicts the model; a missing effect concerns all trials.
-    pub fn first_against(&self) -> Option<&String> {
+    pub fn first_contradicting_trial(&self) -> Option<&String> {
         let left = self.trials.iter().find(|trial| self.unexplained.contains(trial));
         let first = self.trials.first();
         if self.effects.is_empty() { left.or(first) } else { first }
@@ -94,72 +94,72 @@ impl<'a> Observation<'a> {
 
 const COMPLETE: &str = "complete";
 
-fn list(text: &str) -> Vec<String> {
+fn parse_list(text: &str) -> Vec<String> {
     // The store writes these lists itself; an unreadable one counts as empty.
     serde_json::from_str(text).unwrap_or_default()
 }
 
 /// Evidence of all diagnoses of a version.
 #[derive(Debug, Default)]
-pub(super) struct Evidence<'a> {
+pub(super) struct ConditionEvidence<'a> {
     /// The diagnosis by which each trial counts, in the order of the trials.
-    pub sequence: Vec<Observation<'a>>,
+    pub sequence: Vec<DiagnosisVerdict<'a>>,
     /// Newest diagnosis that combines trials of other diagnoses.
-    pub whole: Option<Observation<'a>>,
+    pub whole: Option<DiagnosisVerdict<'a>>,
     /// Index in the sequence at which the cumulative sum began to rise, if it is above zero at the
     /// end.
     alarm: Option<usize>,
 }
 
-impl<'a> Evidence<'a> {
+impl<'a> ConditionEvidence<'a> {
     /// Combines diagnoses, latest first; those on a deleted trial do not count.
     pub fn new(
         version: &VersionHead,
-        rows: &'a [Diagnosed],
+        rows: &'a [DiagnosisRow],
         deleted: &[String],
         limits: EvidenceLimits,
     ) -> Self {
-        let is_kept = |observation: &Observation<'_>| {
+        let is_kept = |observation: &DiagnosisVerdict<'_>| {
             !observation.trials.iter().any(|trial| deleted.contains(trial))
         };
-        let all: Vec<Observation<'a>> =
-            rows.iter().map(|row| Observation::new(version, row)).filter(is_kept).collect();
-        let gathers = |one: &&Observation<'_>| all.iter().any(|other| one.contains(other));
+        let all: Vec<DiagnosisVerdict<'a>> =
+            rows.iter().map(|row| DiagnosisVerdict::new(version, row)).filter(is_kept).collect();
+        let gathers = |one: &&DiagnosisVerdict<'_>| all.iter().any(|other| one.contains(other));
         let whole = all.iter().find(gathers).cloned();
-        let sequence = sequence(&all);
-        let alarm = alarm(&sequence, limits);
+        let sequence = narrowest_diagnoses(&all);
+        let alarm = alarm_start(&sequence, limits);
         Self { sequence, whole, alarm }
     }
 
     /// Returns the diagnoses that contradict the version, that of all trials first.
-    pub fn against(&self) -> Vec<&Observation<'a>> {
-        let whole = self.whole.iter().filter(|whole| !whole.holds());
+    pub fn contradicting_diagnoses(&self) -> Vec<&DiagnosisVerdict<'a>> {
+        let whole = self.whole.iter().filter(|whole| !whole.is_complete());
         let since = self.sequence.iter().skip(self.alarm.unwrap_or(self.sequence.len()));
-        whole.chain(since.filter(|one| !one.holds())).collect()
+        whole.chain(since.filter(|one| !one.is_complete())).collect()
     }
 
     /// Returns the first trial from which the version is not valid.
-    pub fn since(&self) -> Option<&String> {
-        let alarm = self.alarm.and_then(|at| self.sequence[at].first_against());
-        let whole = self.whole.as_ref().filter(|whole| !whole.holds());
-        alarm.or_else(|| whole.and_then(Observation::first_against))
+    pub fn invalid_since(&self) -> Option<&String> {
+        let alarm = self.alarm.and_then(|at| self.sequence[at].first_contradicting_trial());
+        let whole = self.whole.as_ref().filter(|whole| !whole.is_complete());
+        alarm.or_else(|| whole.and_then(DiagnosisVerdict::first_contradicting_trial))
     }
 
     /// Returns the first trial after the last one that contradicted the version.
-    pub fn holds_since(&self) -> Option<&String> {
-        let last = self.sequence.iter().rposition(|one| !one.holds()).map_or(0, |at| at + 1);
+    pub fn valid_since(&self) -> Option<&String> {
+        let last = self.sequence.iter().rposition(|one| !one.is_complete()).map_or(0, |at| at + 1);
         self.sequence.get(last).and_then(|one| one.trials.first())
     }
 
     /// Returns the ids of all trials that count.
-    pub fn trials(&self) -> BTreeSet<String> {
+    pub fn counted_trials(&self) -> BTreeSet<String> {
         self.sequence.iter().flat_map(|one| one.trials.iter().cloned()).collect()
     }
 }
 
 /// Selects the narrowest diagnosis of each trial, the latest of equal ones, in the order of the
 /// trials.
-fn sequence<'a>(all: &[Observation<'a>]) -> Vec<Observation<'a>> {
+fn narrowest_diagnoses<'a>(all: &[DiagnosisVerdict<'a>]) -> Vec<DiagnosisVerdict<'a>> {
     let mut of_trial: BTreeMap<&str, usize> = BTreeMap::new();
     for (at, one) in all.iter().enumerate() {
         for trial in &one.trials {
@@ -175,11 +175,11 @@ fn sequence<'a>(all: &[Observation<'a>]) -> Vec<Observation<'a>> {
 }
 
 /// Returns the index at which the cumulative sum began to rise, if it is above zero at the end.
-fn alarm(sequence: &[Observation<'_>], limits: EvidenceLimits) -> Option<usize> {
+fn alarm_start(sequence: &[DiagnosisVerdict<'_>], limits: EvidenceLimits) -> Option<usize> {
     let (mut sum, mut start) = (0.0, None);
     for (at, one) in sequence.iter().enumerate() {
         // Page's test: S_k = max(0, S_(k-1) + step_k).
-        sum = f64::max(0.0, sum + limits.step(one.holds()));
+        sum = f64::max(0.0, sum + limits.log_likelihood_ratio(one.is_complete()));
         start = if sum > 0.0 { start.or(Some(at)) } else { None };
     }
     start
@@ -204,8 +204,8 @@ mod tests {
         }
     }
 
-    fn row(id: usize, trials: &[&str], verdict: &str) -> Diagnosed {
-        Diagnosed {
+    fn row(id: usize, trials: &[&str], verdict: &str) -> DiagnosisRow {
+        DiagnosisRow {
             id: format!("{id:03}"),
             version_id: "v".into(),
             made_id: None,
@@ -220,13 +220,13 @@ mod tests {
     }
 
     /// Diagnoses in the order in which they were made, as the store gives them.
-    fn newest_first(mut rows: Vec<Diagnosed>) -> Vec<Diagnosed> {
+    fn newest_first(mut rows: Vec<DiagnosisRow>) -> Vec<DiagnosisRow> {
         rows.reverse();
         rows
     }
 
-    fn weighed(rows: &[Diagnosed]) -> Evidence<'_> {
-        Evidence::new(&version(), rows, &[], EvidenceLimits::default())
+    fn weighed(rows: &[DiagnosisRow]) -> ConditionEvidence<'_> {
+        ConditionEvidence::new(&version(), rows, &[], EvidenceLimits::default())
     }
 
     #[test]
@@ -236,8 +236,11 @@ mod tests {
         rows.push(row(4, &["e"], "complete"));
         let rows = newest_first(rows);
         let evidence = weighed(&rows);
-        assert_eq!((evidence.against().len(), evidence.since().unwrap().as_str()), (3, "b"));
-        assert_eq!(evidence.trials().len(), 5);
+        assert_eq!(
+            (evidence.contradicting_diagnoses().len(), evidence.invalid_since().unwrap().as_str()),
+            (3, "b")
+        );
+        assert_eq!(evidence.counted_trials().len(), 5);
     }
 
     /// Three trials that leave something, then clean ones, with errors of a diagnosis at half and
@@ -255,7 +258,9 @@ mod tests {
                 let name = |at| format!("{at:02}");
                 let rows = (0..3 + clean).map(|at| row(at, &[&name(at)], verdict(at))).collect();
                 let rows = newest_first(rows);
-                Evidence::new(&version(), &rows, &[], limits).against().is_empty()
+                ConditionEvidence::new(&version(), &rows, &[], limits)
+                    .contradicting_diagnoses()
+                    .is_empty()
             });
             println!("{factors:?}: cleared by {cleared:?}");
             assert!((4..=8).contains(&cleared.unwrap()), "{factors:?}: {cleared:?}");
@@ -274,16 +279,20 @@ mod tests {
         let ids: Vec<&str> = evidence.sequence.iter().map(|one| one.row.id.as_str()).collect();
         assert_eq!(ids, ["000", "003"]);
         assert_eq!(evidence.whole.as_ref().unwrap().row.id, "002");
-        assert_eq!((evidence.against().len(), evidence.since().unwrap().as_str()), (1, "a"));
+        assert_eq!(
+            (evidence.contradicting_diagnoses().len(), evidence.invalid_since().unwrap().as_str()),
+            (1, "a")
+        );
     }
 
     #[test]
     fn what_was_found_on_a_deleted_trial_does_not_count() {
         let rows = newest_first(vec![row(0, &["a"], "complete"), row(1, &["b"], "unexplained")]);
         let deleted = ["b".to_owned()];
-        let evidence = Evidence::new(&version(), &rows, &deleted, EvidenceLimits::default());
-        assert!(evidence.against().is_empty());
-        assert_eq!(evidence.holds_since().unwrap(), "a");
+        let evidence =
+            ConditionEvidence::new(&version(), &rows, &deleted, EvidenceLimits::default());
+        assert!(evidence.contradicting_diagnoses().is_empty());
+        assert_eq!(evidence.valid_since().unwrap(), "a");
     }
 
     #[test]
@@ -291,6 +300,6 @@ mod tests {
         let mut left = row(0, &["a", "b", "c"], "unexplained");
         left.unexplained = r#"["b"]"#.into();
         let rows = [left];
-        assert_eq!(weighed(&rows).since().unwrap(), "b");
+        assert_eq!(weighed(&rows).invalid_since().unwrap(), "b");
     }
 }

@@ -3,9 +3,9 @@
 
 use std::collections::BTreeSet;
 
-use sistership_store::{MAX_LIMIT, Page, Trial, Version};
+use sistership_store::{MAX_LIMIT, PageRequest, Trial, Version};
 
-use crate::archive::{Archive, document};
+use crate::archive::{Archive, version_document};
 use crate::error::DeriveError;
 
 type Result<T> = std::result::Result<T, DeriveError>;
@@ -14,7 +14,7 @@ type Result<T> = std::result::Result<T, DeriveError>;
 /// diagnosis grow with the number of samples, while the standard error of an effect that all trials
 /// have falls as `1/sqrt(n)`. With twelve it is 1.4 times that of 24, at half the cost. Older
 /// trials count by their own diagnosis.
-pub const NEWEST: usize = 12;
+pub const MAX_JOINT_TRIALS: usize = 12;
 
 /// Returns the ids of new trials together with earlier ones since the version was fitted, in the
 /// order of their upload: a limited number, and as many as `is_affordable` allows by their number
@@ -22,7 +22,7 @@ pub const NEWEST: usize = 12;
 ///
 /// # Errors
 /// Returns an error if the store does not answer, or if the version cannot be read.
-pub async fn gathered(
+pub async fn trials_to_diagnose(
     archive: &Archive,
     version: &Version,
     new: &[String],
@@ -30,12 +30,12 @@ pub async fn gathered(
 ) -> Result<Option<Vec<String>>> {
     let trials = trials_since(archive, version).await?;
     let with_new = |trial: &&Trial| new.contains(&trial.id);
-    let new_rows: u64 = trials.iter().filter(with_new).map(rows).sum();
+    let new_rows: u64 = trials.iter().filter(with_new).map(sample_count).sum();
     let earlier = trials.iter().rev().filter(|trial| !new.contains(&trial.id));
     // Earlier trials are added from the newest back until number or memory is exhausted.
     let (mut ids, mut samples) = (new.to_vec(), new_rows);
-    for trial in earlier.take(NEWEST.saturating_sub(new.len())) {
-        samples += rows(trial);
+    for trial in earlier.take(MAX_JOINT_TRIALS.saturating_sub(new.len())) {
+        samples += sample_count(trial);
         if !is_affordable(samples) {
             break;
         }
@@ -48,13 +48,13 @@ pub async fn gathered(
     Ok(if is_known { None } else { Some(ids) })
 }
 
-fn rows(trial: &Trial) -> u64 {
+fn sample_count(trial: &Trial) -> u64 {
     u64::try_from(trial.sample_rows).unwrap_or(0)
 }
 
 /// Returns true if one of the newest diagnoses of a version has exactly these trials.
 async fn is_diagnosed(archive: &Archive, version: &Version, ids: &[String]) -> Result<bool> {
-    let page = Page::first(MAX_LIMIT);
+    let page = PageRequest::first_page(MAX_LIMIT);
     let known = archive.store.diagnoses().by_version(&version.head.id, &page).await?.items;
     let mut known = known.iter().filter(|known| known.version_id == version.head.id);
     Ok(known.any(|known| {
@@ -75,12 +75,12 @@ async fn trials_since(archive: &Archive, version: &Version) -> Result<Vec<Trial>
 
 /// Reads the trials of a ship, oldest first.
 async fn all_trials(archive: &Archive, ship: &str) -> Result<Vec<Trial>> {
-    let (mut all, mut page) = (Vec::new(), Page::first(MAX_LIMIT));
+    let (mut all, mut page) = (Vec::new(), PageRequest::first_page(MAX_LIMIT));
     loop {
         let trials = archive.store.trials().list(ship, &page).await?;
         all.extend(trials.items);
         let Some(next) = trials.next else { return Ok(all) };
-        page = Page::after(next, MAX_LIMIT);
+        page = PageRequest::after_key(next, MAX_LIMIT);
     }
 }
 
@@ -90,14 +90,14 @@ async fn all_trials(archive: &Archive, ship: &str) -> Result<Vec<Trial>> {
 /// # Errors
 /// Returns an error if the store does not answer, or if a version cannot be read.
 pub async fn fitted_samples(archive: &Archive, version: &Version) -> Result<BTreeSet<String>> {
-    let mut recipe = document(version)?.recipe;
+    let mut recipe = version_document(version)?.recipe;
     let mut fitted = BTreeSet::new();
     loop {
         fitted.extend(recipe.trials().iter().map(|trial| trial.sha256.clone()));
         // A version with effects comes from a diagnosis of an earlier version, whose trials count,
         // too.
-        let Some(earlier) = recipe.diagnosed() else { return Ok(fitted) };
+        let Some(earlier) = recipe.diagnosed_version() else { return Ok(fitted) };
         let earlier = archive.store.versions().get(&earlier.ship, earlier.number).await?;
-        recipe = document(&earlier)?.recipe;
+        recipe = version_document(&earlier)?.recipe;
     }
 }

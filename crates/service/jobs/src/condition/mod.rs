@@ -9,20 +9,20 @@ mod words;
 use std::collections::BTreeSet;
 
 use serde::Serialize;
-use sistership_store::{Diagnosed, MAX_LIMIT, Page, Store, StoreError, VersionHead};
+use sistership_store::{DiagnosisRow, MAX_LIMIT, PageRequest, Store, StoreError, VersionHead};
 use utoipa::ToSchema;
 
-use self::evidence::{Evidence, EvidenceLimits, Observation};
-use crate::line::{CHAMPION, alias};
+use self::evidence::{ConditionEvidence, DiagnosisVerdict, EvidenceLimits};
+use crate::line::{CHAMPION, find_alias};
 
-pub use gathered::{NEWEST, fitted_samples, gathered};
+pub use gathered::{MAX_JOINT_TRIALS, fitted_samples, trials_to_diagnose};
 pub use recent_drift::{DRIFT_LIMIT, RecentDrift};
 
 /// Validity of the champion of a ship, by all its diagnoses and its drift.
 #[derive(Debug, Clone, Default, Serialize, ToSchema)]
 pub struct Condition {
     /// `holds`, `does_not_hold`, or `unknown` if its champion was never diagnosed.
-    pub model: Standing,
+    pub model: ModelValidity,
     /// The same in one sentence.
     pub sentence: String,
     /// The number of its champion.
@@ -37,7 +37,7 @@ pub struct Condition {
     /// Ids of the trials that contradict it.
     pub against: Vec<String>,
     /// The most informative diagnosis: of those that contradict it, the one of most trials.
-    pub found_by: Option<FoundBy>,
+    pub found_by: Option<DiagnosisReference>,
     /// The first trial of this condition: from it on the champion is not valid, or every trial was
     /// clean.
     pub since: Option<SinceTrial>,
@@ -47,7 +47,7 @@ pub struct Condition {
     /// trials.
     pub diagnoses: Vec<WeighedDiagnosis>,
     /// The version with the effects that the champion lacks.
-    pub with_effects: Option<MadeVersion>,
+    pub with_effects: Option<VersionWithEffects>,
     /// Id of the newest diagnosis, and the number of deleted trials; part of the entity tag.
     #[serde(skip)]
     state: String,
@@ -56,7 +56,7 @@ pub struct Condition {
 /// Validity of a model.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Standing {
+pub enum ModelValidity {
     /// Its residual is explained by the measurement noise.
     Holds,
     /// Something is missing.
@@ -68,7 +68,7 @@ pub enum Standing {
 
 /// Reference to a diagnosis.
 #[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct FoundBy {
+pub struct DiagnosisReference {
     /// Its id.
     pub diagnosis: String,
     /// Time of the diagnosis, microseconds since 1970.
@@ -93,7 +93,7 @@ pub struct SinceTrial {
 pub struct WeighedDiagnosis {
     /// The diagnosis.
     #[serde(flatten)]
-    pub by: FoundBy,
+    pub by: DiagnosisReference,
     /// Ids of its trials.
     pub trials: Vec<String>,
     /// `complete`, `effects` or `unexplained`.
@@ -104,7 +104,7 @@ pub struct WeighedDiagnosis {
 
 /// Version that resulted from a diagnosis.
 #[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct MadeVersion {
+pub struct VersionWithEffects {
     /// Its number.
     pub number: i64,
     /// Its path.
@@ -116,123 +116,135 @@ impl Condition {
     ///
     /// # Errors
     /// Returns an error if the store does not answer.
-    pub async fn of(store: &Store, ship: &str) -> Result<Self, StoreError> {
-        let Some(champion) = alias(store, ship, CHAMPION).await? else {
+    pub async fn read_current(store: &Store, ship: &str) -> Result<Self, StoreError> {
+        let Some(champion) = find_alias(store, ship, CHAMPION).await? else {
             return Ok(Self {
                 sentence: "Unknown: it has no champion yet.".into(),
                 ..Self::default()
             });
         };
-        let version = store.versions().head(ship, champion.version_number).await?;
-        let rows = store.diagnoses().by_version(&version.id, &Page::first(MAX_LIMIT)).await?.items;
+        let version = store.versions().get_head(ship, champion.version_number).await?;
+        let rows = store
+            .diagnoses()
+            .by_version(&version.id, &PageRequest::first_page(MAX_LIMIT))
+            .await?
+            .items;
         // What a deleted trial showed must not count.
-        let deleted = store.deleted_trials(&trials_of(&rows)).await?;
-        let mut condition = Self::weighed(&version, &rows, &deleted);
+        let deleted = store.deleted_trials(&diagnosed_trials(&rows)).await?;
+        let mut condition = Self::from_diagnoses(&version, &rows, &deleted);
         if let Some(since) = &mut condition.since {
             let trial = store.trials().get(&since.trial).await?;
             (since.name, since.at_us) = (trial.name, trial.created_us);
         }
-        condition.sentence = condition.in_words();
-        if let Some(made) = condition.made(&version, &rows) {
+        condition.sentence = condition.describe();
+        if let Some(made) = condition.version_with_effects(&version, &rows) {
             condition.with_effects =
-                Some(MadeVersion::of(store.versions().by_id(made).await?.head));
+                Some(VersionWithEffects::from_head(store.versions().by_id(made).await?.head));
         }
         Ok(condition)
     }
 
     /// Returns the condition by the diagnoses of a champion, latest first, without those on deleted
     /// trials. The sentence, names of trials and the version with effects are not filled in.
-    pub fn weighed(version: &VersionHead, rows: &[Diagnosed], deleted: &[String]) -> Self {
+    pub fn from_diagnoses(
+        version: &VersionHead,
+        rows: &[DiagnosisRow],
+        deleted: &[String],
+    ) -> Self {
         // The store gives the latest diagnosis first.
-        let evidence = Evidence::new(version, rows, deleted, EvidenceLimits::default());
+        let evidence = ConditionEvidence::new(version, rows, deleted, EvidenceLimits::default());
         let number = Some(version.number);
         if evidence.sequence.is_empty() {
             return Self { version: number, ..Self::default() };
         }
-        let drift = drift(version, rows);
+        let drift = latest_drift(version, rows);
         let condition = Self {
             version: number,
-            trials: evidence.trials().into_iter().collect(),
+            trials: evidence.counted_trials().into_iter().collect(),
             diagnoses: weighed_diagnoses(&evidence),
-            state: state(rows, deleted),
+            state: diagnosis_state(rows, deleted),
             drift,
             ..Self::default()
         };
         // Drift alone is enough: it may rise before a diagnosis on single trials finds a cause.
         let drifted = condition.drift.as_ref().is_some_and(RecentDrift::is_above_limit);
-        match evidence.against().is_empty() && !drifted {
-            true => condition.holding(&evidence),
-            false => condition.not_holding(&evidence),
+        match evidence.contradicting_diagnoses().is_empty() && !drifted {
+            true => condition.with_valid_model(&evidence),
+            false => condition.with_invalid_model(&evidence),
         }
     }
 
-    fn holding(self, evidence: &Evidence<'_>) -> Self {
+    fn with_valid_model(self, evidence: &ConditionEvidence<'_>) -> Self {
         // Ids are ordered by time, so the larger one is the newer diagnosis.
         let newest = evidence.whole.iter().chain(evidence.sequence.last());
         let found_by = newest.max_by(|a, b| a.row.id.cmp(&b.row.id));
         Self {
-            model: Standing::Holds,
+            model: ModelValidity::Holds,
             verdict: Some("complete".to_owned()),
-            found_by: found_by.map(|one| FoundBy::of(one.row)),
-            since: evidence.holds_since().map(|trial| SinceTrial::of(trial)),
+            found_by: found_by.map(|one| DiagnosisReference::from_row(one.row)),
+            since: evidence.valid_since().map(|trial| SinceTrial::from_id(trial)),
             ..self
         }
     }
 
-    fn not_holding(self, evidence: &Evidence<'_>) -> Self {
-        let against = evidence.against();
+    fn with_invalid_model(self, evidence: &ConditionEvidence<'_>) -> Self {
+        let against = evidence.contradicting_diagnoses();
         let drifted = self.drift.as_ref().and_then(|drift| drift.since.as_ref());
-        let since = evidence.since().or(drifted).map(|trial| SinceTrial::of(trial));
+        let since = evidence.invalid_since().or(drifted).map(|trial| SinceTrial::from_id(trial));
         // The diagnosis of most trials has the smallest standard errors.
         let found_by = against.iter().max_by_key(|one| one.trials.len());
         Self {
-            model: Standing::DoesNotHold,
-            verdict: Some(verdict(&against).to_owned()),
-            effects: effects(&against),
-            against: trials_against(&against),
-            found_by: found_by.map(|one| FoundBy::of(one.row)),
+            model: ModelValidity::DoesNotHold,
+            verdict: Some(overall_verdict(&against).to_owned()),
+            effects: missing_effects(&against),
+            against: contradicting_trials(&against),
+            found_by: found_by.map(|one| DiagnosisReference::from_row(one.row)),
             since,
             ..self
         }
     }
 
     /// Returns the id of the version with the missing effects, if there is one.
-    fn made<'a>(&self, version: &VersionHead, rows: &'a [Diagnosed]) -> Option<&'a String> {
+    fn version_with_effects<'a>(
+        &self,
+        version: &VersionHead,
+        rows: &'a [DiagnosisRow],
+    ) -> Option<&'a String> {
         let mut of_version = rows.iter().filter(|row| row.version_id == version.id);
         let made = of_version.find_map(|row| row.made_id.as_ref());
         // If the model is valid by all evidence, nothing needs to be added to it.
-        made.filter(|_| self.model == Standing::DoesNotHold)
+        made.filter(|_| self.model == ModelValidity::DoesNotHold)
     }
 
     /// Tag that differs between any two states of the condition.
-    pub fn tag(&self) -> String {
+    pub fn entity_tag(&self) -> String {
         let version = self.version.map(|number| format!(".{number}")).unwrap_or_default();
         version + &self.state
     }
 }
 
 /// Returns the ids of the trials of diagnoses, each once.
-pub fn trials_of(rows: &[Diagnosed]) -> Vec<String> {
-    let list = |row: &Diagnosed| serde_json::from_str(&row.trials).unwrap_or_default();
+pub fn diagnosed_trials(rows: &[DiagnosisRow]) -> Vec<String> {
+    let list = |row: &DiagnosisRow| serde_json::from_str(&row.trials).unwrap_or_default();
     let ids: BTreeSet<String> =
-        rows.iter().flat_map(list as fn(&Diagnosed) -> Vec<String>).collect();
+        rows.iter().flat_map(list as fn(&DiagnosisRow) -> Vec<String>).collect();
     ids.into_iter().collect()
 }
 
-fn state(rows: &[Diagnosed], deleted: &[String]) -> String {
+fn diagnosis_state(rows: &[DiagnosisRow], deleted: &[String]) -> String {
     let newest = rows.first().map_or("", |newest| newest.id.as_str());
     format!(".{newest}.{}", deleted.len())
 }
 
 /// Returns the drift recorded by the newest diagnosis of a version that has one.
-fn drift(version: &VersionHead, rows: &[Diagnosed]) -> Option<RecentDrift> {
+fn latest_drift(version: &VersionHead, rows: &[DiagnosisRow]) -> Option<RecentDrift> {
     let mut of_version = rows.iter().filter(|row| row.version_id == version.id);
     of_version.find_map(|row| serde_json::from_str(row.drift.as_deref()?).ok())
 }
 
-fn weighed_diagnoses(evidence: &Evidence<'_>) -> Vec<WeighedDiagnosis> {
-    let one = |one: &Observation<'_>, whole| WeighedDiagnosis {
-        by: FoundBy::of(one.row),
+fn weighed_diagnoses(evidence: &ConditionEvidence<'_>) -> Vec<WeighedDiagnosis> {
+    let one = |one: &DiagnosisVerdict<'_>, whole| WeighedDiagnosis {
+        by: DiagnosisReference::from_row(one.row),
         trials: one.trials.clone(),
         verdict: one.verdict.to_owned(),
         whole,
@@ -241,7 +253,7 @@ fn weighed_diagnoses(evidence: &Evidence<'_>) -> Vec<WeighedDiagnosis> {
     parts.chain(evidence.whole.iter().map(|whole| one(whole, true))).collect()
 }
 
-fn verdict(against: &[&Observation<'_>]) -> &'static str {
+fn overall_verdict(against: &[&DiagnosisVerdict<'_>]) -> &'static str {
     match (against.is_empty(), against.iter().any(|one| one.verdict == "unexplained")) {
         (true, _) => "drift",
         (false, true) => "unexplained",
@@ -249,7 +261,7 @@ fn verdict(against: &[&Observation<'_>]) -> &'static str {
     }
 }
 
-fn effects(against: &[&Observation<'_>]) -> Vec<String> {
+fn missing_effects(against: &[&DiagnosisVerdict<'_>]) -> Vec<String> {
     let mut named: Vec<String> = Vec::new();
     for effect in against.iter().flat_map(|one| &one.effects) {
         if !named.contains(effect) {
@@ -259,26 +271,26 @@ fn effects(against: &[&Observation<'_>]) -> Vec<String> {
     named
 }
 
-fn trials_against(against: &[&Observation<'_>]) -> Vec<String> {
+fn contradicting_trials(against: &[&DiagnosisVerdict<'_>]) -> Vec<String> {
     let trials: BTreeSet<&String> = against.iter().flat_map(|one| &one.trials).collect();
     trials.into_iter().cloned().collect()
 }
 
 impl SinceTrial {
-    fn of(trial: &str) -> Self {
+    fn from_id(trial: &str) -> Self {
         Self { trial: trial.to_owned(), ..Self::default() }
     }
 }
 
-impl FoundBy {
-    fn of(diagnosed: &Diagnosed) -> Self {
+impl DiagnosisReference {
+    fn from_row(diagnosed: &DiagnosisRow) -> Self {
         let report = format!("/v1/reports/{}", diagnosed.report_id);
         Self { diagnosis: diagnosed.id.clone(), at_us: diagnosed.created_us, report }
     }
 }
 
-impl MadeVersion {
-    fn of(head: VersionHead) -> Self {
+impl VersionWithEffects {
+    fn from_head(head: VersionHead) -> Self {
         Self {
             number: head.number,
             at: format!("/v1/models/{}/versions/{}", head.model, head.number),

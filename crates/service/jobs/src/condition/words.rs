@@ -1,31 +1,35 @@
 //! Description of the condition of a ship in one sentence.
 
-use super::{Condition, Standing};
+use super::{Condition, ModelValidity};
 
 impl Condition {
-    pub(super) fn in_words(&self) -> String {
+    pub(super) fn describe(&self) -> String {
         match self.model {
-            Standing::Unknown => {
+            ModelValidity::Unknown => {
                 "Unknown: its champion has not been diagnosed on a trial yet.".into()
             }
-            Standing::Holds => format!(
+            ModelValidity::Holds => format!(
                 "Its model holds: on {} its residual is what the noise predicts.",
-                trials(self.trials.len())
+                count_trials(self.trials.len())
             ),
-            Standing::DoesNotHold => {
-                format!("Its model does not hold{}: {}.", self.since_words(), self.faults())
+            ModelValidity::DoesNotHold => {
+                format!(
+                    "Its model does not hold{}: {}.",
+                    self.describe_since(),
+                    self.describe_evidence()
+                )
             }
         }
     }
 
-    fn since_words(&self) -> String {
+    fn describe_since(&self) -> String {
         let named = self.since.as_ref().filter(|since| !since.name.is_empty());
         named.map_or_else(String::new, |since| format!(" since the trial {}", since.name))
     }
 
     /// Describes the evidence against the model.
-    fn faults(&self) -> String {
-        let (against, all) = (self.against.len(), trials(self.trials.len()));
+    fn describe_evidence(&self) -> String {
+        let (against, all) = (self.against.len(), count_trials(self.trials.len()));
         // "on 3 trials" if all of them contradict the model, else "on 2 of 3 trials".
         let on = if against == self.trials.len() { all } else { format!("{against} of {all}") };
         let effects = self.effects.join(" and ");
@@ -51,7 +55,7 @@ impl Condition {
     }
 }
 
-fn trials(count: usize) -> String {
+fn count_trials(count: usize) -> String {
     match count {
         1 => "1 trial".to_owned(),
         count => format!("{count} trials"),

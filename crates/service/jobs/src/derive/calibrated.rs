@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use sistership_diagnosis::{CalibrationSettings, calibrate};
+use sistership_diagnosis::{CalibrationSettings, calibrate_model};
 use sistership_identification::refine::Refinement;
 use sistership_model::trial::Trial;
 use sistership_model::{Effect, Law, Model};
@@ -27,7 +27,7 @@ pub fn with_uncertainty(
         expected_rates: refinement.settings.expected_rates,
         reading_interval: refinement.settings.reading_interval,
     };
-    match calibrate(&refinement.model, law, effects, &fitted, settings) {
+    match calibrate_model(&refinement.model, law, effects, &fitted, settings) {
         Ok(uncertainty) => refinement.model.uncertainty = Some(uncertainty),
         Err(error) => refinement
             .remarks
@@ -39,7 +39,7 @@ pub fn with_uncertainty(
 /// Calibrates the uncertainty of a model with a learned correction whose weights are attached, with
 /// the settings of a search. If that fails, the model has no uncertainty and its note gives the
 /// reason.
-pub fn corrected_with_uncertainty(
+pub fn correction_with_uncertainty(
     model: Model,
     law: &Law,
     effects: &[Arc<Effect>],
@@ -51,7 +51,7 @@ pub fn corrected_with_uncertainty(
         expected_rates: true,
         reading_interval: true,
     };
-    match calibrate(&model, law, effects, trials, settings) {
+    match calibrate_model(&model, law, effects, trials, settings) {
         Ok(uncertainty) => Model { uncertainty: Some(uncertainty), ..model },
         Err(error) => {
             let note = model.note.clone().unwrap_or_default();

@@ -3,44 +3,44 @@
 use std::sync::Arc;
 
 use bytes::Bytes;
-use sistership_identification::refine::{Member, Refinement, Settings};
+use sistership_identification::refine::{PopulationShip, Refinement, RefinementSettings};
 use sistership_model::trial::Trial;
 use sistership_model::version;
 use sistership_model::{Law, Model, Vessel};
 
 use crate::error::DeriveError;
-use crate::library::Library;
-use crate::recipe::Recipe;
-use crate::sorted::sorted;
+use crate::library::EffectLibrary;
+use crate::recipe::DerivationRecipe;
+use crate::sorted::sort_keys;
 use crate::version::VersionDocument;
 
 /// Callback with the progress of a derivation (0 to 1) and its present step; returns `false` to
 /// stop it.
-pub type Progress = Arc<dyn Fn(f64, &str) -> bool + Send + Sync>;
+pub type ProgressCallback = Arc<dyn Fn(f64, &str) -> bool + Send + Sync>;
 
 /// Derived version with its by-products.
 #[derive(Debug)]
-pub struct Derived {
+pub struct DerivedVersion {
     /// The version.
     pub document: VersionDocument,
     /// The refinement that produced it, if any.
-    pub refined: Option<Refined>,
+    pub refined: Option<RefinementRun>,
     /// Weights of its learned correction, if it has one.
     pub weights: Option<Bytes>,
 }
 
 /// Refinement with its inputs.
 #[derive(Debug)]
-pub struct Refined {
+pub struct RefinementRun {
     /// The result.
     pub refinement: Refinement,
     /// The inputs.
-    pub ingredients: Ingredients,
+    pub ingredients: RefinementInputs,
 }
 
 /// Inputs of a refinement.
 #[derive(Debug)]
-pub struct Ingredients {
+pub struct RefinementInputs {
     /// The ship.
     pub target: Vessel,
     /// The source model; a law without coefficients if there is none.
@@ -50,18 +50,18 @@ pub struct Ingredients {
     /// Law that is fitted.
     pub law: Law,
     /// Library of effects that the calibration of its uncertainty uses.
-    pub library: Library,
+    pub library: EffectLibrary,
     /// The trials, in the recipe's order.
     pub trials: Vec<Trial>,
     /// Ships of the population that is the prior.
-    pub population: Vec<Member>,
+    pub population: Vec<PopulationShip>,
     /// The settings.
-    pub settings: Settings,
+    pub settings: RefinementSettings,
 }
 
-impl Derived {
+impl DerivedVersion {
     /// Creates the result of a derivation that has only a document.
-    pub(super) fn of(document: VersionDocument) -> Self {
+    pub(super) fn from_document(document: VersionDocument) -> Self {
         Self { document, refined: None, weights: None }
     }
 
@@ -71,15 +71,17 @@ impl Derived {
     ///
     /// # Errors
     /// Returns an error if a setting is not finite.
-    pub fn spelled_out(mut self) -> Result<Self, DeriveError> {
-        if let (Some(refined), Recipe::Plain(version::Recipe::Refinement { settings, .. })) =
-            (&self.refined, &mut self.document.recipe)
+    pub fn with_explicit_settings(mut self) -> Result<Self, DeriveError> {
+        if let (
+            Some(refined),
+            DerivationRecipe::Plain(version::VersionRecipe::Refinement { settings, .. }),
+        ) = (&self.refined, &mut self.document.recipe)
         {
             let mut used = refined.refinement.settings.clone();
             let asked = refined.ingredients.settings.cma_es.clone().unwrap_or_default().evaluations;
             // The refinement reports the evaluations it used; the recipe keeps the requested limit.
             used.cma_es.iter_mut().for_each(|search| search.evaluations = asked);
-            *settings = sorted(serde_json::to_value(used)?);
+            *settings = sort_keys(serde_json::to_value(used)?);
         }
         Ok(self)
     }

@@ -13,16 +13,16 @@ mod trained;
 use sistership_model::version;
 
 pub use crate::error::DeriveError;
-pub use calibrated::{corrected_with_uncertainty, with_uncertainty};
-pub use derived::{Derived, Ingredients, Progress, Refined};
-pub use diagnosed::{Diagnosed, diagnosed};
+pub use calibrated::{correction_with_uncertainty, with_uncertainty};
+pub use derived::{DerivedVersion, ProgressCallback, RefinementInputs, RefinementRun};
+pub use diagnosed::{DiagnosisRun, run_diagnosis};
 pub use published::published_document;
 pub use refined::refined_document;
 
 use crate::archive::Archive;
 use crate::fleet;
-use crate::inputs::Inputs;
-use crate::recipe::Recipe;
+use crate::inputs::DerivationInputs;
+use crate::recipe::DerivationRecipe;
 
 /// Derives the version of a ship that a recipe describes.
 ///
@@ -31,29 +31,38 @@ use crate::recipe::Recipe;
 pub async fn derive(
     archive: &Archive,
     ship: &str,
-    recipe: &Recipe,
-    progress: Progress,
-) -> Result<Derived, DeriveError> {
-    let inputs = &Inputs::new(archive);
+    recipe: &DerivationRecipe,
+    progress: ProgressCallback,
+) -> Result<DerivedVersion, DeriveError> {
+    let inputs = &DerivationInputs::new(archive);
     let derived = match recipe {
-        Recipe::Plain(version::Recipe::Published { model, ship_sha256, law_sha256 }) => {
-            published::published(inputs, ship, model, ship_sha256, law_sha256).await
-        }
-        Recipe::Plain(recipe @ version::Recipe::Refinement { .. }) => {
+        DerivationRecipe::Plain(version::VersionRecipe::Published {
+            model,
+            ship_sha256,
+            law_sha256,
+        }) => published::derive_published(inputs, ship, model, ship_sha256, law_sha256).await,
+        DerivationRecipe::Plain(recipe @ version::VersionRecipe::Refinement { .. }) => {
             // All reads come first: the refinement itself is a function on a blocking thread.
-            let ingredients = refined::gather(inputs, ship, recipe).await?;
+            let ingredients = refined::load_inputs(inputs, ship, recipe).await?;
             let recipe = recipe.clone();
-            tokio::task::spawn_blocking(move || refined::refined(ingredients, &recipe, &progress))
-                .await?
+            tokio::task::spawn_blocking(move || {
+                refined::derive_refined(ingredients, &recipe, &progress)
+            })
+            .await?
         }
-        Recipe::Family(recipe) => Ok(Derived::of(fleet::derived(inputs, ship, recipe).await?)),
-        Recipe::Training(recipe) => trained::trained(inputs, ship, recipe, progress).await,
-        Recipe::Registered(_) => Err(DeriveError::Lost(
+        DerivationRecipe::Family(recipe) => {
+            Ok(DerivedVersion::from_document(fleet::derive_member(inputs, ship, recipe).await?))
+        }
+        DerivationRecipe::Training(recipe) => {
+            trained::derive_trained(inputs, ship, recipe, progress).await
+        }
+        DerivationRecipe::Registered(_) => Err(DeriveError::Lost(
             "the model was made elsewhere: its own bytes are all there is of it".into(),
         )),
-        Recipe::Diagnosis(recipe) => {
-            let document =
-                diagnosed::diagnosed_from(inputs, recipe.clone(), progress).await?.document()?;
+        DerivationRecipe::Diagnosis(recipe) => {
+            let document = diagnosed::run_diagnosis_on(inputs, recipe.clone(), progress)
+                .await?
+                .to_version()?;
             // The recipe belongs to a version, so the diagnosis did find an effect when it was
             // made.
             let nothing = || {
@@ -61,10 +70,10 @@ pub async fn derive(
                     "the diagnosis finds no effect now, so that no version comes of it".into(),
                 )
             };
-            Ok(Derived::of(document.ok_or_else(nothing)?))
+            Ok(DerivedVersion::from_document(document.ok_or_else(nothing)?))
         }
     }?;
     // Every document that was read must be named by the recipe, else it could not be derived again.
-    inputs.check(recipe)?;
+    inputs.check_recipe(recipe)?;
     Ok(derived)
 }

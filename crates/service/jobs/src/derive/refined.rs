@@ -4,29 +4,29 @@ use std::sync::Arc;
 
 use serde_json::Value;
 use sistership_identification::refine::{
-    Member, RefineError, Refinement, Request, Settings, refine,
+    PopulationShip, RefineError, Refinement, RefinementSettings, RefinementSpec, refine,
 };
 use sistership_model::trial::Trial;
-use sistership_model::version::{FORMAT, PopulationMember, Recipe};
+use sistership_model::version::{FORMAT, PopulationMember, VersionRecipe};
 use sistership_model::{Law, Model, Vessel};
-use sistership_priors::transfer::{approach_of, blank};
+use sistership_priors::transfer::{blank_model, trial_approach};
 
 use super::calibrated::with_uncertainty;
-use super::derived::{Derived, Ingredients, Progress, Refined};
+use super::derived::{DerivedVersion, ProgressCallback, RefinementInputs, RefinementRun};
 use crate::error::DeriveError;
-use crate::inputs::Inputs;
+use crate::inputs::DerivationInputs;
 use crate::library::FIRST_SHA256;
 use crate::recipe;
-use crate::sorted::sorted;
+use crate::sorted::sort_keys;
 use crate::version::VersionDocument;
 
 /// Loads the inputs that a recipe names, each by its hash.
-pub(super) async fn gather(
-    inputs: &Inputs<'_>,
+pub(super) async fn load_inputs(
+    inputs: &DerivationInputs<'_>,
     ship: &str,
-    recipe: &Recipe,
-) -> Result<Ingredients, DeriveError> {
-    let Recipe::Refinement {
+    recipe: &VersionRecipe,
+) -> Result<RefinementInputs, DeriveError> {
+    let VersionRecipe::Refinement {
         source,
         law: named,
         ship_sha256,
@@ -41,69 +41,72 @@ pub(super) async fn gather(
     else {
         return Err(DeriveError::Lost("the recipe is not that of a refinement".into()));
     };
-    let settings: Settings = serde_json::from_value(recorded.clone())?;
-    let target = inputs.ship(ship, ship_sha256).await?;
+    let settings: RefinementSettings = serde_json::from_value(recorded.clone())?;
+    let target = inputs.read_ship(ship, ship_sha256).await?;
     // Recipes of the first release name no library; they used the first one.
-    let library = inputs.effects(effects_sha256.as_deref().unwrap_or(FIRST_SHA256)).await?;
-    let trials = inputs.trials(trials).await?;
+    let library = inputs.read_effects(effects_sha256.as_deref().unwrap_or(FIRST_SHA256)).await?;
+    let trials = inputs.read_trials(trials).await?;
     let (model, law, source_law) = match source {
         Some(source) => {
             // The learned correction of the source gives no prior for coefficients.
-            let model = inputs.source(source).await?.foundation();
+            let model = inputs.read_source(source).await?.without_correction();
             let name = across.as_ref().map_or(&model.law, |across| &across.law);
-            let law = inputs.law(name, law_sha256).await?;
+            let law = inputs.read_law(name, law_sha256).await?;
             let source_law = match across {
-                Some(across) => Some(inputs.law(&model.law, &across.source_law_sha256).await?),
+                Some(across) => Some(inputs.read_law(&model.law, &across.source_law_sha256).await?),
                 None => None,
             };
             (model, law, source_law)
         }
         None => {
-            let name = named.as_deref().ok_or_else(unnamed)?;
-            let law = inputs.law(name, law_sha256).await?;
-            (without_source(&law, &target, &trials, &settings)?, law, None)
+            let name = named.as_deref().ok_or_else(missing_law)?;
+            let law = inputs.read_law(name, law_sha256).await?;
+            (blank_model(&law, &target, &trials, &settings)?, law, None)
         }
     };
-    let population = members(inputs, population).await?;
-    Ok(Ingredients { target, model, source_law, law, library, trials, population, settings })
+    let population = population_members(inputs, population).await?;
+    Ok(RefinementInputs { target, model, source_law, law, library, trials, population, settings })
 }
 
-async fn members(
-    inputs: &Inputs<'_>,
+async fn population_members(
+    inputs: &DerivationInputs<'_>,
     named: &[PopulationMember],
-) -> Result<Vec<Member>, DeriveError> {
+) -> Result<Vec<PopulationShip>, DeriveError> {
     let mut members = Vec::new();
     for PopulationMember { version, law_sha256 } in named {
-        let model = inputs.source(version).await?;
-        let law = Arc::new(inputs.law(&model.law, law_sha256).await?);
-        members.push(Member { model, law });
+        let model = inputs.read_source(version).await?;
+        let law = Arc::new(inputs.read_law(&model.law, law_sha256).await?);
+        members.push(PopulationShip { model, law });
     }
     Ok(members)
 }
 
-fn unnamed() -> DeriveError {
+fn missing_law() -> DeriveError {
     DeriveError::Lost("the recipe names neither a source nor a law".into())
 }
 
 /// Returns a model without coefficients, with the approach speed of the fitted trials.
-fn without_source(
+fn blank_model(
     law: &Law,
     target: &Vessel,
     trials: &[Trial],
-    settings: &Settings,
+    settings: &RefinementSettings,
 ) -> Result<Model, DeriveError> {
     let fitted = trials.iter().filter(|trial| !settings.held_out.contains(&trial.name));
-    let approach = approach_of(&fitted.collect::<Vec<_>>());
-    blank(law, target, approach).map_err(|error| DeriveError::Refine(error.into()))
+    let approach = trial_approach(&fitted.collect::<Vec<_>>());
+    blank_model(law, target, approach).map_err(|error| DeriveError::Refine(error.into()))
 }
 
-pub(super) fn refined(
-    ingredients: Ingredients,
-    recipe: &Recipe,
-    progress: &Progress,
-) -> Result<Derived, DeriveError> {
+pub(super) fn derive_refined(
+    ingredients: RefinementInputs,
+    recipe: &VersionRecipe,
+    progress: &ProgressCallback,
+) -> Result<DerivedVersion, DeriveError> {
     let (document, refinement) = refined_document(&ingredients, recipe, &**progress)?;
-    Ok(Derived { refined: Some(Refined { refinement, ingredients }), ..Derived::of(document) })
+    Ok(DerivedVersion {
+        refined: Some(RefinementRun { refinement, ingredients }),
+        ..DerivedVersion::from_document(document)
+    })
 }
 
 /// Returns the version that a refinement gives: a function of its inputs only.
@@ -111,14 +114,14 @@ pub(super) fn refined(
 /// # Errors
 /// Returns an error if the refinement is refused or was stopped.
 pub fn refined_document(
-    ingredients: &Ingredients,
-    recipe: &Recipe,
+    ingredients: &RefinementInputs,
+    recipe: &VersionRecipe,
     progress: &(dyn Fn(f64, &str) -> bool + Sync),
 ) -> Result<(VersionDocument, Refinement), DeriveError> {
-    let Ingredients { target, model, source_law, law, population, settings, .. } = ingredients;
+    let RefinementInputs { target, model, source_law, law, population, settings, .. } = ingredients;
     let trials: Vec<&Trial> = ingredients.trials.iter().collect();
     let refinement = refine(
-        &Request {
+        &RefinementSpec {
             target,
             source: model,
             source_law: source_law.as_ref(),
@@ -138,18 +141,18 @@ pub fn refined_document(
     let document = VersionDocument {
         format: FORMAT.to_owned(),
         ship: target.name().to_owned(),
-        recipe: recipe::Recipe::Plain(recipe.clone()),
+        recipe: recipe::DerivationRecipe::Plain(recipe.clone()),
         model: refinement.model.clone(),
-        report: report(&refinement)?,
+        report: report_without_model(&refinement)?,
     };
     Ok((document, refinement))
 }
 
 /// Report of a refinement, without the model, which the version holds.
-fn report(refinement: &Refinement) -> Result<Value, serde_json::Error> {
+fn report_without_model(refinement: &Refinement) -> Result<Value, serde_json::Error> {
     let mut report = serde_json::to_value(refinement)?;
     if let Some(fields) = report.as_object_mut() {
         fields.remove("model");
     }
-    Ok(sorted(report))
+    Ok(sort_keys(report))
 }

@@ -9,17 +9,17 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use serde_json::Value;
-use sistership_model::version::sha256;
+use sistership_model::version::sha256_hex;
 use sistership_store::testing::TestDatabase;
 use sistership_store::{NewShip, NewVersion};
 
 use super::derive;
-use crate::archive::{Archive, document};
+use crate::archive::{Archive, version_document};
 use crate::input::InputKind;
-use crate::library::{FIRST_SHA256, Library, library};
-use crate::recipe::Recipe;
-use crate::upkeep::{fsck, gc};
-use crate::verify::verify;
+use crate::library::{EffectLibrary, FIRST_SHA256, embedded_library};
+use crate::recipe::DerivationRecipe;
+use crate::upkeep::{check_archive, collect_garbage};
+use crate::verify::verify_version;
 use crate::version::VersionDocument;
 
 const SHIP: &str = "demo-ship";
@@ -80,31 +80,33 @@ async fn archive(database: &TestDatabase) -> Archive {
 }
 
 async fn stored(archive: &Archive, number: i64) -> VersionDocument {
-    document(&archive.store.versions().get(SHIP, number).await.unwrap()).unwrap()
+    version_document(&archive.store.versions().get(SHIP, number).await.unwrap()).unwrap()
 }
 
-async fn derived(archive: &Archive, recipe: &Recipe) -> String {
+async fn derived(archive: &Archive, recipe: &DerivationRecipe) -> String {
     let derived = derive(archive, SHIP, recipe, Arc::new(|_, _| true)).await.unwrap();
-    derived.document.canonical().unwrap()
+    derived.document.to_canonical_json().unwrap()
 }
 
 /// The library of the recipe is taken, and not the program's.
 #[tokio::test(flavor = "multi_thread")]
 async fn another_library_gives_another_calibration_by_its_own_hash() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let archive = archive(&database).await;
-    let first = archive.effects(FIRST_SHA256).await.unwrap();
+    let first = archive.effect_library(FIRST_SHA256).await.unwrap();
     let small = first
         .document
         .split("kind: effect\n")
         .filter(|file| file.starts_with("name: rudder"))
         .fold(String::new(), |all, file| all + "kind: effect\n" + file);
-    let hash = archive.store.effects().keep(&small).await.unwrap();
-    assert_eq!(Library::parse(&small).unwrap().effects.len(), 2);
+    let hash = archive.store.effect_libraries().insert_absent(&small).await.unwrap();
+    assert_eq!(EffectLibrary::parse(&small).unwrap().effects.len(), 2);
     let mut old = stored(&archive, 1).await;
-    let before = old.canonical().unwrap();
-    if let Recipe::Plain(sistership_model::version::Recipe::Refinement { effects_sha256, .. }) =
-        &mut old.recipe
+    let before = old.to_canonical_json().unwrap();
+    if let DerivationRecipe::Plain(sistership_model::version::VersionRecipe::Refinement {
+        effects_sha256,
+        ..
+    }) = &mut old.recipe
     {
         *effects_sha256 = Some(hash.clone());
     }
@@ -114,16 +116,23 @@ async fn another_library_gives_another_calibration_by_its_own_hash() {
     let before: VersionDocument = serde_json::from_str(&before).unwrap();
     assert_ne!(now.model.uncertainty, before.model.uncertainty);
     assert_eq!(now.model.coefficients, before.model.coefficients);
-    let row =
-        NewVersion { document: now.canonical().unwrap(), ..version_of(&kept()["versions"][1]) };
+    let row = NewVersion {
+        document: now.to_canonical_json().unwrap(),
+        ..version_of(&kept()["versions"][1])
+    };
     let number = archive.store.versions().create(&row, &[]).await.unwrap().number;
-    assert!(verify(&archive, SHIP, number).await.unwrap().identical);
-    gc(&archive, std::time::Duration::ZERO, false).await.unwrap();
-    assert!(verify(&archive, SHIP, number).await.unwrap().identical, "nothing collects a library");
-    database.damage(&format!("DELETE FROM effect_libraries WHERE sha256 = '{hash}'")).await;
-    let lost = verify(&archive, SHIP, number).await.unwrap_err().to_string();
+    assert!(verify_version(&archive, SHIP, number).await.unwrap().identical);
+    collect_garbage(&archive, std::time::Duration::ZERO, false).await.unwrap();
+    assert!(
+        verify_version(&archive, SHIP, number).await.unwrap().identical,
+        "nothing collects a library"
+    );
+    database
+        .execute_unchecked(&format!("DELETE FROM effect_libraries WHERE sha256 = '{hash}'"))
+        .await;
+    let lost = verify_version(&archive, SHIP, number).await.unwrap_err().to_string();
     assert!(lost.contains(&format!("the store has no library of effects {hash}")), "{lost}");
-    let findings = fsck(&archive).await.unwrap();
+    let findings = check_archive(&archive).await.unwrap();
     assert!(findings.faults.iter().any(|fault| fault.check == "version-effects"), "{findings:?}");
 }
 
@@ -131,10 +140,10 @@ async fn another_library_gives_another_calibration_by_its_own_hash() {
 /// is shown here by recipes from which, and to which, an input was taken and added.
 #[tokio::test(flavor = "multi_thread")]
 async fn every_kind_of_version_reads_what_its_recipe_names() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let archive = archive(&database).await;
-    let kinds = |recipe: &Recipe| {
-        recipe.inputs().into_iter().map(|input| input.kind).collect::<BTreeSet<InputKind>>()
+    let kinds = |recipe: &DerivationRecipe| {
+        recipe.all_inputs().into_iter().map(|input| input.kind).collect::<BTreeSet<InputKind>>()
     };
     use InputKind::{Effects, Law, Samples, Ship, Version};
     for (number, named) in [
@@ -144,15 +153,15 @@ async fn every_kind_of_version_reads_what_its_recipe_names() {
     ] {
         let recipe = stored(&archive, number).await.recipe;
         assert_eq!(kinds(&recipe), BTreeSet::from_iter(named), "version {number}");
-        let inputs = super::Inputs::new(&archive);
-        let unread = inputs.check(&recipe).unwrap_err().to_string();
+        let inputs = super::DerivationInputs::new(&archive);
+        let unread = inputs.check_recipe(&recipe).unwrap_err().to_string();
         let every = recipe
-            .inputs()
+            .all_inputs()
             .iter()
             .all(|input| unread.contains(&format!("the recipe names {input}, which was not read")));
         assert!(every, "{unread}");
-        inputs.effects(FIRST_SHA256).await.unwrap();
-        let unnamed = inputs.check(&recipe).unwrap_err().to_string();
+        inputs.read_effects(FIRST_SHA256).await.unwrap();
+        let unnamed = inputs.check_recipe(&recipe).unwrap_err().to_string();
         assert_eq!(
             unnamed.contains("was read, but the recipe does not name it"),
             number == 3,
@@ -192,27 +201,27 @@ async fn an_input_that_is_not_what_it_was_is_named() {
             "version demo-ship/1",
         ),
     ] {
-        let database = TestDatabase::sqlite();
+        let database = TestDatabase::new_sqlite();
         let archive = archive(&database).await;
-        database.damage(damage).await;
-        let error = verify(&archive, SHIP, number).await.expect_err(damage).to_string();
+        database.execute_unchecked(damage).await;
+        let error = verify_version(&archive, SHIP, number).await.expect_err(damage).to_string();
         assert!(error.contains(named), "`{damage}`: {error}");
     }
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn samples_that_are_lost_are_named() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let archive = archive(&database).await;
     for (number, _) in KINDS {
         let key = stored(&archive, number).await.recipe.trials()[0].sha256.clone();
         let file = database.folder.path().join("objects").join(&key[..2]).join(&key[2..]);
         let bytes = std::fs::read(&file).unwrap();
         std::fs::write(&file, b"other").unwrap();
-        let damaged = verify(&archive, SHIP, number).await.unwrap_err().to_string();
-        assert!(damaged.contains(&key) && damaged.contains(&sha256(b"other")), "{damaged}");
+        let damaged = verify_version(&archive, SHIP, number).await.unwrap_err().to_string();
+        assert!(damaged.contains(&key) && damaged.contains(&sha256_hex(b"other")), "{damaged}");
         std::fs::remove_file(&file).unwrap();
-        let lost = verify(&archive, SHIP, number).await.unwrap_err().to_string();
+        let lost = verify_version(&archive, SHIP, number).await.unwrap_err().to_string();
         assert!(lost.contains(&key), "{lost}");
         std::fs::write(&file, bytes).unwrap();
     }
@@ -223,15 +232,20 @@ async fn samples_that_are_lost_are_named() {
 #[tokio::test(flavor = "multi_thread")]
 async fn libraries_stay_beside_each_other_and_are_backed_up() {
     for database in
-        [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten()
+        [Some(TestDatabase::new_sqlite()), TestDatabase::new_postgres().await].into_iter().flatten()
     {
         let archive = Archive::open(&database.url, database.folder.path()).await.unwrap();
-        let later = archive.store.effects().keep("kind: effect\nname: later\n").await.unwrap();
-        crate::library::keep(&archive.store).await.unwrap();
-        let page = sistership_store::Page::first(10);
+        let later = archive
+            .store
+            .effect_libraries()
+            .insert_absent("kind: effect\nname: later\n")
+            .await
+            .unwrap();
+        crate::library::store_libraries(&archive.store).await.unwrap();
+        let page = sistership_store::PageRequest::first_page(10);
         let all: Vec<String> = archive
             .store
-            .effects()
+            .effect_libraries()
             .list(&page)
             .await
             .unwrap()
@@ -239,22 +253,25 @@ async fn libraries_stay_beside_each_other_and_are_backed_up() {
             .into_iter()
             .map(|library| library.sha256)
             .collect();
-        let expected =
-            BTreeSet::from([later, FIRST_SHA256.to_owned(), library().unwrap().sha256.clone()]);
+        let expected = BTreeSet::from([
+            later,
+            FIRST_SHA256.to_owned(),
+            embedded_library().unwrap().sha256.clone(),
+        ]);
         assert_eq!(all, Vec::from_iter(expected));
     }
-    let (database, other) = (TestDatabase::sqlite(), TestDatabase::sqlite());
+    let (database, other) = (TestDatabase::new_sqlite(), TestDatabase::new_sqlite());
     let archive = archive(&database).await;
     let folder = database.folder.path().join("backup");
-    crate::upkeep::backup(&archive, &folder).await.unwrap();
+    crate::upkeep::back_up_archive(&archive, &folder).await.unwrap();
     let place = sistership_store::ObjectsPlace::Folder(other.folder.path().join("samples"));
-    crate::upkeep::restore(&folder, &other.url, &place).await.unwrap();
+    crate::upkeep::restore_archive(&folder, &other.url, &place).await.unwrap();
     let store =
         sistership_store::Store::connect(&other.url, Arc::new(sistership_store::SystemClock))
             .await
             .unwrap();
     assert_eq!(
-        sha256(store.effects().get(FIRST_SHA256).await.unwrap().document.as_bytes()),
+        sha256_hex(store.effect_libraries().get(FIRST_SHA256).await.unwrap().document.as_bytes()),
         FIRST_SHA256
     );
 }
@@ -263,12 +280,14 @@ async fn libraries_stay_beside_each_other_and_are_backed_up() {
 /// the same model.
 #[tokio::test(flavor = "multi_thread")]
 async fn new_recipes_spell_out_every_setting() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let archive = archive(&database).await;
     for method in ["published", "weak", "trajectory", "cma-es"] {
         let mut recipe = stored(&archive, 1).await.recipe;
-        if let Recipe::Plain(sistership_model::version::Recipe::Refinement { settings, .. }) =
-            &mut recipe
+        if let DerivationRecipe::Plain(sistership_model::version::VersionRecipe::Refinement {
+            settings,
+            ..
+        }) = &mut recipe
         {
             settings["method"] = method.into();
             settings["cma_es"] = serde_json::json!({ "evaluations": 300 });
@@ -276,10 +295,12 @@ async fn new_recipes_spell_out_every_setting() {
         let made = derive(&archive, SHIP, &recipe, Arc::new(|_, _| true))
             .await
             .unwrap()
-            .spelled_out()
+            .with_explicit_settings()
             .unwrap();
-        let Recipe::Plain(sistership_model::version::Recipe::Refinement { settings, .. }) =
-            &made.document.recipe
+        let DerivationRecipe::Plain(sistership_model::version::VersionRecipe::Refinement {
+            settings,
+            ..
+        }) = &made.document.recipe
         else {
             panic!("a refinement")
         };
@@ -289,7 +310,7 @@ async fn new_recipes_spell_out_every_setting() {
         }
         assert_eq!(*settings, used, "{method}");
         let again = derived(&archive, &made.document.recipe).await;
-        assert!(again == made.document.canonical().unwrap(), "{method}");
+        assert!(again == made.document.to_canonical_json().unwrap(), "{method}");
     }
 }
 

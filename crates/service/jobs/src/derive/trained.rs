@@ -3,48 +3,51 @@
 
 use serde_json::Value;
 use sistership_identification::refine::RefineError;
-use sistership_learned::{Judgement, attach, judge, train, with_branch};
+use sistership_learned::{
+    CorrectionEvaluation, attach, evaluate_training, train_correction, with_branch,
+};
 use sistership_model::trial::Trial;
 use sistership_model::version::FORMAT;
 use sistership_model::{Law, Model};
 
-use super::calibrated::corrected_with_uncertainty;
-use super::derived::{Derived, Progress};
+use super::calibrated::correction_with_uncertainty;
+use super::derived::{DerivedVersion, ProgressCallback};
 use crate::error::DeriveError;
-use crate::inputs::Inputs;
-use crate::library::Library;
-use crate::recipe::{Recipe, TrainingRecipe};
-use crate::sorted::sorted;
+use crate::inputs::DerivationInputs;
+use crate::library::EffectLibrary;
+use crate::recipe::{DerivationRecipe, TrainingRecipe};
+use crate::sorted::sort_keys;
 use crate::version::VersionDocument;
 
 /// Trains the learned correction that a recipe describes.
-pub(super) async fn trained(
-    inputs: &Inputs<'_>,
+pub(super) async fn derive_trained(
+    inputs: &DerivationInputs<'_>,
     ship: &str,
     recipe: &TrainingRecipe,
-    progress: Progress,
-) -> Result<Derived, DeriveError> {
-    let foundation = inputs.source(&recipe.foundation).await?;
+    progress: ProgressCallback,
+) -> Result<DerivedVersion, DeriveError> {
+    let foundation = inputs.read_source(&recipe.foundation).await?;
     if foundation.branch.is_some() {
         let message = format!("`{}` has a learned branch already", foundation.name);
         return Err(DeriveError::Lost(message));
     }
     // All inputs are loaded here; the blocking thread below does no I/O.
-    let law = inputs.law(&foundation.law, &recipe.law_sha256).await?;
-    let library = inputs.effects(&recipe.effects_sha256).await?;
-    let trials = inputs.trials(&recipe.trials).await?;
+    let law = inputs.read_law(&foundation.law, &recipe.law_sha256).await?;
+    let library = inputs.read_effects(&recipe.effects_sha256).await?;
+    let trials = inputs.read_trials(&recipe.trials).await?;
     let (ship, recipe) = (ship.to_owned(), recipe.clone());
-    let work = move || carry_out(ship, recipe, (&foundation, &law, &library), &trials, &progress);
+    let work =
+        move || train_and_judge(ship, recipe, (&foundation, &law, &library), &trials, &progress);
     tokio::task::spawn_blocking(work).await?
 }
 
-fn carry_out(
+fn train_and_judge(
     ship: String,
     recipe: TrainingRecipe,
-    (foundation, law, library): (&Model, &Law, &Library),
+    (foundation, law, library): (&Model, &Law, &EffectLibrary),
     trials: &[Trial],
-    progress: &Progress,
-) -> Result<Derived, DeriveError> {
+    progress: &ProgressCallback,
+) -> Result<DerivedVersion, DeriveError> {
     let trials: Vec<&Trial> = trials.iter().collect();
     let go_on = |done: f64, what: &str| {
         let on = progress(done, what);
@@ -52,26 +55,26 @@ fn carry_out(
     };
     // The fractions of progress are rough shares of the time.
     go_on(0.1, "training the branch")?;
-    let (branch, weights) = train(foundation, law, &trials, &recipe.settings)?;
+    let (branch, weights) = train_correction(foundation, law, &trials, &recipe.settings)?;
     go_on(0.3, "judging it on trials left out")?;
-    let judgement = judge(foundation, law, &trials, &recipe.settings)?;
+    let judgement = evaluate_training(foundation, law, &trials, &recipe.settings)?;
     go_on(0.8, "learning what the trials leave open")?;
-    let weights = weights.bytes().map_err(sistership_learned::TrainError::from)?;
+    let weights = weights.to_bytes().map_err(sistership_learned::TrainError::from)?;
     let mut model = with_branch(foundation, branch);
     // The calibration simulates the model, so the weights must be attached before it.
     attach(&mut model, &weights)?;
-    let model = corrected_with_uncertainty(model, law, &library.effects, &trials);
+    let model = correction_with_uncertainty(model, law, &library.effects, &trials);
     let document = VersionDocument {
         format: FORMAT.to_owned(),
         ship,
-        recipe: Recipe::Training(recipe),
+        recipe: DerivationRecipe::Training(recipe),
         model,
-        report: report(judgement.as_ref())?,
+        report: judgement_report(judgement.as_ref())?,
     };
-    Ok(Derived { document, refined: None, weights: Some(weights.into()) })
+    Ok(DerivedVersion { document, refined: None, weights: Some(weights.into()) })
 }
 
 /// Report of the cross-validation on held-out trials; null if there was only one trial.
-fn report(judgement: Option<&Judgement>) -> Result<Value, DeriveError> {
-    Ok(sorted(serde_json::to_value(judgement)?))
+fn judgement_report(judgement: Option<&CorrectionEvaluation>) -> Result<Value, DeriveError> {
+    Ok(sort_keys(serde_json::to_value(judgement)?))
 }

@@ -3,19 +3,19 @@
 use serde::Deserialize;
 use sistership_fleet::bulk::BulkSettings;
 use sistership_model::version::SourceVersion;
-use sistership_store::{Bulk, Store, StoreError};
+use sistership_store::{FamilyRefinement, Store, StoreError};
 use utoipa::ToSchema;
 
 use super::choices::{PriorChoice, Rule, Start};
-use super::members::members;
-use super::order::{BULK, Chunk, Order};
+use super::members::member_names;
+use super::order::{BULK_JOB_KIND, BulkChunk, BulkOrder};
 use crate::recipe::PriorName;
-use crate::schema::described;
+use crate::schema::schema_reference;
 
 /// Largest and default number of ships in a chunk: few enough that little work is lost when a
 /// worker stops.
-const MOST: usize = 500;
-const CHUNK: usize = 50;
+const MAX_CHUNK_SHIPS: usize = 500;
+const DEFAULT_CHUNK_SHIPS: usize = 50;
 
 /// Error of a request for the refinement of a family.
 #[derive(Debug, thiserror::Error)]
@@ -38,14 +38,14 @@ pub enum OrderError {
 
 type Result<T> = std::result::Result<T, OrderError>;
 
-fn setting(field: &str, message: impl Into<String>) -> OrderError {
+fn invalid_setting(field: &str, message: impl Into<String>) -> OrderError {
     OrderError::Setting { field: field.to_owned(), message: message.into() }
 }
 
 /// Refinement of all members of a family.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct Asked {
+pub struct BulkRefinementRequest {
     /// The model from which each member starts.
     pub start: Start,
     /// The prior of the coefficients.
@@ -56,7 +56,7 @@ pub struct Asked {
     #[schema(minimum = 1, maximum = 500)]
     pub chunk_ships: Option<usize>,
     /// Settings; each has a default, and all are recorded with the versions.
-    #[schema(schema_with = described::<BulkSettings>)]
+    #[schema(schema_with = schema_reference::<BulkSettings>)]
     pub settings: BulkSettings,
 }
 
@@ -64,20 +64,24 @@ pub struct Asked {
 ///
 /// # Errors
 /// Returns an error that names what is missing, or the setting that is out of range.
-pub async fn order_refinement(store: &Store, family: &str, asked: &Asked) -> Result<Bulk> {
-    asked.settings.check().map_err(|error| setting("settings", error.to_string()))?;
+pub async fn order_refinement(
+    store: &Store,
+    family: &str,
+    asked: &BulkRefinementRequest,
+) -> Result<FamilyRefinement> {
+    asked.settings.check().map_err(|error| invalid_setting("settings", error.to_string()))?;
     // A negative share is valid: it demands an improvement.
     if asked.rule.no_worse_than.is_some_and(|share| !share.is_finite()) {
-        return Err(setting("rule.no_worse_than", "must be a finite number"));
+        return Err(invalid_setting("rule.no_worse_than", "must be a finite number"));
     }
-    let size = asked.chunk_ships.unwrap_or(CHUNK);
-    if !(1..=MOST).contains(&size) {
-        return Err(setting("chunk_ships", format!("must be from 1 to {MOST}")));
+    let size = asked.chunk_ships.unwrap_or(DEFAULT_CHUNK_SHIPS);
+    if !(1..=MAX_CHUNK_SHIPS).contains(&size) {
+        return Err(invalid_setting("chunk_ships", format!("must be from 1 to {MAX_CHUNK_SHIPS}")));
     }
-    let order = order(store, family, asked).await?;
-    let ships = members(store, family).await?;
+    let order = resolve_order(store, family, asked).await?;
+    let ships = member_names(store, family).await?;
     if ships.is_empty() {
-        return Err(setting(
+        return Err(invalid_setting(
             "family",
             format!("`{family}` has no members; add some with POST /v1/families/{family}/members"),
         ));
@@ -86,21 +90,25 @@ pub async fn order_refinement(store: &Store, family: &str, asked: &Asked) -> Res
     let chunks: Vec<Vec<String>> = ships.chunks(size).map(<[String]>::to_vec).collect();
     let request = serde_json::to_string(&order)?;
     let chunk = |bulk: &str, ships: &[String]| {
-        serde_json::to_string(&Chunk { bulk: bulk.to_owned(), ships: ships.to_vec() })
+        serde_json::to_string(&BulkChunk { bulk: bulk.to_owned(), ships: ships.to_vec() })
             .unwrap_or_default()
     };
-    Ok(store.bulks().create(family, &request, BULK, &chunks, chunk).await?)
+    Ok(store.bulks().create(family, &request, BULK_JOB_KIND, &chunks, chunk).await?)
 }
 
-async fn order(store: &Store, name: &str, asked: &Asked) -> Result<Order> {
+async fn resolve_order(
+    store: &Store,
+    name: &str,
+    asked: &BulkRefinementRequest,
+) -> Result<BulkOrder> {
     let family = store.families().get(name).await?;
     let foundation = store.versions().by_id(&family.foundation).await?.head;
     let law = store.laws().get(&foundation.law).await?;
     let prior = match asked.prior {
         PriorChoice::Foundation => None,
-        PriorChoice::Family => Some(last_prior(store, name).await?),
+        PriorChoice::Family => Some(latest_prior(store, name).await?),
     };
-    Ok(Order {
+    Ok(BulkOrder {
         family: family.name,
         foundation: SourceVersion {
             ship: foundation.model,
@@ -115,8 +123,8 @@ async fn order(store: &Store, name: &str, asked: &Asked) -> Result<Order> {
     })
 }
 
-async fn last_prior(store: &Store, family: &str) -> Result<PriorName> {
-    match store.families().prior(family, None).await {
+async fn latest_prior(store: &Store, family: &str) -> Result<PriorName> {
+    match store.families().get_prior(family, None).await {
         Ok(prior) => {
             Ok(PriorName { family: prior.family, revision: prior.revision, sha256: prior.sha256 })
         }
@@ -124,7 +132,10 @@ async fn last_prior(store: &Store, family: &str) -> Result<PriorName> {
         Err(StoreError::NotFound { .. }) => {
             let how =
                 format!("POST /v1/families/{family}/prior learns it; `foundation` needs none");
-            Err(setting("prior", format!("the family `{family}` has taught nothing yet; {how}")))
+            Err(invalid_setting(
+                "prior",
+                format!("the family `{family}` has taught nothing yet; {how}"),
+            ))
         }
         Err(error) => Err(error.into()),
     }

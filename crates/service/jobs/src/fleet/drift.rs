@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use sistership_fleet::statistics::{Frame, TrialStatistics};
+use sistership_fleet::statistics::{RegressionFrame, TrialStatistics};
 use sistership_model::coefficient::Axis;
 use sistership_model::version::RecipeTrial;
-use sistership_store::{MAX_LIMIT, Page, StoreError, Trial};
+use sistership_store::{MAX_LIMIT, PageRequest, StoreError, Trial};
 use utoipa::ToSchema;
 
-use super::kept::statistics_of;
-use crate::archive::{Archive, document};
+use super::kept::trial_statistics;
+use crate::archive::{Archive, version_document};
 use crate::error::DeriveError;
 use crate::line::CHAMPION;
 use crate::version::VersionDocument;
@@ -53,17 +53,17 @@ impl Drift {
     ///
     /// # Errors
     /// Returns an error if the store does not answer, or if a document is damaged.
-    pub async fn of(archive: &Archive, ship: &str) -> Result<Option<Self>, DeriveError> {
+    pub async fn for_champion(archive: &Archive, ship: &str) -> Result<Option<Self>, DeriveError> {
         let store = &archive.store;
         let number = match store.aliases().get(ship, CHAMPION).await {
             Ok(alias) => alias.version_number,
             Err(StoreError::NotFound { .. }) => return Ok(None),
             Err(error) => return Err(error.into()),
         };
-        let mut version = document(&store.versions().get(ship, number).await?)?;
+        let mut version = version_document(&store.versions().get(ship, number).await?)?;
         // The correction is part of the champion, so it counts in its residual.
-        archive.attach(&mut version.model).await?;
-        let law = archive.law(&version.model.law, version.recipe.law_sha256()).await?;
+        archive.attach_weights(&mut version.model).await?;
+        let law = archive.law_by_hash(&version.model.law, version.recipe.law_sha256()).await?;
         let mut drift = Self {
             ship: ship.to_owned(),
             version: number,
@@ -72,18 +72,19 @@ impl Drift {
             trials: Vec::new(),
             reason: None,
         };
-        let frame = match Frame::new(&version.model, &law, version.recipe.law_sha256(), None) {
-            Ok(frame) => frame,
-            Err(error) => return Ok(Some(Self { reason: Some(error.to_string()), ..drift })),
-        };
+        let frame =
+            match RegressionFrame::new(&version.model, &law, version.recipe.law_sha256(), None) {
+                Ok(frame) => frame,
+                Err(error) => return Ok(Some(Self { reason: Some(error.to_string()), ..drift })),
+            };
         // All trials: the ratio needs those that were fitted as well.
-        let trials = newest(archive, ship, usize::MAX).await?;
-        drift.trials = residuals(archive, &frame, &version, trials).await?;
-        drift.compare();
+        let trials = newest_trials(archive, ship, usize::MAX).await?;
+        drift.trials = trial_residuals(archive, &frame, &version, trials).await?;
+        drift.compute_ratios();
         Ok(Some(drift))
     }
 
-    fn compare(&mut self) {
+    fn compute_ratios(&mut self) {
         for axis in Axis::ALL.map(|axis| axis.to_string()) {
             // Ratio of root mean squares over the trials: sqrt(mean(r_new^2) / mean(r_fitted^2)).
             let mean_square = |fitted: bool| {
@@ -110,46 +111,50 @@ impl Drift {
 ///
 /// # Errors
 /// Returns an error if the store does not answer, or if samples are missing.
-pub async fn left_of_newest(
+pub async fn residuals_of_newest(
     archive: &Archive,
     version: &VersionDocument,
     count: usize,
 ) -> Result<Vec<f64>, DeriveError> {
     let law_sha256 = version.recipe.law_sha256();
-    let law = archive.law(&version.model.law, law_sha256).await?;
-    let Ok(frame) = Frame::new(&version.model, &law, law_sha256, None) else {
+    let law = archive.law_by_hash(&version.model.law, law_sha256).await?;
+    let Ok(frame) = RegressionFrame::new(&version.model, &law, law_sha256, None) else {
         return Ok(Vec::new());
     };
-    let newest = newest(archive, &version.ship, count).await?;
-    let left = residuals(archive, &frame, version, newest).await?;
-    Ok(left.iter().map(TrialResidual::largest).collect())
+    let newest = newest_trials(archive, &version.ship, count).await?;
+    let left = trial_residuals(archive, &frame, version, newest).await?;
+    Ok(left.iter().map(TrialResidual::largest_residual).collect())
 }
 
 /// Reads the newest trials of a ship, at most `count`, oldest first.
-async fn newest(archive: &Archive, ship: &str, count: usize) -> Result<Vec<Trial>, StoreError> {
+async fn newest_trials(
+    archive: &Archive,
+    ship: &str,
+    count: usize,
+) -> Result<Vec<Trial>, StoreError> {
     let mut newest = Vec::new();
-    let mut page = Page::first(MAX_LIMIT);
+    let mut page = PageRequest::first_page(MAX_LIMIT);
     loop {
         let trials = archive.store.trials().list(ship, &page).await?;
         newest.extend(trials.items);
         // Pages come oldest first; only the last `count` rows are kept in memory.
         newest.drain(..newest.len().saturating_sub(count));
         let Some(next) = trials.next else { return Ok(newest) };
-        page = Page::after(next, MAX_LIMIT);
+        page = PageRequest::after_key(next, MAX_LIMIT);
     }
 }
 
 impl TrialResidual {
     /// Returns the largest residual over the axes.
-    pub fn largest(&self) -> f64 {
+    pub fn largest_residual(&self) -> f64 {
         self.residual.values().copied().fold(0.0, f64::max)
     }
 }
 
 /// Computes the residual of a version on trials; a trial that lacks a channel is skipped.
-async fn residuals(
+async fn trial_residuals(
     archive: &Archive,
-    frame: &Frame,
+    frame: &RegressionFrame,
     version: &VersionDocument,
     trials: Vec<Trial>,
 ) -> Result<Vec<TrialResidual>, DeriveError> {
@@ -159,8 +164,8 @@ async fn residuals(
     let mut all = Vec::with_capacity(trials.len());
     for trial in trials {
         let named = RecipeTrial { name: trial.name.clone(), sha256: trial.sha256.clone() };
-        let residual = match statistics_of(archive, frame, &[named]).await {
-            Ok(statistics) => residual(&statistics[0], &coefficients)?,
+        let residual = match trial_statistics(archive, frame, &[named]).await {
+            Ok(statistics) => relative_residual(&statistics[0], &coefficients)?,
             // The trial cannot be evaluated, for example because a channel is missing.
             Err(DeriveError::Refine(_)) => continue,
             Err(error) => return Err(error),
@@ -177,11 +182,11 @@ async fn residuals(
     Ok(all)
 }
 
-fn residual(
+fn relative_residual(
     statistics: &TrialStatistics,
     coefficients: &BTreeMap<String, f64>,
 ) -> Result<BTreeMap<String, f64>, DeriveError> {
-    let left = statistics.left_by(coefficients)?;
+    let left = statistics.axis_residuals(coefficients)?;
     let share = |left: &sistership_fleet::statistics::AxisResidual| {
         (left.target > 0.0).then(|| (left.axis.to_string(), (left.residual / left.target).sqrt()))
     };
@@ -209,11 +214,11 @@ mod tests {
             trials: vec![trial(true, 0.1), trial(true, 0.1), trial(false, 0.3)],
             reason: None,
         };
-        drift.compare();
+        drift.compute_ratios();
         assert!(drift.worst.is_some_and(|worst| (worst - 3.0).abs() < 1e-12), "{drift:?}");
         drift.trials.retain(|trial| trial.fitted);
         (drift.ratio, drift.worst) = (BTreeMap::new(), None);
-        drift.compare();
+        drift.compute_ratios();
         assert_eq!(drift.worst, None, "nothing is new");
     }
 }

@@ -1,20 +1,20 @@
 //! Starting model of a member: its champion, or the foundation transferred to it.
 
-use sistership_model::version::{SourceVersion, sha256};
+use sistership_model::version::{SourceVersion, sha256_hex};
 use sistership_model::{Law, Model};
-use sistership_priors::transfer::transfer;
+use sistership_priors::transfer::transfer_model;
 use sistership_store::Version;
 
 use super::choices::Start;
-use super::order::Loaded;
-use crate::archive::{Archive, document, vessel};
+use super::order::LoadedOrder;
+use crate::archive::{Archive, parse_vessel, version_document};
 use crate::error::DeriveError;
-use crate::inputs::Inputs;
+use crate::inputs::DerivationInputs;
 use crate::line::CHAMPION;
 use crate::recipe::FamilyRecipe;
 
 /// Source of the starting models of a family's members.
-pub struct Frames<'a> {
+pub struct StartingModels<'a> {
     /// Archive with champions and documents.
     pub archive: &'a Archive,
     /// Version that the family is founded on.
@@ -27,7 +27,7 @@ pub struct Frames<'a> {
 
 /// Starting model of a member.
 #[derive(Debug)]
-pub struct Framed {
+pub struct StartingModel {
     /// The model that is refined.
     pub model: Model,
     /// The version that it comes from.
@@ -43,13 +43,13 @@ pub struct Framed {
     pub is_reduced: bool,
 }
 
-impl Frames<'_> {
+impl StartingModels<'_> {
     /// Returns the present starting model of a member.
     ///
     /// # Errors
     /// Returns an error if the version is damaged, or if its law or coefficients differ from those
     /// of the foundation.
-    pub async fn of(&self, ship: &str, start: Start) -> Result<Framed, DeriveError> {
+    pub async fn for_member(&self, ship: &str, start: Start) -> Result<StartingModel, DeriveError> {
         let store = &self.archive.store;
         let champion = match store.aliases().get(ship, CHAMPION).await {
             Ok(alias) => Some(alias),
@@ -61,12 +61,12 @@ impl Frames<'_> {
         let revision = champion.as_ref().map(|alias| alias.revision);
         if let (Start::Champion, Some(alias)) = (start, champion) {
             let version = store.versions().get(ship, alias.version_number).await?;
-            return Ok(Framed { champion: revision, ..self.own(version)? });
+            return Ok(StartingModel { champion: revision, ..self.from_champion(version)? });
         }
         let row = store.ships().get(ship).await?;
-        let model = transfer(self.model, self.law, &vessel(ship, &row.document)?, None);
-        let ship_sha256 = Some(sha256(row.document.as_bytes()));
-        Ok(Framed {
+        let model = transfer_model(self.model, self.law, &parse_vessel(ship, &row.document)?, None);
+        let ship_sha256 = Some(sha256_hex(row.document.as_bytes()));
+        Ok(StartingModel {
             model,
             from: self.foundation.clone(),
             ship_sha256,
@@ -76,10 +76,10 @@ impl Frames<'_> {
         })
     }
 
-    fn own(&self, version: Version) -> Result<Framed, DeriveError> {
-        let whole = document(&version)?.model;
+    fn from_champion(&self, version: Version) -> Result<StartingModel, DeriveError> {
+        let whole = version_document(&version)?.model;
         let is_reduced = whole.branch.is_some() || !whole.effects.is_empty();
-        let model = reduced(whole);
+        let model = without_extras(whole);
         // Statistics and prior of a family are those of one law and one set of coefficients.
         if model.law != self.model.law
             || !model.coefficients.keys().eq(self.model.coefficients.keys())
@@ -96,7 +96,7 @@ impl Frames<'_> {
             number: version.head.number,
             sha256: version.head.sha256,
         };
-        Ok(Framed {
+        Ok(StartingModel {
             model,
             from,
             ship_sha256: None,
@@ -109,22 +109,25 @@ impl Frames<'_> {
 
 /// Returns the model without its learned correction and effects, which belong to its own trials:
 /// the statistics describe only the coefficients.
-fn reduced(model: Model) -> Model {
-    Model { effects: Vec::new(), ..model.foundation() }
+fn without_extras(model: Model) -> Model {
+    Model { effects: Vec::new(), ..model.without_correction() }
 }
 
 /// Returns the starting model of a member that a recipe records.
-pub(super) async fn recorded(
-    inputs: &Inputs<'_>,
-    loaded: &Loaded,
+pub(super) async fn recorded_start(
+    inputs: &DerivationInputs<'_>,
+    loaded: &LoadedOrder,
     ship: &str,
     recipe: &FamilyRecipe,
 ) -> Result<Model, DeriveError> {
     match &recipe.ship_sha256 {
-        Some(hash) => {
-            Ok(transfer(&loaded.foundation, &loaded.law, &inputs.ship(ship, hash).await?, None))
-        }
+        Some(hash) => Ok(transfer_model(
+            &loaded.foundation,
+            &loaded.law,
+            &inputs.read_ship(ship, hash).await?,
+            None,
+        )),
         // Without the hash of a ship's document the member started at its own version.
-        None => Ok(reduced(inputs.source(&recipe.start).await?)),
+        None => Ok(without_extras(inputs.read_source(&recipe.start).await?)),
     }
 }

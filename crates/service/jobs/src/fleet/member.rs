@@ -2,18 +2,18 @@
 
 use serde_json::{Value, json};
 use sistership_fleet::bulk::BulkRefinement;
-use sistership_fleet::statistics::Frame;
+use sistership_fleet::statistics::RegressionFrame;
 use sistership_identification::refine::RefineError;
-use sistership_store::{AliasMove, Expect, NewOutcome, NewVersion, StoreError};
+use sistership_store::{AliasMove, ExpectedRevision, NewOutcome, NewVersion, StoreError};
 
-use super::frame::Frames;
-use super::kept::statistics_of;
-use super::learned::trials_of;
-use super::order::Loaded;
-use super::refined::{Gathered, refined};
+use super::frame::StartingModels;
+use super::kept::trial_statistics;
+use super::learned::recipe_trials;
+use super::order::LoadedOrder;
+use super::refined::{MemberInputs, refine_member};
 use crate::archive::Archive;
 use crate::error::DeriveError;
-use crate::line::{CANDIDATE, CHAMPION, Standing, step};
+use crate::line::{CANDIDATE, CHAMPION, VersionHistory, server_move};
 use crate::version::VersionDocument;
 
 type Result<T> = std::result::Result<T, DeriveError>;
@@ -21,29 +21,33 @@ type Result<T> = std::result::Result<T, DeriveError>;
 /// Method name of the versions.
 const METHOD: &str = "statistics";
 /// Relative change below which a coefficient counts as unchanged.
-const UNMOVED: f64 = 1e-9;
+const UNCHANGED_SHARE: f64 = 1e-9;
 
 /// Ship of the chunk, ready to be refined, or the reason why it cannot be.
-pub struct Member {
+pub struct BulkMember {
     ship: String,
-    standing: Standing,
+    standing: VersionHistory,
     champion: Option<i64>,
     parent: Option<String>,
     /// True if the champion has effects or a learned correction, which are not refined.
     is_reduced: bool,
-    gathered: std::result::Result<Gathered, String>,
+    gathered: std::result::Result<MemberInputs, String>,
 }
 
 /// Refinement of a ship of the chunk, or the reason why there is none.
-pub type Outcome = std::result::Result<(BulkRefinement, VersionDocument), String>;
+pub type MemberOutcome = std::result::Result<(BulkRefinement, VersionDocument), String>;
 
 /// Loads the inputs of the refinement of a member.
 ///
 /// # Errors
 /// Returns an error of the database or of the program; an error of the ship is part of the result.
-pub async fn member(archive: &Archive, loaded: &Loaded, ship: &str) -> Result<Member> {
-    let standing = Standing::of(&archive.store, ship).await?;
-    let mut member = Member {
+pub async fn load_member(
+    archive: &Archive,
+    loaded: &LoadedOrder,
+    ship: &str,
+) -> Result<BulkMember> {
+    let standing = VersionHistory::read_current(&archive.store, ship).await?;
+    let mut member = BulkMember {
         ship: ship.to_owned(),
         standing,
         champion: None,
@@ -51,7 +55,7 @@ pub async fn member(archive: &Archive, loaded: &Loaded, ship: &str) -> Result<Me
         is_reduced: false,
         gathered: Err(String::new()),
     };
-    match gathered(archive, loaded, &mut member).await {
+    match load_inputs(archive, loaded, &mut member).await {
         Ok(gathered) => member.gathered = Ok(gathered),
         // Faults of the database or of the program end the job; those of a ship are its outcome.
         Err(error @ (DeriveError::Broken(_) | DeriveError::Refine(RefineError::Cancelled))) => {
@@ -67,34 +71,45 @@ pub async fn member(archive: &Archive, loaded: &Loaded, ship: &str) -> Result<Me
     Ok(member)
 }
 
-async fn gathered(archive: &Archive, loaded: &Loaded, member: &mut Member) -> Result<Gathered> {
+async fn load_inputs(
+    archive: &Archive,
+    loaded: &LoadedOrder,
+    member: &mut BulkMember,
+) -> Result<MemberInputs> {
     let order = &loaded.order;
-    let frames = Frames {
+    let frames = StartingModels {
         archive,
         foundation: &order.foundation,
         model: &loaded.foundation,
         law: &loaded.law,
     };
-    let framed = frames.of(&member.ship, order.start).await?;
+    let framed = frames.for_member(&member.ship, order.start).await?;
     (member.champion, member.parent) = (framed.champion, framed.version_id);
     member.is_reduced = framed.is_reduced;
-    let trials = trials_of(archive, &member.ship).await?;
+    let trials = recipe_trials(archive, &member.ship).await?;
     if trials.is_empty() {
         return Err(DeriveError::Lost("it has no trials".to_owned()));
     }
-    let frame =
-        Frame::new(&framed.model, &loaded.law, &order.law_sha256, order.settings.difference_s)?;
-    let statistics = statistics_of(archive, &frame, &trials).await?;
-    let recipe = order.recipe(framed.from, framed.ship_sha256, trials);
-    Ok(Gathered { model: framed.model, statistics, recipe })
+    let frame = RegressionFrame::new(
+        &framed.model,
+        &loaded.law,
+        &order.law_sha256,
+        order.settings.difference_s,
+    )?;
+    let statistics = trial_statistics(archive, &frame, &trials).await?;
+    let recipe = order.member_recipe(framed.from, framed.ship_sha256, trials);
+    Ok(MemberInputs { model: framed.model, statistics, recipe })
 }
 
 /// Refines a member, or returns the reason why that is not possible.
-pub fn refine(loaded: &Loaded, mut member: Member) -> (Member, Outcome) {
+pub fn refine_or_explain(
+    loaded: &LoadedOrder,
+    mut member: BulkMember,
+) -> (BulkMember, MemberOutcome) {
     // The inputs are large and are moved out; the rest of the member is needed for its outcome.
     let gathered = std::mem::replace(&mut member.gathered, Err(String::new()));
     let outcome = gathered.and_then(|gathered| {
-        refined(loaded, &member.ship, gathered).map_err(|error| error.to_string())
+        refine_member(loaded, &member.ship, gathered).map_err(|error| error.to_string())
     });
     (member, outcome)
 }
@@ -103,7 +118,12 @@ pub fn refine(loaded: &Loaded, mut member: Member) -> (Member, Outcome) {
 ///
 /// # Errors
 /// Returns an error if a document cannot be written.
-pub fn kept(loaded: &Loaded, bulk: &str, member: Member, outcome: Outcome) -> Result<NewOutcome> {
+pub fn member_outcome(
+    loaded: &LoadedOrder,
+    bulk: &str,
+    member: BulkMember,
+    outcome: MemberOutcome,
+) -> Result<NewOutcome> {
     let ship = member.ship.clone();
     let (refinement, document) = match outcome {
         Ok(done) => done,
@@ -119,9 +139,9 @@ pub fn kept(loaded: &Loaded, bulk: &str, member: Member, outcome: Outcome) -> Re
         }
     };
     let worst = refinement.worst_change();
-    let summary = summary(&refinement);
+    let summary = change_summary(&refinement);
     // No new version if the trials do not change the model: its history would only grow.
-    if unmoved(&refinement) {
+    if is_unchanged(&refinement) {
         let outcome = "unchanged".to_owned();
         return Ok(NewOutcome {
             ship,
@@ -143,39 +163,42 @@ pub fn kept(loaded: &Loaded, bulk: &str, member: Member, outcome: Outcome) -> Re
         parent: member.parent.clone(),
         law: document.model.law.clone(),
         method: METHOD.to_owned(),
-        document: document.canonical()?,
+        document: document.to_canonical_json()?,
         weights: None,
     };
     let outcome = if champion { CHAMPION } else { CANDIDATE }.to_owned();
     Ok(NewOutcome {
         ship,
         outcome,
-        version: Some((version, member.moves(champion, &reason))),
+        version: Some((version, member.alias_moves(champion, &reason))),
         worst_change: Some(worst),
         document: summary.to_string(),
     })
 }
 
-impl Member {
-    fn moves(&self, champion: bool, reason: &str) -> Vec<AliasMove> {
+impl BulkMember {
+    fn alias_moves(&self, champion: bool, reason: &str) -> Vec<AliasMove> {
         // The alias must still be at the revision that was refined; a later change by a person
         // wins.
-        let expect = self.champion.map_or(Expect::Absent, Expect::Revision);
+        let expect = self.champion.map_or(ExpectedRevision::Absent, ExpectedRevision::Revision);
         let named = if champion {
-            step(CHAMPION, expect, reason)
+            server_move(CHAMPION, expect, reason)
         } else {
-            step(CANDIDATE, Expect::Any, reason)
+            server_move(CANDIDATE, ExpectedRevision::Any, reason)
         };
-        vec![named, self.standing.follow(reason)]
+        vec![named, self.standing.move_latest(reason)]
     }
 }
 
-fn unmoved(refinement: &BulkRefinement) -> bool {
-    refinement.coefficients.iter().all(|c| (c.refined - c.before).abs() <= UNMOVED * c.before.abs())
+fn is_unchanged(refinement: &BulkRefinement) -> bool {
+    refinement
+        .coefficients
+        .iter()
+        .all(|c| (c.refined - c.before).abs() <= UNCHANGED_SHARE * c.before.abs())
 }
 
 /// Errors before and after, without the coefficients, which the version holds.
-fn summary(refinement: &BulkRefinement) -> Value {
+fn change_summary(refinement: &BulkRefinement) -> Value {
     let BulkRefinement { axes, pulled, before, after, trials, .. } = refinement;
     json!({ "axes": axes, "pulled": pulled, "before": before, "after": after, "trials": trials })
 }

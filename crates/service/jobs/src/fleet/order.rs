@@ -1,7 +1,7 @@
 //! Order of a bulk refinement with all references resolved, kept in its row and its recipes.
 
 use serde::{Deserialize, Serialize};
-use sistership_fleet::bulk::{AxisPrior, BulkSettings, Prior};
+use sistership_fleet::bulk::{AxisPrior, BulkPrior, BulkSettings};
 use sistership_fleet::family::FamilyPriorError;
 use sistership_model::version::{RecipeTrial, SourceVersion, code_revision};
 use sistership_model::{Law, Model};
@@ -9,16 +9,16 @@ use std::collections::BTreeMap;
 
 use super::choices::{Rule, Start};
 use crate::error::DeriveError;
-use crate::inputs::Inputs;
+use crate::inputs::DerivationInputs;
 use crate::recipe::{FamilyKind, FamilyRecipe, PriorName};
 
 /// Kind of the jobs that refine a chunk of ships.
-pub const BULK: &str = "bulk-refinement";
+pub const BULK_JOB_KIND: &str = "bulk-refinement";
 
 /// Order of a bulk refinement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Order {
+pub struct BulkOrder {
     /// The family.
     pub family: String,
     /// The version that the members' models are founded on.
@@ -39,7 +39,7 @@ pub struct Order {
 /// Request of a job that refines a chunk of ships.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Chunk {
+pub struct BulkChunk {
     /// The bulk refinement.
     pub bulk: String,
     /// Its ships.
@@ -48,26 +48,26 @@ pub struct Chunk {
 
 /// Order with the documents that it names.
 #[derive(Debug)]
-pub struct Loaded {
+pub struct LoadedOrder {
     /// The order.
-    pub order: Order,
+    pub order: BulkOrder,
     /// The foundation's model.
     pub foundation: Model,
     /// The law that is fitted.
     pub law: Law,
-    held: Held,
+    held: CoefficientPrior,
 }
 
 /// Prior of the coefficients.
 #[derive(Debug)]
-enum Held {
+enum CoefficientPrior {
     Foundation(BTreeMap<String, f64>),
     Family { axes: Vec<AxisPrior>, design_effect: f64 },
 }
 
-impl Order {
+impl BulkOrder {
     /// Returns the recipe of a member.
-    pub fn recipe(
+    pub fn member_recipe(
         &self,
         start: SourceVersion,
         ship_sha256: Option<String>,
@@ -87,18 +87,21 @@ impl Order {
     }
 }
 
-impl Loaded {
+impl LoadedOrder {
     /// Reads the documents that an order names.
     ///
     /// # Errors
     /// Returns an error if a document is missing or damaged.
-    pub async fn of(inputs: &Inputs<'_>, order: Order) -> Result<Self, DeriveError> {
+    pub async fn load(
+        inputs: &DerivationInputs<'_>,
+        order: BulkOrder,
+    ) -> Result<Self, DeriveError> {
         // Through the recording inputs, so that the recipe of a member can be checked against them.
-        let foundation = inputs.source(&order.foundation).await?;
-        let law = inputs.law(&foundation.law, &order.law_sha256).await?;
+        let foundation = inputs.read_source(&order.foundation).await?;
+        let law = inputs.read_law(&foundation.law, &order.law_sha256).await?;
         let held = match &order.prior {
-            Some(name) => family(inputs, name).await?,
-            None => Held::Foundation(
+            Some(name) => load_family_prior(inputs, name).await?,
+            None => CoefficientPrior::Foundation(
                 foundation.coefficients.iter().map(|(name, q)| (name.clone(), q.value)).collect(),
             ),
         };
@@ -106,18 +109,18 @@ impl Loaded {
     }
 
     /// Returns the prior of the coefficients.
-    pub fn prior(&self) -> Prior<'_> {
+    pub fn prior(&self) -> BulkPrior<'_> {
         match &self.held {
-            Held::Foundation(values) => Prior::Source(values),
+            CoefficientPrior::Foundation(values) => BulkPrior::Source(values),
             // The design effect accounts for the correlation of samples within a trial.
-            Held::Family { axes, design_effect } => {
-                Prior::Family { axes, design_effect: *design_effect }
+            CoefficientPrior::Family { axes, design_effect } => {
+                BulkPrior::Family { axes, design_effect: *design_effect }
             }
         }
     }
 
     /// Describes the prior of the coefficients.
-    pub fn held_by(&self) -> String {
+    pub fn describe_prior(&self) -> String {
         match &self.order.prior {
             Some(name) => format!(
                 "{}, held by the family {} at revision {}",
@@ -128,8 +131,11 @@ impl Loaded {
     }
 }
 
-async fn family(inputs: &Inputs<'_>, name: &PriorName) -> Result<Held, DeriveError> {
-    let prior = inputs.prior(name).await?;
+async fn load_family_prior(
+    inputs: &DerivationInputs<'_>,
+    name: &PriorName,
+) -> Result<CoefficientPrior, DeriveError> {
+    let prior = inputs.read_prior(name).await?;
     // The hash was checked already: a prior that cannot be used was stored so.
     let lost = |what: FamilyPriorError| {
         DeriveError::Lost(format!(
@@ -137,5 +143,8 @@ async fn family(inputs: &Inputs<'_>, name: &PriorName) -> Result<Held, DeriveErr
             name.family, name.revision
         ))
     };
-    Ok(Held::Family { axes: prior.axes().map_err(lost)?, design_effect: prior.design_effect })
+    Ok(CoefficientPrior::Family {
+        axes: prior.axis_priors().map_err(lost)?,
+        design_effect: prior.design_effect,
+    })
 }

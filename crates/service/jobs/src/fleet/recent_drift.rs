@@ -1,15 +1,15 @@
 //! Drift of a champion over the newest trials since it was fitted.
 
 use super::drift::{Drift, TrialResidual};
-use crate::condition::{DRIFT_LIMIT, NEWEST, RecentDrift};
+use crate::condition::{DRIFT_LIMIT, MAX_JOINT_TRIALS, RecentDrift};
 
 impl Drift {
     /// Returns the drift over the newest trials; `None` if there are no new trials, or if the
     /// champion was fitted on none.
-    pub fn recent(&self) -> Option<RecentDrift> {
+    pub fn over_newest(&self) -> Option<RecentDrift> {
         let last = self.trials.iter().rposition(|trial| trial.fitted)?;
         let new = &self.trials[last + 1..];
-        let new = &new[new.len().saturating_sub(NEWEST)..];
+        let new = &new[new.len().saturating_sub(MAX_JOINT_TRIALS)..];
         // Per axis: RMS over the new trials divided by RMS over the fitted ones; the worst axis
         // counts.
         let ratios = self.ratio.keys().filter_map(|axis| {
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn the_newest_trials_are_measured_by_the_fitted_ones() {
-        let new = |residuals: &[(bool, f64)]| drift(residuals).recent();
+        let new = |residuals: &[(bool, f64)]| drift(residuals).over_newest();
         let found = new(&[(true, 0.1), (false, 0.1), (false, 0.5), (false, 0.5)]).unwrap();
         assert!(found.is_above_limit(), "{found:?}");
         assert_eq!((found.axis.as_str(), found.since.as_deref()), ("N", Some("02")));
@@ -76,7 +76,7 @@ mod tests {
     #[test]
     fn what_was_put_right_is_forgotten() {
         let mut residuals = vec![(true, 0.1), (false, 0.9)];
-        residuals.extend([(false, 0.1); NEWEST]);
-        assert!(!drift(&residuals).recent().unwrap().is_above_limit());
+        residuals.extend([(false, 0.1); MAX_JOINT_TRIALS]);
+        assert!(!drift(&residuals).over_newest().unwrap().is_above_limit());
     }
 }

@@ -3,24 +3,26 @@
 use std::collections::BTreeMap;
 
 use serde_json::Value;
-use sistership_fleet::bulk::{BulkRefinement, BulkRequest, refine, refined_model, with_balance};
-use sistership_fleet::statistics::{Frame, TrialStatistics};
-use sistership_identification::refine::{Fitted, RefineError};
+use sistership_fleet::bulk::{
+    BulkRefinement, BulkRequest, refine_ship, refined_model, with_balance,
+};
+use sistership_fleet::statistics::{RegressionFrame, TrialStatistics};
+use sistership_identification::refine::{FittedCoefficient, RefineError};
 use sistership_model::Model;
 use sistership_model::version::FORMAT;
 
 use super::choices::{Rule, Start};
-use super::frame::recorded;
-use super::kept::made;
-use super::order::{Loaded, Order};
+use super::frame::recorded_start;
+use super::kept::compute_statistics;
+use super::order::{BulkOrder, LoadedOrder};
 use crate::error::DeriveError;
-use crate::inputs::Inputs;
-use crate::recipe::{FamilyRecipe, Recipe};
-use crate::sorted::sorted;
+use crate::inputs::DerivationInputs;
+use crate::recipe::{DerivationRecipe, FamilyRecipe};
+use crate::sorted::sort_keys;
 use crate::version::VersionDocument;
 
 /// Inputs of the refinement of a member.
-pub struct Gathered {
+pub struct MemberInputs {
     /// The model that is refined.
     pub model: Model,
     /// Statistics of the trials.
@@ -30,12 +32,12 @@ pub struct Gathered {
 }
 
 /// Refines a member: a function of its inputs only.
-pub fn refined(
-    loaded: &Loaded,
+pub fn refine_member(
+    loaded: &LoadedOrder,
     ship: &str,
-    gathered: Gathered,
+    gathered: MemberInputs,
 ) -> Result<(BulkRefinement, VersionDocument), DeriveError> {
-    let Gathered { model, statistics, recipe } = gathered;
+    let MemberInputs { model, statistics, recipe } = gathered;
     let request = BulkRequest {
         model: &model,
         law: &loaded.law,
@@ -43,9 +45,9 @@ pub fn refined(
         prior: loaded.prior(),
         settings: &loaded.order.settings,
     };
-    let refinement = refine(&request)?;
+    let refinement = refine_ship(&request)?;
     let fitted = refinement.coefficients.iter().map(|c| {
-        let fitted = Fitted {
+        let fitted = FittedCoefficient {
             value: c.refined,
             standard_error: c.standard_error,
             prior_deviation: c.prior_deviation,
@@ -54,16 +56,16 @@ pub fn refined(
     });
     let coefficients = fitted.collect::<BTreeMap<_, _>>();
     // The surge balance is computed anew below, because the coefficients have changed.
-    let refined = refined_model(&model, &coefficients, &loaded.held_by());
+    let refined = refined_model(&model, &coefficients, &loaded.describe_prior());
     let mut refined = with_balance(refined, &loaded.law);
     // The wording of stored versions: it is part of their bytes, so it must not change.
     refined.note = Some("refined from the statistics of her trials".to_owned());
-    let report = sorted(serde_json::to_value(&refinement)?);
-    finite(&report)?;
+    let report = sort_keys(serde_json::to_value(&refinement)?);
+    check_finite(&report)?;
     let document = VersionDocument {
         format: FORMAT.to_owned(),
         ship: ship.to_owned(),
-        recipe: Recipe::Family(recipe),
+        recipe: DerivationRecipe::Family(recipe),
         model: refined,
         report,
     };
@@ -71,7 +73,7 @@ pub fn refined(
 }
 
 /// Checks that no number is missing: JSON writes a value that is not finite as null.
-fn finite(report: &Value) -> Result<(), DeriveError> {
+fn check_finite(report: &Value) -> Result<(), DeriveError> {
     let bad = |key: &str| {
         DeriveError::Refine(RefineError::Data(format!(
             "`{key}` is not a finite number: the trials do not excite it"
@@ -85,13 +87,13 @@ fn finite(report: &Value) -> Result<(), DeriveError> {
 }
 
 /// Derives a member's version again, from the samples themselves instead of stored statistics.
-pub async fn derived(
-    inputs: &Inputs<'_>,
+pub async fn derive_member(
+    inputs: &DerivationInputs<'_>,
     ship: &str,
     recipe: &FamilyRecipe,
 ) -> Result<VersionDocument, DeriveError> {
     // Family, start and rule do not enter the bytes of a version; the recipe has the rest.
-    let order = Order {
+    let order = BulkOrder {
         family: String::new(),
         foundation: recipe.foundation.clone(),
         law_sha256: recipe.law_sha256.clone(),
@@ -100,16 +102,21 @@ pub async fn derived(
         settings: recipe.settings,
         rule: Rule::default(),
     };
-    let loaded = Loaded::of(inputs, order).await?;
-    let model = recorded(inputs, &loaded, ship, recipe).await?;
-    let frame = Frame::new(&model, &loaded.law, &recipe.law_sha256, recipe.settings.difference_s)?;
+    let loaded = LoadedOrder::load(inputs, order).await?;
+    let model = recorded_start(inputs, &loaded, ship, recipe).await?;
+    let frame = RegressionFrame::new(
+        &model,
+        &loaded.law,
+        &recipe.law_sha256,
+        recipe.settings.difference_s,
+    )?;
     let mut statistics = Vec::with_capacity(recipe.trials.len());
     for trial in &recipe.trials {
-        statistics.push(made(&frame, inputs.samples(trial).await?).await?);
+        statistics.push(compute_statistics(&frame, inputs.read_samples(trial).await?).await?);
     }
     // The recipe keeps the recorded revision of the program, as in every version that is derived
     // again.
-    let gathered = Gathered { model, statistics, recipe: recipe.clone() };
+    let gathered = MemberInputs { model, statistics, recipe: recipe.clone() };
     let ship = ship.to_owned();
-    Ok(tokio::task::spawn_blocking(move || refined(&loaded, &ship, gathered)).await??.1)
+    Ok(tokio::task::spawn_blocking(move || refine_member(&loaded, &ship, gathered)).await??.1)
 }

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use sistership_store::{Bulk, JobState, Store, StoreError};
+use sistership_store::{FamilyRefinement, JobState, Store, StoreError};
 use utoipa::ToSchema;
 
 /// Status of a bulk refinement.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[schema(as = BulkStanding)]
-pub struct Standing {
+pub struct BulkProgress {
     /// `queued`, `running`, `succeeded`, `failed` (in part: retry) or `cancelled`.
     pub state: &'static str,
     /// Number of its ships.
@@ -28,14 +28,16 @@ pub struct Standing {
     pub left_s: Option<f64>,
 }
 
-impl Standing {
+impl BulkProgress {
     /// Reads the present status of a bulk refinement.
     ///
     /// # Errors
     /// Returns an error if the database does not answer.
-    pub async fn of(store: &Store, bulk: &Bulk) -> Result<Self, StoreError> {
-        let (chunks, counts) =
-            (store.bulks().chunks(&bulk.id).await?, store.bulks().counts(&bulk.id).await?);
+    pub async fn read_current(store: &Store, bulk: &FamilyRefinement) -> Result<Self, StoreError> {
+        let (chunks, counts) = (
+            store.bulks().count_chunks(&bulk.id).await?,
+            store.bulks().count_outcomes(&bulk.id).await?,
+        );
         let outcomes: BTreeMap<String, i64> =
             counts.into_iter().map(|count| (count.outcome, count.ships)).collect();
         let done: i64 = outcomes.values().sum();

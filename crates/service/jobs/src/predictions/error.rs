@@ -1,10 +1,10 @@
 //! Errors of predictions.
 
-use crate::budget::Shortage;
+use crate::budget::MemoryShortage;
 
 /// Error of a prediction.
 #[derive(Debug, thiserror::Error)]
-pub enum PredictError {
+pub enum PredictionError {
     /// A field of the request is not valid.
     #[error("{field}: {message}")]
     Field {
@@ -15,7 +15,7 @@ pub enum PredictError {
     },
     /// There is not enough memory for the answer, now or ever.
     #[error(transparent)]
-    Memory(#[from] Shortage),
+    Memory(#[from] MemoryShortage),
     /// The caller has no session with this id, or it has ended.
     #[error("there is no session `{0}` of yours; one that is not asked for ten minutes ends")]
     NoSession(String),
@@ -37,12 +37,12 @@ pub enum PredictError {
     Answer(#[from] serde_json::Error),
 }
 
-impl PredictError {
+impl PredictionError {
     /// Creates the error of a field of the request.
-    pub(crate) fn invalid(field: &str, message: impl Into<String>) -> Self {
+    pub(crate) fn invalid_field(field: &str, message: impl Into<String>) -> Self {
         Self::Field { field: field.to_owned(), message: message.into() }
     }
 }
 
 /// Result of a prediction.
-pub type Result<T> = std::result::Result<T, PredictError>;
+pub type Result<T> = std::result::Result<T, PredictionError>;

@@ -8,9 +8,9 @@ use sistership_model::{Law, Model};
 use sistership_request_types::{DrawCount, ModelName, Positive, StepLength};
 use utoipa::ToSchema;
 
-use crate::predictions::error::{PredictError, Result};
+use crate::predictions::error::{PredictionError, Result};
 use crate::predictions::inputs::InitialState;
-use crate::predictions::session::{CurrentRequest, Session, SessionRequest, WindRequest};
+use crate::predictions::session::{CurrentRequest, PredictionSession, SessionRequest, WindRequest};
 
 /// Horizon, with the orders within it.
 #[derive(Debug, Deserialize, ToSchema)]
@@ -59,30 +59,31 @@ pub struct TimedOrders {
 /// Default time between samples, s.
 const DT_S: f64 = 0.5;
 /// Largest number of samples of a horizon.
-const SAMPLES: usize = 10_000;
+const MAX_SAMPLES: usize = 10_000;
 
 impl HorizonRequest {
     /// Simulates the horizon in at most `most` steps of all models together.
-    pub(crate) fn sail(
+    pub(crate) fn simulate_horizon(
         &self,
         (name, depth_m): (&ModelName, Option<Positive>),
         model: &Model,
         law: &Law,
         most: usize,
     ) -> Result<Value> {
-        let steps = self.steps()?;
-        let asked = self.session(name, depth_m);
-        let mut session = Session::new(&asked, model, law).map_err(within)?;
-        session.bounded(self.dt_s(), steps, most).map_err(within)?;
-        let mut answer = self.sailed(&mut session, steps);
+        let steps = self.count_steps()?;
+        let asked = self.session_request(name, depth_m);
+        let mut session = PredictionSession::new(&asked, model, law).map_err(in_horizon)?;
+        session.reserve_memory(self.dt_s(), steps, most).map_err(in_horizon)?;
+        let mut answer = self.simulate_steps(&mut session, steps);
         answer["foundation"] = match model.branch {
             None => answer["trajectory"].clone(),
             Some(_) => {
                 let alone = Model { branch: None, ..model.clone() };
                 // The foundation is drawn as a line without band.
                 let asked = SessionRequest { draws: None, ..asked };
-                let mut foundation = Session::new(&asked, &alone, law).map_err(within)?;
-                self.sailed(&mut foundation, steps)["trajectory"].take()
+                let mut foundation =
+                    PredictionSession::new(&asked, &alone, law).map_err(in_horizon)?;
+                self.simulate_steps(&mut foundation, steps)["trajectory"].take()
             }
         };
         answer["metrics"] = Value::Null;
@@ -94,24 +95,27 @@ impl HorizonRequest {
     }
 
     /// Checks that the orders are in order of time, and returns the number of steps.
-    fn steps(&self) -> Result<usize> {
+    fn count_steps(&self) -> Result<usize> {
         if let Some(at) = self.orders.windows(2).position(|pair| pair[1].t_s <= pair[0].t_s) {
             let message = "must be later than that of the orders before";
-            return Err(PredictError::invalid(&format!("horizon.orders[{}].t_s", at + 1), message));
+            return Err(PredictionError::invalid_field(
+                &format!("horizon.orders[{}].t_s", at + 1),
+                message,
+            ));
         }
         let steps = (self.duration_s.get() / self.dt_s()).round().max(1.0);
-        match steps <= SAMPLES as f64 {
+        match steps <= MAX_SAMPLES as f64 {
             true => Ok(steps as usize),
-            false => Err(PredictError::invalid(
+            false => Err(PredictionError::invalid_field(
                 "horizon.duration_s",
                 format!(
-                    "would take {steps:.0} samples, at most {SAMPLES} are made: a longer `dt_s`"
+                    "would take {steps:.0} samples, at most {MAX_SAMPLES} are made: a longer `dt_s`"
                 ),
             )),
         }
     }
 
-    fn session(&self, name: &ModelName, depth_m: Option<Positive>) -> SessionRequest {
+    fn session_request(&self, name: &ModelName, depth_m: Option<Positive>) -> SessionRequest {
         SessionRequest {
             model: name.clone(),
             start: self.start,
@@ -125,30 +129,30 @@ impl HorizonRequest {
     }
 
     /// Simulates the steps, each under the latest orders at its start.
-    fn sailed(&self, session: &mut Session, steps: usize) -> Value {
+    fn simulate_steps(&self, session: &mut PredictionSession, steps: usize) -> Value {
         let dt_s = self.dt_s();
-        let mut samples = vec![session.sample()];
+        let mut samples = vec![session.current_sample()];
         let mut coming = self.orders.iter().peekable();
         for step in 0..steps {
             // The small fraction of a step makes orders at a sample time robust to rounding.
             let now_s = (step as f64 + 1e-9) * dt_s;
             while let Some(one) = coming.next_if(|one| one.t_s <= now_s) {
-                session.order(one.delta_rad, one.n_rps);
+                session.set_orders(one.delta_rad, one.n_rps);
             }
             // The track ends where the motion leaves the physical range; the answer has the reason.
-            let Some(sample) = session.step(dt_s) else { break };
+            let Some(sample) = session.simulate_step(dt_s) else { break };
             samples.push(sample);
         }
-        session.answer(&samples)
+        session.samples_to_json(&samples)
     }
 }
 
 /// Prefixes a field with `horizon.`, except for the fields that are not part of the horizon.
-fn within(error: PredictError) -> PredictError {
+fn in_horizon(error: PredictionError) -> PredictionError {
     match error {
-        PredictError::Field { field, message } if field != "model" => {
+        PredictionError::Field { field, message } if field != "model" => {
             let field = if field == "steps" { "duration_s" } else { &field };
-            PredictError::Field { field: format!("horizon.{field}"), message }
+            PredictionError::Field { field: format!("horizon.{field}"), message }
         }
         other => other,
     }

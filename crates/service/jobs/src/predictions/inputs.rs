@@ -3,13 +3,13 @@
 use serde::Deserialize;
 use serde_json::{Value, json};
 use sistership_model::trial::{Channel, Trial};
-use sistership_simulation::recorded::{ReplaySettings, replay};
-use sistership_simulation::state::RECORDED;
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
+use sistership_simulation::state::RECORDED_CHANNELS;
 use sistership_simulation::{Ship, StateVector};
 use utoipa::ToSchema;
 
-use super::track::{bounded, columns, with_share};
-use crate::predictions::error::{PredictError, Result};
+use super::track::{reserve_steps, track_columns, with_share};
+use crate::predictions::error::{PredictionError, Result};
 
 /// Recorded inputs.
 #[derive(Debug, Deserialize, ToSchema)]
@@ -51,16 +51,16 @@ pub struct InitialState {
 
 impl InitialState {
     /// Returns the state vector, with the rudder amidships.
-    pub(super) fn state(&self) -> StateVector {
+    pub(super) fn to_state_vector(&self) -> StateVector {
         let mut state = StateVector::zeros();
-        for ((_, value), (_, place)) in self.channels().into_iter().zip(RECORDED) {
+        for ((_, value), (_, place)) in self.channel_values().into_iter().zip(RECORDED_CHANNELS) {
             state[place] = value;
         }
         state
     }
 
     /// Values by channel, in the order of [`RECORDED`].
-    fn channels(&self) -> [(Channel, f64); 8] {
+    fn channel_values(&self) -> [(Channel, f64); 8] {
         [
             (Channel::U, self.u_m_s),
             (Channel::V, self.v_m_s),
@@ -75,41 +75,45 @@ impl InitialState {
 }
 
 impl InputsRequest {
-    pub(super) fn follow(&self, ship: &mut Ship, most: usize) -> Result<Value> {
-        let trial = self.trial(ship)?;
+    pub(super) fn simulate_inputs(&self, ship: &mut Ship, most: usize) -> Result<Value> {
+        let trial = self.to_trial(ship)?;
         let settings = ReplaySettings::default();
         // Each recorded time ends a step, so the number of steps is at most that of both grids
         // together.
-        bounded("inputs.t_s", trial.duration_s() / settings.step_s + trial.len() as f64, most)?;
+        reserve_steps(
+            "inputs.t_s",
+            trial.duration_s() / settings.step_s + trial.len() as f64,
+            most,
+        )?;
         // The physical range is relative to the speed at the start.
         ship.set_envelope_speed(self.start.u_m_s.hypot(self.start.v_m_s));
-        let run = replay(ship, &trial, &settings)
-            .map_err(|error| PredictError::invalid("inputs", error.to_string()))?;
+        let run = replay_trial(ship, &trial, &settings)
+            .map_err(|error| PredictionError::invalid_field("inputs", error.to_string()))?;
         let stopped =
             run.stopped.map(|stopped| json!({ "t_s": stopped.t_s, "reason": stopped.reason }));
-        let answer = json!({ "metrics": null, "trajectory": columns(&run.track),
+        let answer = json!({ "metrics": null, "trajectory": track_columns(&run.track),
             "stopped": stopped, "outside": run.outside });
         Ok(with_share(answer, ship, &run.track))
     }
 
     /// Returns the inputs as a trial that starts at the requested state.
-    fn trial(&self, ship: &Ship) -> Result<Trial> {
+    fn to_trial(&self, ship: &Ship) -> Result<Trial> {
         let count = self.t_s.len();
         // Only the first value of the constant motion channels is read: it starts the simulation.
         let steady = || vec![ship.revolutions_at(self.start.u_m_s.hypot(self.start.v_m_s)); count];
         let n = self.n_rps.clone().unwrap_or_else(steady);
         for (field, values) in [("inputs.delta_rad", &self.delta_rad), ("inputs.n_rps", &n)] {
             if values.len() != count {
-                return Err(PredictError::invalid(
+                return Err(PredictionError::invalid_field(
                     field,
                     format!("has {} values, `t_s` has {count}", values.len()),
                 ));
             }
         }
         let mut trial = Trial { name: "inputs".into(), t_s: self.t_s.clone(), ..Trial::default() };
-        trial
-            .channels
-            .extend(self.start.channels().map(|(channel, value)| (channel, vec![value; count])));
+        trial.channels.extend(
+            self.start.channel_values().map(|(channel, value)| (channel, vec![value; count])),
+        );
         trial.channels.extend([(Channel::Delta, self.delta_rad.clone()), (Channel::N, n)]);
         check_times(&trial)?;
         Ok(trial)
@@ -117,7 +121,7 @@ impl InputsRequest {
 }
 
 fn check_times(trial: &Trial) -> Result<()> {
-    let refuse = |message: String| Err(PredictError::invalid("inputs.t_s", message));
+    let refuse = |message: String| Err(PredictionError::invalid_field("inputs.t_s", message));
     if trial.len() < 2 {
         return refuse("give at least two times".into());
     }

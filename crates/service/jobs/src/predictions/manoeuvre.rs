@@ -2,14 +2,16 @@
 
 use serde::Deserialize;
 use serde_json::{Value, json};
-use sistership_assessment::uncertainty::{Bands, Sampling, bands};
+use sistership_assessment::uncertainty::{Sampling, UncertaintyBands, uncertainty_bands};
 use sistership_model::{Law, Model};
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, standard, turn, zigzag};
-use sistership_simulation::{Ship, Stopped};
+use sistership_simulation::manoeuvre::{
+    ManoeuvreSettings, simulate_standard_manoeuvres, simulate_turn, simulate_zigzag,
+};
+use sistership_simulation::{Ship, SimulationStop};
 use utoipa::ToSchema;
 
-use super::track::{STEP_S, bounded, columns, positive, with_share};
-use crate::predictions::error::{PredictError, Result};
+use super::track::{STEP_S, check_positive, reserve_steps, track_columns, with_share};
+use crate::predictions::error::{PredictionError, Result};
 use sistership_request_types::{Angle, Positive, SampleCount};
 
 /// One of `turn_deg`, `zigzag` and `all`.
@@ -57,40 +59,48 @@ pub struct ZigzagRequest {
 }
 
 impl ManoeuvreRequest {
-    pub(super) fn sail(&self, ship: &mut Ship, whose: Whose<'_>, most: usize) -> Result<Value> {
-        let settings = self.settings(ship, most)?;
+    pub(super) fn simulate_manoeuvre(
+        &self,
+        ship: &mut Ship,
+        whose: PosteriorSource<'_>,
+        most: usize,
+    ) -> Result<Value> {
+        let settings = self.manoeuvre_settings(ship, most)?;
         // Bands are those of the figures of the standard set.
         if self.bands.is_some() && !self.all {
-            return Err(PredictError::invalid(
+            return Err(PredictionError::invalid_field(
                 "manoeuvre.bands",
                 "are those of all standard manoeuvres: give `all`",
             ));
         }
         match (self.turn_deg, &self.zigzag, self.all) {
             (Some(rudder), None, false) => {
-                let sailed = turn(ship, rudder.get(), &settings).map_err(diverged)?;
+                let sailed =
+                    simulate_turn(ship, rudder.get(), &settings).map_err(divergence_error)?;
                 let answer = json!({ "metrics": sailed.metrics,
-                    "trajectory": columns(&sailed.track), "stopped": null,
-                    "outside": ship.leaves(&sailed.track) });
+                    "trajectory": track_columns(&sailed.track), "stopped": null,
+                    "outside": ship.find_excursion(&sailed.track) });
                 Ok(with_share(answer, ship, &sailed.track))
             }
             (None, Some(ZigzagRequest { rudder_deg, switch_deg }), false) => {
-                let sailed = zigzag(ship, rudder_deg.get(), switch_deg.get().abs(), &settings)
-                    .map_err(diverged)?;
+                let sailed =
+                    simulate_zigzag(ship, rudder_deg.get(), switch_deg.get().abs(), &settings)
+                        .map_err(divergence_error)?;
                 let answer = json!({ "metrics": sailed.metrics,
-                    "trajectory": columns(&sailed.track), "stopped": null,
-                    "outside": ship.leaves(&sailed.track) });
+                    "trajectory": track_columns(&sailed.track), "stopped": null,
+                    "outside": ship.find_excursion(&sailed.track) });
                 Ok(with_share(answer, ship, &sailed.track))
             }
             // A failed manoeuvre of the set is a reason in its answer, not an error of the request.
             (None, None, true) => {
-                let mut sailed = serde_json::to_value(standard(ship, &settings))?;
+                let mut sailed =
+                    serde_json::to_value(simulate_standard_manoeuvres(ship, &settings))?;
                 if let Some(request) = self.bands {
-                    sailed["bands"] = serde_json::to_value(request.drawn(whose, &settings)?)?;
+                    sailed["bands"] = serde_json::to_value(request.draw_bands(whose, &settings)?)?;
                 }
                 Ok(sailed)
             }
-            _ => Err(PredictError::invalid(
+            _ => Err(PredictionError::invalid_field(
                 "manoeuvre",
                 "give one of `turn_deg`, `zigzag` and `all`",
             )),
@@ -99,18 +109,18 @@ impl ManoeuvreRequest {
 
     /// Returns the settings. A run is refused if its steps, for 60 ship lengths of travel, exceed
     /// `most`.
-    fn settings(&self, ship: &mut Ship, most: usize) -> Result<ManoeuvreSettings> {
-        let speed = positive(
+    fn manoeuvre_settings(&self, ship: &mut Ship, most: usize) -> Result<ManoeuvreSettings> {
+        let speed = check_positive(
             "manoeuvre.speed_m_s",
             self.speed_m_s.map_or(ship.approach_speed_m_s(), Positive::get),
         )?;
         if self.n_rps.is_some_and(|n| !n.is_finite()) {
-            return Err(PredictError::invalid("manoeuvre.n_rps", "must be a number"));
+            return Err(PredictionError::invalid_field("manoeuvre.n_rps", "must be a number"));
         }
         // The step resolves the time of one ship length in at least 50 steps.
         let length_s = ship.lpp_m() / speed;
         let step_s = STEP_S.min(0.02 * length_s);
-        bounded("manoeuvre.speed_m_s", 60.0 * length_s / step_s, most)?;
+        reserve_steps("manoeuvre.speed_m_s", 60.0 * length_s / step_s, most)?;
         // The physical range is relative to the approach speed.
         ship.set_envelope_speed(speed);
         let (speed_m_s, n_rps, step_s) =
@@ -121,14 +131,18 @@ impl ManoeuvreRequest {
 
 /// The simulated model, from whose posterior others are drawn.
 #[derive(Clone, Copy)]
-pub(super) struct Whose<'a> {
+pub(super) struct PosteriorSource<'a> {
     pub model: &'a Model,
     pub law: &'a Law,
     pub depth_m: Option<f64>,
 }
 
 impl BandsRequest {
-    fn drawn(self, whose: Whose<'_>, settings: &ManoeuvreSettings) -> Result<Bands> {
+    fn draw_bands(
+        self,
+        whose: PosteriorSource<'_>,
+        settings: &ManoeuvreSettings,
+    ) -> Result<UncertaintyBands> {
         let default = Sampling::default();
         let samples =
             usize::try_from(self.samples.unwrap_or_default().get()).unwrap_or(default.samples);
@@ -136,7 +150,7 @@ impl BandsRequest {
         let sampling = Sampling { samples, seed, within_steps: true, figures_only: true };
         let none = || {
             let why = "only a refined one whose coefficients are those that were estimated has one";
-            PredictError::invalid(
+            PredictionError::invalid_field(
                 "manoeuvre.bands",
                 format!("the model has no posterior to draw from; {why}"),
             )
@@ -144,12 +158,12 @@ impl BandsRequest {
         // Only figures are needed of the draws, whose switching times are found within a step: the
         // default step is enough.
         let coarse = ManoeuvreSettings { step_s: None, ..*settings };
-        bands(whose.model, whose.law, &coarse, whose.depth_m, sampling).ok_or_else(none)
+        uncertainty_bands(whose.model, whose.law, &coarse, whose.depth_m, sampling).ok_or_else(none)
     }
 }
 
-fn diverged(stopped: Stopped) -> PredictError {
-    PredictError::invalid(
+fn divergence_error(stopped: SimulationStop) -> PredictionError {
+    PredictionError::invalid_field(
         "manoeuvre",
         format!(
             "the simulation left the physical range, {stopped}; the model does not hold for this \

@@ -11,17 +11,17 @@ mod track;
 
 use serde::Deserialize;
 use serde_json::Value;
-use sistership_model::environment::Environment;
+use sistership_model::environment::PredictionEnvironment;
 use sistership_model::{Law, Model};
 use sistership_simulation::Ship;
 use utoipa::ToSchema;
 
-pub use error::{PredictError, Result};
+pub use error::{PredictionError, Result};
 pub use horizon::{HorizonRequest, TimedOrders};
 pub use inputs::{InitialState, InputsRequest};
 pub use manoeuvre::{BandsRequest, ManoeuvreRequest, ZigzagRequest};
 
-use manoeuvre::Whose;
+use manoeuvre::PosteriorSource;
 use outside_trials::with_outside_trials;
 use sistership_request_types::{ModelName, Positive};
 
@@ -53,29 +53,34 @@ pub fn predict(
     law: &Law,
     most: usize,
 ) -> Result<Value> {
-    let mut ship =
-        Ship::new(model, law).map_err(|error| PredictError::invalid("model", error.to_string()))?;
+    let mut ship = Ship::new(model, law)
+        .map_err(|error| PredictionError::invalid_field("model", error.to_string()))?;
     // A law without a depth ignores it; `uncovered` reports a depth outside the trials.
     if let Some(depth) = request.depth_m {
         ship.set_depth(depth.get());
     }
     let depth_m = request.depth_m.map(Positive::get);
     // Computed for the request as a whole; the horizon has wind and current of its own.
-    let uncovered = Environment { depth_m, ..Environment::default() }.uncovered(model);
+    let uncovered = PredictionEnvironment { depth_m, ..PredictionEnvironment::default() }
+        .uncovered_inputs(model);
     match (&request.manoeuvre, &request.inputs, &request.horizon) {
         (Some(manoeuvre), None, None) => {
-            let answer = manoeuvre.sail(&mut ship, Whose { model, law, depth_m }, most)?;
+            let answer = manoeuvre.simulate_manoeuvre(
+                &mut ship,
+                PosteriorSource { model, law, depth_m },
+                most,
+            )?;
             Ok(with_outside_trials(answer, &uncovered))
         }
         (None, Some(inputs), None) => {
-            Ok(with_outside_trials(inputs.follow(&mut ship, most)?, &uncovered))
+            Ok(with_outside_trials(inputs.simulate_inputs(&mut ship, most)?, &uncovered))
         }
         (None, None, Some(horizon)) => {
-            horizon.sail((&request.model, request.depth_m), model, law, most)
+            horizon.simulate_horizon((&request.model, request.depth_m), model, law, most)
         }
         _ => {
             let message = "give either `manoeuvre`, `inputs` or `horizon`";
-            Err(PredictError::invalid("manoeuvre", message))
+            Err(PredictionError::invalid_field("manoeuvre", message))
         }
     }
 }
@@ -90,18 +95,18 @@ mod tests {
     use sistership_model::validity::Region;
 
     fn ask(ship: &str, request: Value) -> Result<Value> {
-        let zoo = Zoo::embedded().unwrap();
-        let model = zoo.model(ship).unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let model = zoo.find_model(ship).unwrap();
         let request: PredictionRequest =
             serde_path_to_error::deserialize(request).map_err(|error| {
-                PredictError::invalid(&error.path().to_string(), error.inner().to_string())
+                PredictionError::invalid_field(&error.path().to_string(), error.inner().to_string())
             })?;
         predict(&request, &model, zoo.law(&model.law).unwrap(), 100_000)
     }
 
-    fn field(error: PredictError) -> String {
+    fn field(error: PredictionError) -> String {
         match error {
-            PredictError::Field { field, .. } => field,
+            PredictionError::Field { field, .. } => field,
             other => panic!("{other}"),
         }
     }
@@ -125,8 +130,8 @@ mod tests {
 
     #[test]
     fn a_refined_model_says_how_sure_it_is_and_when_it_leaves_its_trials() {
-        let zoo = Zoo::embedded().unwrap();
-        let mut model = zoo.model("mariner").unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let mut model = zoo.find_model("mariner").unwrap();
         let names = vec!["N_delta".to_owned()];
         let value = model.coefficient("N_delta");
         model.posterior = Some(Posterior {
@@ -135,7 +140,7 @@ mod tests {
             deviations: vec![0.05 * value.abs()],
             root_correlation: vec!["1".into()],
         });
-        model.validity = Region::of(&[("delta".to_owned(), vec![-0.2, 0.2])].into());
+        model.validity = Region::from_samples(&[("delta".to_owned(), vec![-0.2, 0.2])].into());
         let sail = |request: Value| {
             predict(
                 &serde_json::from_value(request).unwrap(),
@@ -164,10 +169,10 @@ mod tests {
 
     #[test]
     fn surroundings_that_no_trial_had_are_named_in_the_answer() {
-        let zoo = Zoo::embedded().unwrap();
-        let mut model = zoo.model("mariner").unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let mut model = zoo.find_model("mariner").unwrap();
         let delta = [("delta".to_owned(), vec![-0.2, 0.2])].into();
-        model.validity = Region::of(&delta);
+        model.validity = Region::from_samples(&delta);
         let ask = |model: &Model, request: Value| {
             let request = serde_json::from_value(request).unwrap();
             let answer = predict(&request, model, zoo.law("abkowitz").unwrap(), 100_000).unwrap();

@@ -4,17 +4,17 @@ use serde_json::{Value, json};
 use sistership_simulation::state::at;
 use sistership_simulation::{Ship, Trajectory};
 
-use crate::budget::take_now;
-use crate::predictions::error::{PredictError, Result};
+use crate::budget::try_reserve_for_request;
+use crate::predictions::error::{PredictionError, Result};
 
 /// Longest step of the integration, s.
 pub(super) const STEP_S: f64 = 0.1;
 
 /// Checks that a number is positive and finite.
-pub(super) fn positive(field: &str, value: f64) -> Result<f64> {
+pub(super) fn check_positive(field: &str, value: f64) -> Result<f64> {
     match value > 0.0 && value.is_finite() {
         true => Ok(value),
-        false => Err(PredictError::invalid(field, format!("must be above 0, is {value}"))),
+        false => Err(PredictionError::invalid_field(field, format!("must be above 0, is {value}"))),
     }
 }
 
@@ -23,10 +23,10 @@ pub(super) fn positive(field: &str, value: f64) -> Result<f64> {
 const SAMPLE_BYTES: u64 = 15 * 8 + 11 * (32 + 20);
 
 /// Reserves the memory of a simulation; refuses more steps than are allowed.
-pub(super) fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
+pub(super) fn reserve_steps(field: &str, steps: f64, most: usize) -> Result<()> {
     match steps <= most as f64 {
-        true => Ok(take_now(SAMPLE_BYTES * steps.max(0.0).ceil() as u64)?),
-        false => Err(PredictError::invalid(
+        true => Ok(try_reserve_for_request(SAMPLE_BYTES * steps.max(0.0).ceil() as u64)?),
+        false => Err(PredictionError::invalid_field(
             field,
             format!(
                 "would take {steps:.0} steps, at most {most} are made: give a higher speed or a \
@@ -37,7 +37,7 @@ pub(super) fn bounded(field: &str, steps: f64, most: usize) -> Result<()> {
 }
 
 /// Canonical columns with their index in the state vector.
-pub(super) const COLUMNS: [(&str, usize); 9] = [
+pub(super) const STATE_COLUMNS: [(&str, usize); 9] = [
     ("x_m", at::X),
     ("y_m", at::Y),
     ("psi_rad", at::PSI),
@@ -51,7 +51,7 @@ pub(super) const COLUMNS: [(&str, usize); 9] = [
 
 /// Adds the share of the learned correction along the track to an answer, if the ship has one.
 pub(super) fn with_share(mut answer: Value, ship: &Ship, track: &Trajectory) -> Value {
-    if let Some(share) = ship.branch_share(track) {
+    if let Some(share) = ship.mean_correction_share(track) {
         // Omitted without a learned correction.
         answer["branch_share"] = json!(share);
     }
@@ -59,10 +59,10 @@ pub(super) fn with_share(mut answer: Value, ship: &Ship, track: &Trajectory) -> 
 }
 
 /// Returns a track column by column.
-pub(super) fn columns(track: &Trajectory) -> Value {
+pub(super) fn track_columns(track: &Trajectory) -> Value {
     let mut columns = json!({ "t_s": track.t_s, "n_rps": track.n_rps });
-    for (name, index) in COLUMNS {
-        columns[name] = json!(track.column(index));
+    for (name, index) in STATE_COLUMNS {
+        columns[name] = json!(track.state_column(index));
     }
     columns
 }

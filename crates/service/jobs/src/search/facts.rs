@@ -9,24 +9,24 @@ use rayon::prelude::*;
 use serde::Deserializer;
 use serde::de::{DeserializeSeed, IgnoredAny, MapAccess, Visitor};
 use sistership_model::{Vessel, Zoo, particulars};
-use sistership_priors::similarity::{CharacteristicVector, Definition};
-use sistership_store::{Ship, ShipFacts, StoreError, Version, Waiting};
+use sistership_priors::similarity::{CharacteristicVector, VectorDefinition};
+use sistership_store::{Ship, ShipFacts, StaleShip, StoreError, Version};
 
 use super::metrics;
-use super::query::fact;
+use super::query::fact_name;
 use super::standing;
-use crate::archive::{Archive, document, vessel};
+use crate::archive::{Archive, parse_vessel, version_document};
 use crate::error::DeriveError;
 use crate::line::CHAMPION;
-use crate::publish::publish;
+use crate::publish::publish_models;
 use crate::version::VersionDocument;
 
 /// Vectors as they are stored: components by name, by definition.
-type Vectors = BTreeMap<String, BTreeMap<String, f64>>;
+type StoredVectors = BTreeMap<String, BTreeMap<String, f64>>;
 
 /// Ship as it was read, from which its facts are computed.
-struct Read {
-    waiting: Waiting,
+struct ShipContent {
+    waiting: StaleShip,
     category: String,
     vessel: Option<Vessel>,
     champion: Option<VersionDocument>,
@@ -35,27 +35,31 @@ struct Read {
 }
 
 /// Computes the facts of ships on all cores: manoeuvres may have to be simulated for them.
-pub(super) async fn of_ships(
+pub(super) async fn compute_facts(
     archive: &Archive,
     laws: &Arc<Zoo>,
-    waiting: Vec<Waiting>,
+    waiting: Vec<StaleShip>,
 ) -> Result<Vec<ShipFacts>, StoreError> {
     // Reading is asynchronous and in order; only the computation is parallel.
     let mut ships = Vec::with_capacity(waiting.len());
     for ship in waiting {
-        ships.push(read(archive, laws, ship).await?);
+        ships.push(read_content(archive, laws, ship).await?);
     }
     let laws = Arc::clone(laws);
     let known = tokio::task::spawn_blocking(move || {
-        ships.into_par_iter().map(|ship| ship.facts(&laws)).collect()
+        ships.into_par_iter().map(|ship| ship.into_facts(&laws)).collect()
     });
     Ok(known.await.map_err(sistership_store::ObjectsError::from)?)
 }
 
 /// Reads a ship; without content if it was deleted. A ship that cannot be parsed is logged and has
 /// no facts: it must not block the others.
-async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, StoreError> {
-    let nothing = |waiting: Waiting, category: String| Read {
+async fn read_content(
+    archive: &Archive,
+    laws: &Zoo,
+    waiting: StaleShip,
+) -> Result<ShipContent, StoreError> {
+    let nothing = |waiting: StaleShip, category: String| ShipContent {
         waiting,
         category,
         vessel: None,
@@ -67,7 +71,7 @@ async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, S
         Err(StoreError::NotFound { .. }) => return Ok(nothing(waiting, String::new())),
         other => other?,
     };
-    let vessel = match vessel(&ship.name, &ship.document) {
+    let vessel = match parse_vessel(&ship.name, &ship.document) {
         Ok(vessel) => vessel,
         Err(error) => {
             tracing::error!(ship = %ship.name, %error, "a ship does not read and is found by name \
@@ -76,21 +80,21 @@ async fn read(archive: &Archive, laws: &Zoo, waiting: Waiting) -> Result<Read, S
         }
     };
     // Publication comes first: it may make the champion that the next line reads.
-    published(archive, laws, &vessel, &ship).await?;
-    let champion = champion(archive, &ship.name).await?;
-    let standing = standing::facts(archive, &ship.name, champion.as_ref()).await?;
-    Ok(Read { waiting, category: ship.category, vessel: Some(vessel), champion, standing })
+    publish_missing(archive, laws, &vessel, &ship).await?;
+    let champion = read_champion(archive, &ship.name).await?;
+    let standing = standing::urgency_facts(archive, &ship.name, champion.as_ref()).await?;
+    Ok(ShipContent { waiting, category: ship.category, vessel: Some(vessel), champion, standing })
 }
 
-impl Read {
-    fn facts(self, laws: &Zoo) -> ShipFacts {
+impl ShipContent {
+    fn into_facts(self, laws: &Zoo) -> ShipFacts {
         let Self { waiting, category, vessel, champion, standing } = self;
         match vessel {
-            None => ShipFacts { category, ..ShipFacts::none(waiting) },
+            None => ShipFacts { category, ..ShipFacts::without_facts(waiting) },
             Some(vessel) => {
-                let mut facts = known(&vessel, champion.as_ref(), laws);
+                let mut facts = ship_facts(&vessel, champion.as_ref(), laws);
                 facts.extend(standing);
-                let vectors = vectors(&vessel);
+                let vectors = vectors_to_json(&vessel);
                 ShipFacts { waiting, category, facts, vectors }
             }
         }
@@ -99,26 +103,29 @@ impl Read {
 
 /// Creates the versions that the ship's document publishes, in case the process that stored it was
 /// stopped before that.
-async fn published(
+async fn publish_missing(
     archive: &Archive,
     laws: &Zoo,
     vessel: &Vessel,
     ship: &Ship,
 ) -> Result<(), StoreError> {
-    if let Err(error) = publish(&archive.store, laws, vessel, &ship.document).await {
+    if let Err(error) = publish_models(&archive.store, laws, vessel, &ship.document).await {
         tracing::error!(ship = %ship.name, %error, "the published models of a ship could not be \
             made versions");
     }
     Ok(())
 }
 
-async fn champion(archive: &Archive, ship: &str) -> Result<Option<VersionDocument>, StoreError> {
+async fn read_champion(
+    archive: &Archive,
+    ship: &str,
+) -> Result<Option<VersionDocument>, StoreError> {
     let alias = match archive.store.aliases().get(ship, CHAMPION).await {
         Err(StoreError::NotFound { .. }) => return Ok(None),
         other => other?,
     };
     let version = archive.store.versions().get(ship, alias.version_number).await?;
-    Ok(whole(archive, &version)
+    Ok(document_with_weights(archive, &version)
         .await
         // A damaged champion costs its metrics, not the entry of the ship.
         .inspect_err(|error: &DeriveError| tracing::error!(%error, "a champion has no metrics"))
@@ -126,38 +133,46 @@ async fn champion(archive: &Archive, ship: &str) -> Result<Option<VersionDocumen
 }
 
 /// Returns a version's document with the weights of its learned correction attached.
-async fn whole(archive: &Archive, version: &Version) -> Result<VersionDocument, DeriveError> {
-    let mut document = document(version)?;
-    archive.attach(&mut document.model).await?;
+async fn document_with_weights(
+    archive: &Archive,
+    version: &Version,
+) -> Result<VersionDocument, DeriveError> {
+    let mut document = version_document(version)?;
+    archive.attach_weights(&mut document.model).await?;
     Ok(document)
 }
 
-fn known(vessel: &Vessel, champion: Option<&VersionDocument>, laws: &Zoo) -> Vec<(String, f64)> {
-    let particulars = particulars::names()
-        .filter_map(|name| Some((fact("particular", name), vessel.particular(name)?)));
-    let metrics = champion.map_or_else(Vec::new, |champion| metrics::metrics(champion, laws));
+fn ship_facts(
+    vessel: &Vessel,
+    champion: Option<&VersionDocument>,
+    laws: &Zoo,
+) -> Vec<(String, f64)> {
+    let particulars = particulars::particular_names()
+        .filter_map(|name| Some((fact_name("particular", name), vessel.particular(name)?)));
+    let metrics =
+        champion.map_or_else(Vec::new, |champion| metrics::version_metrics(champion, laws));
     particulars
-        .chain(metrics.into_iter().map(|(name, value)| (fact("metric", name), value)))
+        .chain(metrics.into_iter().map(|(name, value)| (fact_name("metric", name), value)))
         .collect()
 }
 
-fn vectors(vessel: &Vessel) -> String {
-    let of = |definition: Definition| {
-        (definition.name().to_owned(), CharacteristicVector::of(vessel, definition).values)
+fn vectors_to_json(vessel: &Vessel) -> String {
+    let of = |definition: VectorDefinition| {
+        (definition.name().to_owned(), CharacteristicVector::from_vessel(vessel, definition).values)
     };
-    serde_json::to_string(&Definition::ALL.map(of).into_iter().collect::<Vectors>())
+    serde_json::to_string(&VectorDefinition::ALL.map(of).into_iter().collect::<StoredVectors>())
         .unwrap_or_else(|_| "{}".to_owned())
 }
 
 /// Parses the vector of one definition and skips the others, because thousands of ships are
 /// compared.
-pub(super) fn vector(stored: &str, definition: &str) -> Option<BTreeMap<String, f64>> {
-    Only(definition).deserialize(&mut serde_json::Deserializer::from_str(stored)).ok()?
+pub(super) fn parse_vector(stored: &str, definition: &str) -> Option<BTreeMap<String, f64>> {
+    VectorSelector(definition).deserialize(&mut serde_json::Deserializer::from_str(stored)).ok()?
 }
 
-struct Only<'a>(&'a str);
+struct VectorSelector<'a>(&'a str);
 
-impl<'de> DeserializeSeed<'de> for Only<'_> {
+impl<'de> DeserializeSeed<'de> for VectorSelector<'_> {
     type Value = Option<BTreeMap<String, f64>>;
 
     fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<Self::Value, D::Error> {
@@ -165,7 +180,7 @@ impl<'de> DeserializeSeed<'de> for Only<'_> {
     }
 }
 
-impl<'de> Visitor<'de> for Only<'_> {
+impl<'de> Visitor<'de> for VectorSelector<'_> {
     type Value = Option<BTreeMap<String, f64>>;
 
     fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -194,7 +209,7 @@ mod tests {
         let stored = r#"{"a":{"x":[1,{}]},"b":{"y":0.1,"z":2}}"#;
         let expected = BTreeMap::from([("y".to_owned(), 0.1), ("z".to_owned(), 2.0)]);
         assert_eq!(
-            (vector(stored, "b"), vector(stored, "c"), vector(stored, "a")),
+            (parse_vector(stored, "b"), parse_vector(stored, "c"), parse_vector(stored, "a")),
             (Some(expected), None, None)
         );
     }

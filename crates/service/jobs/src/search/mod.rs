@@ -9,13 +9,16 @@ mod query;
 mod similar;
 pub mod standing;
 
-pub use index::{catch_up, write_facts};
-pub use known_vectors::KnownVectors;
-pub use query::{RangeFault, Search, metric, metrics, particular, particulars, pattern};
-pub use similar::nearest;
-pub use sistership_store::{FactRange, FoundShip, MAX_RANGES, Page, ShipSearch};
+pub use index::{update_index, write_facts};
+pub use known_vectors::VectorCache;
+pub use query::{
+    RangeFault, SearchCriteria, metric, particular, particular_names, range_pattern,
+    searchable_metrics,
+};
+pub use similar::nearest_ships;
+pub use sistership_store::{FactRange, FoundShip, MAX_RANGES, PageRequest, ShipSearch};
 
-use sistership_store::{List, ShipKey};
+use sistership_store::{ListPage, ShipKey};
 
 use crate::archive::Archive;
 use crate::error::DeriveError;
@@ -25,14 +28,14 @@ use crate::error::DeriveError;
 ///
 /// # Errors
 /// Returns an error if the ship of `similar_to` does not exist, or if the store does not answer.
-pub async fn ships(
+pub async fn search_ships(
     archive: &Archive,
-    known: &KnownVectors,
-    search: &Search,
-    page: &Page<ShipKey>,
-) -> Result<List<FoundShip, ShipKey>, DeriveError> {
+    known: &VectorCache,
+    search: &SearchCriteria,
+    page: &PageRequest<ShipKey>,
+) -> Result<ListPage<FoundShip, ShipKey>, DeriveError> {
     match &search.similar_to {
-        None => Ok(archive.store.ships().search(&search.ships, page).await?),
-        Some(ship) => similar::ships(archive, known, search, ship, page).await,
+        None => Ok(archive.store.ships().search_ships(&search.ships, page).await?),
+        Some(ship) => similar::search_similar(archive, known, search, ship, page).await,
     }
 }

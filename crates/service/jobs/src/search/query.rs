@@ -4,20 +4,20 @@ use std::sync::LazyLock;
 
 use regex::Regex;
 use sistership_model::particulars;
-use sistership_priors::similarity::Definition;
+use sistership_priors::similarity::VectorDefinition;
 use sistership_store::{FactRange, ShipSearch};
 
-use super::metrics::names;
+use super::metrics::metric_names;
 
 /// Search criteria for ships; all must be satisfied.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Search {
+pub struct SearchCriteria {
     /// Category, tag and ranges; the first range orders the result.
     pub ships: ShipSearch,
     /// Ship whose similarity orders the result, which has only ships of its category.
     pub similar_to: Option<String>,
     /// The definition of the vector by which ships are similar.
-    pub vector: Option<Definition>,
+    pub vector: Option<VectorDefinition>,
 }
 
 /// Message about an invalid range, with the correct form.
@@ -28,7 +28,7 @@ pub type RangeFault = String;
 /// # Errors
 /// Returns the correct form, with the known names.
 pub fn particular(text: &str) -> Result<FactRange, RangeFault> {
-    range(text, "particular", &particulars::names().collect::<Vec<_>>())
+    parse_range(text, "particular", &particulars::particular_names().collect::<Vec<_>>())
 }
 
 /// Parses `turn_35.tactical_diameter_m:..900`.
@@ -36,31 +36,31 @@ pub fn particular(text: &str) -> Result<FactRange, RangeFault> {
 /// # Errors
 /// Same as [`particular`].
 pub fn metric(text: &str) -> Result<FactRange, RangeFault> {
-    range(text, "metric", &names().collect::<Vec<_>>())
+    parse_range(text, "metric", &metric_names().collect::<Vec<_>>())
 }
 
 /// Returns the names of particulars of a search.
-pub fn particulars() -> impl Iterator<Item = &'static str> {
-    particulars::names()
+pub fn particular_names() -> impl Iterator<Item = &'static str> {
+    particulars::particular_names()
 }
 
 /// Returns the names of metrics of a search.
-pub fn metrics() -> impl Iterator<Item = &'static str> {
-    names()
+pub fn searchable_metrics() -> impl Iterator<Item = &'static str> {
+    metric_names()
 }
 
 /// Regular expression of an end of a range.
-const END: &str = r"[+-]?[0-9]{1,15}(\.[0-9]{1,15})?(e[+-]?[0-9]{1,2})?";
-static ENDS: LazyLock<Option<Regex>> =
-    LazyLock::new(|| Regex::new(&format!(r"^({END})?\.\.({END})?$")).ok());
+const RANGE_END: &str = r"[+-]?[0-9]{1,15}(\.[0-9]{1,15})?(e[+-]?[0-9]{1,2})?";
+static RANGE_REGEX: LazyLock<Option<Regex>> =
+    LazyLock::new(|| Regex::new(&format!(r"^({RANGE_END})?\.\.({RANGE_END})?$")).ok());
 
 /// Returns the regular expression of a range of one of these names.
-pub fn pattern(names: impl Iterator<Item = &'static str>) -> String {
+pub fn range_pattern(names: impl Iterator<Item = &'static str>) -> String {
     let names = names.collect::<Vec<_>>().join("|").replace('.', "\\.");
-    format!(r"^({names}):({END})?\.\.({END})?$")
+    format!(r"^({names}):({RANGE_END})?\.\.({RANGE_END})?$")
 }
 
-fn range(text: &str, kind: &str, known: &[&str]) -> Result<FactRange, RangeFault> {
+fn parse_range(text: &str, kind: &str, known: &[&str]) -> Result<FactRange, RangeFault> {
     let form = || {
         format!(
             "write {}:MIN..MAX, with either end left out where it is open, not `{text}`",
@@ -74,7 +74,7 @@ fn range(text: &str, kind: &str, known: &[&str]) -> Result<FactRange, RangeFault
     let (min, max) = ends
         .split_once("..")
         // The same expression as in the API description, so that both accept the same text.
-        .filter(|_| ENDS.as_ref().is_some_and(|form| form.is_match(ends)))
+        .filter(|_| RANGE_REGEX.as_ref().is_some_and(|form| form.is_match(ends)))
         .ok_or_else(form)?;
     let end = |text: &str, open: f64| match text {
         "" => Ok(open),
@@ -83,13 +83,13 @@ fn range(text: &str, kind: &str, known: &[&str]) -> Result<FactRange, RangeFault
     // An open end is the largest finite number, because JSON and SQL have no infinity.
     let (min, max) = (end(min, f64::MIN)?, end(max, f64::MAX)?);
     match min <= max {
-        true => Ok(FactRange { fact: fact(kind, name), min, max }),
+        true => Ok(FactRange { fact: fact_name(kind, name), min, max }),
         false => Err(format!("`{text}` holds nothing: {min} is above {max}")),
     }
 }
 
 /// Returns the name of a particular or a metric in the store.
-pub(super) fn fact(kind: &str, name: &str) -> String {
+pub(super) fn fact_name(kind: &str, name: &str) -> String {
     format!("{kind} {name}")
 }
 

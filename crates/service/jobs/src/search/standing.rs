@@ -4,24 +4,24 @@ use serde_json::Value;
 use sistership_store::{FactRange, StoreError};
 
 use crate::archive::Archive;
-use crate::condition::{Condition, Standing};
-use crate::fleet::left_of_newest;
+use crate::condition::{Condition, ModelValidity};
+use crate::fleet::residuals_of_newest;
 use crate::version::VersionDocument;
 
 /// Fact that orders ships by urgency: by class, and within a class by decreasing error.
-pub const ORDER: &str = "standing order";
+pub const URGENCY_FACT: &str = "standing order";
 /// Fact with the error of a ship's champion on held-out manoeuvres.
-pub const ERROR: &str = "standing error";
+pub const ERROR_FACT: &str = "standing error";
 
 /// Prefix of the facts with the unexplained force of a champion on the newest trials of its ship,
 /// oldest first.
-pub const LEFT: &str = "standing left of trial ";
+pub const RESIDUAL_FACT_PREFIX: &str = "standing left of trial ";
 /// Largest number of these trials.
-const TRIALS: usize = 24;
+const MAX_RESIDUAL_TRIALS: usize = 24;
 
 /// Urgency class of a ship, most urgent first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Class {
+pub enum UrgencyClass {
     /// A diagnosis found that something is missing from its champion.
     DoesNotHold,
     /// Its champion was never diagnosed.
@@ -32,17 +32,17 @@ pub enum Class {
     Holds,
 }
 
-impl Class {
+impl UrgencyClass {
     /// Every class, most urgent first.
     pub const ALL: [Self; 4] = [Self::DoesNotHold, Self::Unknown, Self::NoModel, Self::Holds];
 
     /// Returns the class of a ship in this condition.
-    pub fn of(condition: &Condition) -> Self {
+    pub fn from_condition(condition: &Condition) -> Self {
         match (condition.model, condition.version) {
-            (Standing::DoesNotHold, _) => Self::DoesNotHold,
-            (Standing::Holds, _) => Self::Holds,
-            (Standing::Unknown, Some(_)) => Self::Unknown,
-            (Standing::Unknown, None) => Self::NoModel,
+            (ModelValidity::DoesNotHold, _) => Self::DoesNotHold,
+            (ModelValidity::Holds, _) => Self::Holds,
+            (ModelValidity::Unknown, Some(_)) => Self::Unknown,
+            (ModelValidity::Unknown, None) => Self::NoModel,
         }
     }
 
@@ -62,54 +62,57 @@ impl Class {
     }
 
     /// Returns the range of the ships of this class, in their order.
-    pub fn range(self) -> FactRange {
+    pub fn class_range(self) -> FactRange {
         let first = f64::from(self as u8);
-        FactRange { fact: ORDER.to_owned(), min: first, max: first + WIDTH }
+        FactRange { fact: URGENCY_FACT.to_owned(), min: first, max: first + CLASS_WIDTH }
     }
 
     /// Returns the range of the ships of all classes, in their order.
-    pub fn every() -> FactRange {
-        FactRange { fact: ORDER.to_owned(), min: 0.0, max: Self::ALL.len() as f64 }
+    pub fn full_range() -> FactRange {
+        FactRange { fact: URGENCY_FACT.to_owned(), min: 0.0, max: Self::ALL.len() as f64 }
     }
 }
 
 /// Part of the distance between two classes that the errors use.
-const WIDTH: f64 = 0.999;
+const CLASS_WIDTH: f64 = 0.999;
 
-fn order(class: Class, error: Option<f64>) -> f64 {
+fn urgency(class: UrgencyClass, error: Option<f64>) -> f64 {
     // The offset falls with the error: within a class the largest error comes first.
-    f64::from(class as u8) + WIDTH / (1.0 + error.unwrap_or(0.0).max(0.0))
+    f64::from(class as u8) + CLASS_WIDTH / (1.0 + error.unwrap_or(0.0).max(0.0))
 }
 
 /// Returns the error of a refined model on held-out manoeuvres from its report: the mean squared
 /// error of the simulation divided by the variance of the measurement.
-pub fn error(version: &VersionDocument) -> Option<f64> {
+pub fn held_out_error(version: &VersionDocument) -> Option<f64> {
     let options = version.report["options"].as_array()?;
     let chosen = options.iter().find(|step| step["chosen"] == Value::Bool(true))?;
     chosen["error"].as_f64().filter(|error| error.is_finite())
 }
 
 /// Computes the facts of a ship.
-pub(super) async fn facts(
+pub(super) async fn urgency_facts(
     archive: &Archive,
     ship: &str,
     champion: Option<&VersionDocument>,
 ) -> Result<Vec<(String, f64)>, StoreError> {
-    let class = Class::of(&Condition::of(&archive.store, ship).await?);
-    let error = champion.and_then(error);
-    let facts = [(ORDER, Some(order(class, error))), (ERROR, error)];
+    let class = UrgencyClass::from_condition(&Condition::read_current(&archive.store, ship).await?);
+    let error = champion.and_then(held_out_error);
+    let facts = [(URGENCY_FACT, Some(urgency(class, error))), (ERROR_FACT, error)];
     let facts = facts.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?)));
     let left = match champion {
-        Some(champion) => left(archive, champion).await,
+        Some(champion) => newest_residuals(archive, champion).await,
         None => Vec::new(),
     };
-    let left = left.into_iter().enumerate().map(|(k, value)| (format!("{LEFT}{k:02}"), value));
+    let left = left
+        .into_iter()
+        .enumerate()
+        .map(|(k, value)| (format!("{RESIDUAL_FACT_PREFIX}{k:02}"), value));
     Ok(facts.chain(left).collect())
 }
 
 /// Returns the unexplained forces on the newest trials; an error is logged and gives none.
-async fn left(archive: &Archive, champion: &VersionDocument) -> Vec<f64> {
-    let left = left_of_newest(archive, champion, TRIALS).await;
+async fn newest_residuals(archive: &Archive, champion: &VersionDocument) -> Vec<f64> {
+    let left = residuals_of_newest(archive, champion, MAX_RESIDUAL_TRIALS).await;
     left.unwrap_or_else(|error| {
         tracing::error!(ship = %champion.ship, %error, "what a champion leaves of trials is not \
             known");
@@ -124,17 +127,17 @@ mod tests {
     #[test]
     fn the_worse_class_is_first_and_in_it_the_larger_error() {
         let ordered = [
-            order(Class::DoesNotHold, Some(2.0)),
-            order(Class::DoesNotHold, Some(0.1)),
-            order(Class::DoesNotHold, None),
-            order(Class::Unknown, Some(1e9)),
-            order(Class::Holds, Some(0.1)),
+            urgency(UrgencyClass::DoesNotHold, Some(2.0)),
+            urgency(UrgencyClass::DoesNotHold, Some(0.1)),
+            urgency(UrgencyClass::DoesNotHold, None),
+            urgency(UrgencyClass::Unknown, Some(1e9)),
+            urgency(UrgencyClass::Holds, Some(0.1)),
         ];
         assert!(ordered.is_sorted(), "{ordered:?}");
-        for class in Class::ALL {
-            let range = class.range();
-            assert!((range.min..=range.max).contains(&order(class, None)));
-            assert_eq!(Class::by_name(class.name()), Some(class));
+        for class in UrgencyClass::ALL {
+            let range = class.class_range();
+            assert!((range.min..=range.max).contains(&urgency(class, None)));
+            assert_eq!(UrgencyClass::by_name(class.name()), Some(class));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sistership_store::{BackupManifest, Objects, ObjectsPlace, Result, Store};
+use sistership_store::{BackupManifest, ObjectStorage, ObjectsPlace, Result, Store};
 
 use crate::archive::Archive;
 
@@ -11,7 +11,7 @@ use crate::archive::Archive;
 /// # Errors
 /// Returns an error if the folder is not empty, or if the database, the object store or the folder
 /// cannot be used.
-pub async fn backup(archive: &Archive, folder: &Path) -> Result<BackupManifest> {
+pub async fn back_up_archive(archive: &Archive, folder: &Path) -> Result<BackupManifest> {
     archive.store.backup(&archive.objects, folder).await
 }
 
@@ -20,12 +20,12 @@ pub async fn backup(archive: &Archive, folder: &Path) -> Result<BackupManifest> 
 /// # Errors
 /// Returns an error if the place is not empty, if the backup is damaged or of another kind of
 /// database, or if something cannot be written.
-pub async fn restore(
+pub async fn restore_archive(
     folder: &Path,
     database_url: &str,
     samples: &ObjectsPlace,
 ) -> Result<BackupManifest> {
     // Before the data folder is created: a backup that cannot be read leaves nothing behind.
     BackupManifest::read(folder)?;
-    Store::restore(folder, database_url, &Objects::at(samples)?).await
+    Store::restore(folder, database_url, &ObjectStorage::open_at(samples)?).await
 }

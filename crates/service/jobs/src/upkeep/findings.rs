@@ -1,11 +1,11 @@
 //! Findings of a check of an archive.
 
 use serde::Serialize;
-use sistership_store::Fault;
+use sistership_store::IntegrityFault;
 
 /// Objects that nothing refers to.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Unreferred {
+pub struct UnreferencedObjects {
     /// Number of objects.
     pub objects: usize,
     /// Total size, bytes.
@@ -14,7 +14,7 @@ pub struct Unreferred {
 
 /// Numbers of items that were checked.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Checked {
+pub struct CheckCounts {
     /// Laws, by their hash.
     pub laws: usize,
     /// Libraries of effects, by their hash.
@@ -39,17 +39,22 @@ pub struct Findings {
     /// True if there are no faults.
     pub clean: bool,
     /// The faults.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<IntegrityFault>,
     /// Numbers of items that were checked.
-    pub checked: Checked,
+    pub checked: CheckCounts,
     /// Objects that no trial and no version refers to. They are no fault: `gc` removes them.
-    pub unreferred: Unreferred,
+    pub unreferred: UnreferencedObjects,
     /// Uploads that are in progress or were interrupted. They are no fault: `gc` removes old ones.
-    pub unfinished: Unreferred,
+    pub unfinished: UnreferencedObjects,
 }
 
 impl Findings {
-    pub(super) fn add(&mut self, check: &'static str, place: String, message: impl Into<String>) {
-        self.faults.push(Fault::new(check, place, message));
+    pub(super) fn add_fault(
+        &mut self,
+        check: &'static str,
+        place: String,
+        message: impl Into<String>,
+    ) {
+        self.faults.push(IntegrityFault::new(check, place, message));
     }
 }

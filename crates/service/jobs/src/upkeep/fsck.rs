@@ -11,16 +11,16 @@ use crate::archive::Archive;
 /// # Errors
 /// Returns an error if the database or the object store does not answer; faults of their content
 /// are findings.
-pub async fn fsck(archive: &Archive) -> Result<Findings> {
+pub async fn check_archive(archive: &Archive) -> Result<Findings> {
     let mut findings =
         Findings { faults: archive.store.row_faults().await?, ..Findings::default() };
-    documents::laws(archive, &mut findings).await?;
-    documents::effects(archive, &mut findings).await?;
-    documents::versions(archive, &mut findings).await?;
-    documents::jobs(archive, &mut findings).await?;
-    documents::diagnoses(archive, &mut findings).await?;
-    objects::check(archive, &mut findings).await?;
-    let (entries, faults) = archive.store.audit().faults().await?;
+    documents::check_laws(archive, &mut findings).await?;
+    documents::check_effects(archive, &mut findings).await?;
+    documents::check_versions(archive, &mut findings).await?;
+    documents::check_jobs(archive, &mut findings).await?;
+    documents::check_diagnoses(archive, &mut findings).await?;
+    objects::check_objects(archive, &mut findings).await?;
+    let (entries, faults) = archive.store.audit().find_faults().await?;
     findings.checked.audit = usize::try_from(entries).unwrap_or(usize::MAX);
     findings.faults.extend(faults);
     findings.clean = findings.faults.is_empty();

@@ -5,19 +5,19 @@ use std::time::Duration;
 
 use futures::TryStreamExt as _;
 use serde::Serialize;
-use sistership_store::{ObjectHead, ObjectName, Page, Result};
+use sistership_store::{ObjectHead, ObjectName, PageRequest, Result};
 
-use super::reading::ROWS;
-use crate::archive::{Archive, document};
+use super::reading::PAGE_ROWS;
+use crate::archive::{Archive, version_document};
 
 /// Number of keys in one transaction, during which uploads wait.
-const AT_ONCE: usize = 100;
+const REMOVAL_BATCH: usize = 100;
 /// Time after which an upload that has not been written to counts as interrupted: one hour.
 const LONGEST_PUT_US: i64 = 3_600_000_000;
 
 /// Objects that were removed, or would be.
 #[derive(Debug, Default, Clone, PartialEq, Eq, Serialize)]
-pub struct Collected {
+pub struct RemovedObjects {
     /// True if nothing was removed.
     pub dry_run: bool,
     /// The keys.
@@ -36,25 +36,29 @@ pub struct Collected {
 /// # Errors
 /// Returns an error if the database or the object store does not answer; objects removed before
 /// that stay removed.
-pub async fn gc(archive: &Archive, grace: Duration, dry_run: bool) -> Result<Collected> {
-    let named = named(archive).await?;
+pub async fn collect_garbage(
+    archive: &Archive,
+    grace: Duration,
+    dry_run: bool,
+) -> Result<RemovedObjects> {
+    let named = keys_of_versions(archive).await?;
     let before_us =
         archive.store.now_us().saturating_sub(i64::try_from(grace.as_micros()).unwrap_or(i64::MAX));
-    let mut collected = Collected { dry_run, ..Collected::default() };
+    let mut collected = RemovedObjects { dry_run, ..RemovedObjects::default() };
     let mut old = Vec::new();
     let mut all = archive.objects.list();
     while let Some(head) = all.try_next().await? {
         collected.objects += 1;
         // Only candidates are collected, not the whole list of objects.
-        old.extend(candidate(head, before_us, &named));
+        old.extend(removal_candidate(head, before_us, &named));
     }
-    for some in old.chunks(AT_ONCE) {
+    for some in old.chunks(REMOVAL_BATCH) {
         let keys: Vec<String> = some.iter().map(|(key, _)| key.clone()).collect();
         // References are checked again in the transaction that removes: a trial may have been added
         // since the objects were listed.
         let removed = match dry_run {
-            true => archive.store.unreferred(&keys).await?,
-            false => archive.store.remove_unreferred(&archive.objects, &keys).await?,
+            true => archive.store.unreferenced_keys(&keys).await?,
+            false => archive.store.remove_unreferenced(&archive.objects, &keys).await?,
         };
         collected.bytes += some
             .iter()
@@ -63,16 +67,24 @@ pub async fn gc(archive: &Archive, grace: Duration, dry_run: bool) -> Result<Col
             .sum::<u64>();
         collected.removed.extend(removed);
     }
-    unfinished(archive, before_us, &mut collected).await?;
+    remove_unfinished(archive, before_us, &mut collected).await?;
     Ok(collected)
 }
 
 /// Removes the files of interrupted uploads. No row can refer to them.
-async fn unfinished(archive: &Archive, before_us: i64, collected: &mut Collected) -> Result<()> {
+async fn remove_unfinished(
+    archive: &Archive,
+    before_us: i64,
+    collected: &mut RemovedObjects,
+) -> Result<()> {
     // Even with a grace of zero an upload in progress is kept.
     let before_us = before_us.min(archive.store.now_us() - LONGEST_PUT_US);
-    for staged in
-        archive.objects.staged().await?.into_iter().filter(|staged| staged.modified_us < before_us)
+    for staged in archive
+        .objects
+        .list_staged()
+        .await?
+        .into_iter()
+        .filter(|staged| staged.modified_us < before_us)
     {
         if !collected.dry_run {
             archive.objects.remove_staged(&staged).await?;
@@ -85,7 +97,11 @@ async fn unfinished(archive: &Archive, before_us: i64, collected: &mut Collected
 
 /// Returns key and size of an object that is old enough and that no version names. A file that is
 /// not named by a hash was not written by the store.
-fn candidate(head: ObjectHead, before_us: i64, named: &HashSet<String>) -> Option<(String, u64)> {
+fn removal_candidate(
+    head: ObjectHead,
+    before_us: i64,
+    named: &HashSet<String>,
+) -> Option<(String, u64)> {
     match head.name {
         ObjectName::Key(key) if head.modified_us < before_us && !named.contains(&key) => {
             Some((key, head.bytes))
@@ -96,17 +112,17 @@ fn candidate(head: ObjectHead, before_us: i64, named: &HashSet<String>) -> Optio
 
 /// Returns the keys of samples and weights that versions name. Trials have rows for samples; if
 /// such a row is lost, its samples must not be removed.
-async fn named(archive: &Archive) -> Result<HashSet<String>> {
-    let (mut named, mut page) = (HashSet::new(), Page::first(ROWS));
+async fn keys_of_versions(archive: &Archive) -> Result<HashSet<String>> {
+    let (mut named, mut page) = (HashSet::new(), PageRequest::first_page(PAGE_ROWS));
     loop {
-        let versions = archive.store.versions().all(&page).await?;
+        let versions = archive.store.versions().list_all(&page).await?;
         for version in &versions.items {
             // The references of a damaged document are unknown; `fsck` reports it.
-            let Ok(document) = document(version) else { continue };
+            let Ok(document) = version_document(version) else { continue };
             named.extend(document.recipe.trials().iter().map(|trial| trial.sha256.clone()));
             named.extend(document.model.branch.map(|branch| branch.weights_sha256));
         }
         let Some(next) = versions.next else { return Ok(named) };
-        page = Page::after(next, ROWS);
+        page = PageRequest::after_key(next, PAGE_ROWS);
     }
 }

@@ -10,8 +10,8 @@ mod reading;
 #[cfg(test)]
 mod tests;
 
-pub use backup::{backup, restore};
-pub use findings::{Checked, Findings, Unreferred};
-pub use fsck::fsck;
-pub use gc::{Collected, gc};
-pub use sistership_store::{BackupManifest, Fault};
+pub use backup::{back_up_archive, restore_archive};
+pub use findings::{CheckCounts, Findings, UnreferencedObjects};
+pub use fsck::check_archive;
+pub use gc::{RemovedObjects, collect_garbage};
+pub use sistership_store::{BackupManifest, IntegrityFault};

@@ -63,7 +63,7 @@ fn is_public_v4(address: Ipv4Addr) -> bool {
 /// IPv4 address is public if that is.
 fn is_public_v6(address: Ipv6Addr) -> bool {
     let segments = address.segments();
-    if let Some(inside) = embedded(address) {
+    if let Some(inside) = embedded_v4(address) {
         return is_public_v4(inside);
     }
     let documentation = segments[0] == 0x2001 && segments[1] == 0x0db8 || segments[0] == 0x3fff;
@@ -74,7 +74,7 @@ fn is_public_v6(address: Ipv6Addr) -> bool {
 
 /// Returns the IPv4 address embedded in an IPv6 address: mapped (RFC 4291), translated (RFC 6052),
 /// 6to4 (RFC 3056).
-fn embedded(address: Ipv6Addr) -> Option<Ipv4Addr> {
+fn embedded_v4(address: Ipv6Addr) -> Option<Ipv4Addr> {
     let s = address.segments();
     let v4 = |high: u16, low: u16| Ipv4Addr::from((u32::from(high) << 16) | u32::from(low));
     match s {

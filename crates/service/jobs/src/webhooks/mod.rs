@@ -13,7 +13,7 @@ pub use addresses::check_url;
 
 /// Settings of the deliveries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Telling {
+pub struct DeliverySettings {
     /// True if receivers may be in private networks and use plain http.
     pub private: bool,
     /// Interval at which the store is polled for due deliveries.
@@ -21,32 +21,32 @@ pub struct Telling {
 }
 
 /// Number of deliveries that are sent concurrently.
-const TOGETHER: usize = 8;
+const BATCH_SIZE: usize = 8;
 /// Lease of a delivery: no other process sends it in this time, which is longer than an attempt may
 /// take.
-const TAKEN: Duration = Duration::from_secs(120);
+const DELIVERY_LEASE: Duration = Duration::from_secs(120);
 /// Delay after the first failed attempt; it doubles after each further one.
-const FIRST: Duration = Duration::from_secs(10);
+const FIRST_DELAY: Duration = Duration::from_secs(10);
 /// Largest delay.
-const LONGEST: Duration = Duration::from_secs(6 * 3600);
+const LONGEST_DELAY: Duration = Duration::from_secs(6 * 3600);
 /// Number of attempts before a delivery is abandoned: the delays between them are 10 s to 6 h, more
 /// than a day in all. It can be requested again.
-const ATTEMPTS: i64 = 16;
+const MAX_ATTEMPTS: i64 = 16;
 /// Delay after a failure of the database.
-const BREATH: Duration = Duration::from_secs(5);
+const FAILURE_DELAY: Duration = Duration::from_secs(5);
 
 /// Sends due deliveries forever. If the future is dropped, attempts are aborted; they are due again
 /// after their lease.
-pub async fn keep(store: Store, telling: Telling) {
+pub async fn run_deliveries(store: Store, telling: DeliverySettings) {
     loop {
         let mut pause = telling.poll;
-        match once(&store, telling).await {
+        match deliver_batch(&store, telling).await {
             // A full batch means that more may be due: continue without delay.
-            Ok(TOGETHER) => continue,
+            Ok(BATCH_SIZE) => continue,
             Ok(_) => {}
             Err(error) => {
                 tracing::error!(%error, "webhooks could not be told");
-                pause = pause.max(BREATH);
+                pause = pause.max(FAILURE_DELAY);
             }
         }
         tokio::time::sleep(pause).await;
@@ -54,46 +54,49 @@ pub async fn keep(store: Store, telling: Telling) {
 }
 
 /// Sends one batch of due deliveries, and returns its size.
-async fn once(store: &Store, telling: Telling) -> sistership_store::Result<usize> {
+async fn deliver_batch(
+    store: &Store,
+    telling: DeliverySettings,
+) -> sistership_store::Result<usize> {
     let mut taken = Vec::new();
-    while taken.len() < TOGETHER {
+    while taken.len() < BATCH_SIZE {
         // Taking a delivery also counts the attempt and sets the time at which it is due again.
-        match store.webhooks().take(store.now_us() + micros(TAKEN)).await? {
+        match store.webhooks().take_due(store.now_us() + to_micros(DELIVERY_LEASE)).await? {
             Some(one) => taken.push(one),
             None => break,
         }
     }
-    let told = taken.iter().map(|(delivery, webhook)| tell(store, telling, delivery, webhook));
+    let told = taken.iter().map(|(delivery, webhook)| deliver(store, telling, delivery, webhook));
     // All attempts finish before an error of the database is returned.
     join_all(told).await.into_iter().collect::<sistership_store::Result<Vec<()>>>()?;
     Ok(taken.len())
 }
 
-async fn tell(
+async fn deliver(
     store: &Store,
-    telling: Telling,
+    telling: DeliverySettings,
     delivery: &Delivery,
     webhook: &Webhook,
 ) -> sistership_store::Result<()> {
-    match sent::send(delivery, webhook, store.now_us(), telling.private).await {
-        Ok(answer) => store.webhooks().arrived(&delivery.id, &answer).await,
+    match sent::send_once(delivery, webhook, store.now_us(), telling.private).await {
+        Ok(answer) => store.webhooks().record_arrival(&delivery.id, &answer).await,
         Err(reason) => {
-            let due = pause(delivery.attempts).map(|pause| store.now_us() + micros(pause));
+            let due = retry_delay(delivery.attempts).map(|pause| store.now_us() + to_micros(pause));
             tracing::warn!(webhook = webhook.id, delivery = delivery.id, reason, "not delivered");
-            store.webhooks().failed(&delivery.id, due, &reason).await
+            store.webhooks().record_failure(&delivery.id, due, &reason).await
         }
     }
 }
 
 /// Returns the delay after this number of attempts; `None` if the delivery is abandoned.
-fn pause(attempts: i64) -> Option<Duration> {
+fn retry_delay(attempts: i64) -> Option<Duration> {
     // The delay doubles with each attempt up to the largest one; an overflow counts as the largest.
     let doubled = u32::try_from(attempts - 1).ok().and_then(|n| 2_u32.checked_pow(n));
-    let pause = doubled.and_then(|factor| FIRST.checked_mul(factor)).unwrap_or(LONGEST);
-    (attempts < ATTEMPTS).then_some(pause.min(LONGEST))
+    let pause = doubled.and_then(|factor| FIRST_DELAY.checked_mul(factor)).unwrap_or(LONGEST_DELAY);
+    (attempts < MAX_ATTEMPTS).then_some(pause.min(LONGEST_DELAY))
 }
 
-fn micros(time: Duration) -> i64 {
+fn to_micros(time: Duration) -> i64 {
     i64::try_from(time.as_micros()).unwrap_or(i64::MAX)
 }
 
@@ -104,7 +107,7 @@ mod tests {
     #[test]
     fn pauses_double_to_six_hours_and_end() {
         let pauses: Vec<Option<u64>> =
-            (1..=17).map(|attempt| pause(attempt).map(|pause| pause.as_secs())).collect();
+            (1..=17).map(|attempt| retry_delay(attempt).map(|pause| pause.as_secs())).collect();
         assert_eq!(pauses[..3], [Some(10), Some(20), Some(40)]);
         assert_eq!((pauses[12], pauses[14], pauses[15]), (Some(21_600), Some(21_600), None));
         let all: u64 = pauses.iter().flatten().sum();

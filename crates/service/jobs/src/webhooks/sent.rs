@@ -4,16 +4,16 @@ use std::net::SocketAddr;
 use std::time::Duration;
 
 use reqwest::{Client, Url, redirect};
-use sistership_auth::sign;
+use sistership_auth::sign_message;
 use sistership_store::{Delivery, Webhook, provide_cryptography};
 
 use super::addresses::{check_url, is_public};
 
 /// Timeout of an attempt.
-const PATIENCE: Duration = Duration::from_secs(15);
+const TIMEOUT: Duration = Duration::from_secs(15);
 
 /// Sends a delivery once; returns the status of the answer, or the reason of the failure.
-pub(super) async fn send(
+pub(super) async fn send_once(
     delivery: &Delivery,
     webhook: &Webhook,
     now_us: i64,
@@ -21,10 +21,10 @@ pub(super) async fn send(
 ) -> Result<String, String> {
     // Checked again: the setting may have changed since the webhook was created.
     let url = check_url(&webhook.url, private)?;
-    let client = client(&url, &addresses(&url, private).await?)?;
+    let client = pinned_client(&url, &resolve_addresses(&url, private).await?)?;
     let at_s = now_us / 1_000_000;
     // The time is part of the signed text, so that a receiver can refuse a replay.
-    let signed = sign(&webhook.secret, format!("{at_s}.{}", delivery.body).as_bytes());
+    let signed = sign_message(&webhook.secret, format!("{at_s}.{}", delivery.body).as_bytes());
     let request = client
         .post(url)
         .header("Content-Type", "application/json")
@@ -32,7 +32,7 @@ pub(super) async fn send(
         .header("Sistership-Delivery", &delivery.id)
         .header("Sistership-Signature", format!("t={at_s},v1={signed}"))
         .body(delivery.body.clone());
-    let answer = request.send().await.map_err(|error| words(&error))?;
+    let answer = request.send().await.map_err(|error| describe_error(&error))?;
     // The body of the answer is not read: it could be of any size and content.
     match answer.status() {
         status if status.is_success() => Ok(status.as_u16().to_string()),
@@ -41,7 +41,7 @@ pub(super) async fn send(
 }
 
 /// Resolves the addresses of a receiver, if all of them are allowed.
-async fn addresses(url: &Url, private: bool) -> Result<Vec<SocketAddr>, String> {
+async fn resolve_addresses(url: &Url, private: bool) -> Result<Vec<SocketAddr>, String> {
     let host = url.host_str().unwrap_or_default().trim_matches(['[', ']']);
     let port = url.port_or_known_default().unwrap_or(443);
     let found = tokio::net::lookup_host((host, port)).await;
@@ -55,20 +55,20 @@ async fn addresses(url: &Url, private: bool) -> Result<Vec<SocketAddr>, String> 
 
 /// Creates a client that connects only to the addresses that were checked, whatever the name
 /// resolves to later; it follows no redirect and uses no proxy.
-fn client(url: &Url, addresses: &[SocketAddr]) -> Result<Client, String> {
+fn pinned_client(url: &Url, addresses: &[SocketAddr]) -> Result<Client, String> {
     provide_cryptography();
     let host = url.host_str().unwrap_or_default();
     let client = Client::builder()
-        .timeout(PATIENCE)
+        .timeout(TIMEOUT)
         .redirect(redirect::Policy::none())
         .no_proxy()
         .user_agent(concat!("sistership/", env!("CARGO_PKG_VERSION")))
         .resolve_to_addrs(host, addresses);
-    client.build().map_err(|error| words(&error))
+    client.build().map_err(|error| describe_error(&error))
 }
 
 /// Describes an error without the URL, which may contain a secret.
-fn words(error: &reqwest::Error) -> String {
+fn describe_error(error: &reqwest::Error) -> String {
     let kind = if error.is_timeout() {
         "no answer in time"
     } else if error.is_connect() {

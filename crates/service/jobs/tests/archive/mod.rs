@@ -1,32 +1,32 @@
 //! An archive with the zoo and trials of a ship.
 
 use sistership_jobs::archive::Archive;
-use sistership_jobs::catalogue::Catalogue;
+use sistership_jobs::catalogue::ZooCache;
 use sistership_jobs::seed;
 use sistership_model::version::RecipeTrial;
 use sistership_model::{Trial, Zoo, trial::Channel};
 use sistership_simulation::Ship;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, zigzag};
-use sistership_simulation::state::{RECORDED, at};
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_zigzag};
+use sistership_simulation::state::{RECORDED_CHANNELS, at};
 use sistership_store::NewTrial;
 use sistership_store::testing::TestDatabase;
 use sistership_trials::samples::write_parquet;
 
 /// Zigzags of a Mariner that is more damped than its model says.
 fn trials() -> Vec<Trial> {
-    let zoo = Zoo::embedded().unwrap();
-    let mut model = zoo.model("mariner").unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let mut model = zoo.find_model("mariner").unwrap();
     for (name, factor) in [("N_r", 1.25), ("N_delta", 0.85)] {
         model.coefficients.get_mut(name).unwrap().value *= factor;
     }
     let ship = Ship::new(&model, zoo.law(&model.law).unwrap()).unwrap();
     let sailed = |angle: f64| {
         let settings = ManoeuvreSettings { duration_s: Some(400.0), ..Default::default() };
-        let track = zigzag(&ship, angle, angle.abs(), &settings).unwrap().track;
+        let track = simulate_zigzag(&ship, angle, angle.abs(), &settings).unwrap().track;
         let thin = |column: Vec<f64>| column.into_iter().step_by(10).collect::<Vec<f64>>();
-        let columns = RECORDED[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
+        let columns = RECORDED_CHANNELS[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
         let revolutions = (Channel::N, vec![1.0; thin(track.t_s.clone()).len()]);
-        let channels = columns.map(|&(channel, at)| (channel, thin(track.column(at))));
+        let channels = columns.map(|&(channel, at)| (channel, thin(track.state_column(at))));
         let channels = channels.chain([revolutions]).collect();
         let name = format!("zigzag {angle}");
         Trial { name, t_s: thin(track.t_s.clone()), channels, ..Trial::default() }
@@ -37,7 +37,7 @@ fn trials() -> Vec<Trial> {
 /// An archive with the zoo and those trials.
 pub async fn archive(database: &TestDatabase) -> (Archive, Vec<RecipeTrial>) {
     let archive = Archive::open(&database.url, database.folder.path()).await.unwrap();
-    seed::seed(&archive.store, &Catalogue::default()).await.unwrap();
+    seed::seed_zoo(&archive.store, &ZooCache::default()).await.unwrap();
     let mut named = Vec::new();
     for trial in trials() {
         let mut bytes = Vec::new();

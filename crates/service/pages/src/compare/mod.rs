@@ -5,23 +5,23 @@ mod tables;
 
 use askama::Template;
 use sistership_jobs::Archive;
-use sistership_report::plots::Hull;
+use sistership_report::plots::HullOutline;
 
-use self::sailed::Sailed;
-use self::tables::{ValueRow, coefficients, criteria, figures};
+use self::sailed::VersionManoeuvres;
+use self::tables::{ValueRow, coefficient_rows, criterion_rows, figure_rows};
 use crate::error::{PageError, Result};
-use crate::form::Fields;
+use crate::form::FormFields;
 use crate::named::NamedVersion;
-use crate::picture::svg;
-use crate::plot::{channels, ground, legend};
-use crate::shell::Shell;
+use crate::picture::render_svg;
+use crate::plot::{legend_entries, plot_channels, plot_ground};
+use crate::shell::PageShell;
 
 /// Largest number of versions in a comparison.
-const MOST: usize = 5;
+const MOST_VERSIONS: usize = 5;
 
 /// Inputs of the page.
-pub struct Gathered {
-    shell: Shell,
+pub struct ComparisonInputs {
+    shell: PageShell,
     versions: Vec<NamedVersion>,
     wrong: Option<String>,
     asked: Vec<String>,
@@ -30,10 +30,10 @@ pub struct Gathered {
 #[derive(Template)]
 #[template(path = "compare.html")]
 struct ComparePage<'a> {
-    shell: &'a Shell,
+    shell: &'a PageShell,
     asked: Vec<&'a str>,
     wrong: Option<&'a str>,
-    versions: Vec<Compared<'a>>,
+    versions: Vec<ComparisonColumn<'a>>,
     legend: Vec<(&'static str, String)>,
     track: Option<String>,
     series: Option<String>,
@@ -43,7 +43,7 @@ struct ComparePage<'a> {
     notes: Vec<String>,
 }
 
-struct Compared<'a> {
+struct ComparisonColumn<'a> {
     label: String,
     at: String,
     law: &'a str,
@@ -55,72 +55,83 @@ struct Compared<'a> {
 ///
 /// # Errors
 /// Returns an error if the store fails. An unknown name is reported on the page.
-pub async fn gather(archive: &Archive, shell: Shell, query: &Fields) -> Result<Gathered> {
-    let asked: Vec<String> = query.all("v").map(str::to_owned).collect();
+pub async fn gather_inputs(
+    archive: &Archive,
+    shell: PageShell,
+    query: &FormFields,
+) -> Result<ComparisonInputs> {
+    let asked: Vec<String> = query.get_texts("v").map(str::to_owned).collect();
     let (mut versions, mut wrong) = (Vec::new(), None);
     // Only the first unknown name is reported.
-    for name in asked.iter().take(MOST) {
+    for name in asked.iter().take(MOST_VERSIONS) {
         match NamedVersion::find(archive, "v", name).await {
             Ok(version) => versions.push(version),
             Err(PageError::Invalid { message, .. }) => wrong = wrong.or(Some(message)),
             Err(other) => return Err(other),
         }
     }
-    let many = asked.len() > MOST;
+    let many = asked.len() > MOST_VERSIONS;
     // Names beyond the limit are dropped with a message.
-    let wrong = wrong.or_else(|| many.then(|| format!("at most {MOST} are compared at once")));
-    Ok(Gathered { shell: shell.at("/compare"), versions, wrong, asked })
+    let wrong =
+        wrong.or_else(|| many.then(|| format!("at most {MOST_VERSIONS} are compared at once")));
+    Ok(ComparisonInputs { shell: shell.at_place("/compare"), versions, wrong, asked })
 }
 
-impl Gathered {
+impl ComparisonInputs {
     /// Returns the page; the standard manoeuvres of each version are simulated for it.
     ///
     /// # Errors
     /// Returns an error if the page cannot be rendered.
-    pub fn html(&self) -> Result<String> {
-        let mut sailed: Vec<Sailed> = Vec::new();
+    pub fn render_html(&self) -> Result<String> {
+        let mut sailed: Vec<VersionManoeuvres> = Vec::new();
         for (place, version) in self.versions.iter().enumerate() {
-            sailed.push(Sailed::of(version, place));
+            sailed.push(VersionManoeuvres::simulate_version(version, place));
         }
         let turns: Vec<_> = sailed.iter().filter_map(|one| one.turn.clone()).collect();
         let zigzags: Vec<_> = sailed.iter().filter_map(|one| one.zigzag.clone()).collect();
         // The longest hull, so that the outlines of all versions fit into the chart.
-        let longest =
-            self.versions.iter().filter_map(|one| Hull::of(&one.document.model.particulars));
-        let hull = longest.max_by(|a, b| a.lpp_m.total_cmp(&b.lpp_m)).filter(|_| self.one_ship());
+        let longest = self
+            .versions
+            .iter()
+            .filter_map(|one| HullOutline::from_particulars(&one.document.model.particulars));
+        let hull =
+            longest.max_by(|a, b| a.lpp_m.total_cmp(&b.lpp_m)).filter(|_| self.is_single_ship());
         let page = ComparePage {
             shell: &self.shell,
-            asked: self.shown_again(),
+            asked: self.form_names(),
             wrong: self.wrong.as_deref(),
-            versions: self.versions.iter().map(Compared::of).collect(),
-            legend: legend(&turns),
-            track: ground(&turns, hull, "Turning circles, 35 deg").as_ref().map(svg).transpose()?,
+            versions: self.versions.iter().map(ComparisonColumn::from_version).collect(),
+            legend: legend_entries(&turns),
+            track: plot_ground(&turns, hull, "Turning circles, 35 deg")
+                .as_ref()
+                .map(render_svg)
+                .transpose()?,
             series: match zigzags.as_slice() {
                 [] => None,
-                all => Some(svg(&channels(all, "Zigzags 20/20 over time"))?),
+                all => Some(render_svg(&plot_channels(all, "Zigzags 20/20 over time"))?),
             },
-            figures: figures(&sailed),
-            criteria: criteria(&sailed),
-            coefficients: coefficients(&self.versions),
+            figures: figure_rows(&sailed),
+            criteria: criterion_rows(&sailed),
+            coefficients: coefficient_rows(&self.versions),
             notes: sailed.iter().flat_map(|one| one.notes.clone()).collect(),
         };
         Ok(page.render()?)
     }
 
     /// Returns true if all versions are of one ship, whose outline is then drawn.
-    fn one_ship(&self) -> bool {
+    fn is_single_ship(&self) -> bool {
         self.versions.windows(2).all(|pair| pair[0].head.model == pair[1].head.model)
     }
 
     /// Names of the query, filled up with empty fields of the form.
-    fn shown_again(&self) -> Vec<&str> {
+    fn form_names(&self) -> Vec<&str> {
         let asked = self.asked.iter().map(String::as_str);
-        asked.chain(std::iter::repeat("")).take(MOST).collect()
+        asked.chain(std::iter::repeat("")).take(MOST_VERSIONS).collect()
     }
 }
 
-impl<'a> Compared<'a> {
-    fn of(version: &'a NamedVersion) -> Self {
+impl<'a> ComparisonColumn<'a> {
+    fn from_version(version: &'a NamedVersion) -> Self {
         let speed = version.document.model.speed_m_s;
         Self {
             label: version.label(),

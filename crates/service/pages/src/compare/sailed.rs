@@ -2,27 +2,28 @@
 
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{
-    ManoeuvreSettings, StandardManoeuvres, standard, turn, zigzag,
+    ManoeuvreSettings, StandardManoeuvres, simulate_standard_manoeuvres, simulate_turn,
+    simulate_zigzag,
 };
 
 use crate::named::NamedVersion;
-use crate::plot::{LINES, Track};
+use crate::plot::{LINES, PlotTrack};
 
 /// Standard manoeuvres of a version.
-pub(super) struct Sailed {
+pub(super) struct VersionManoeuvres {
     pub figures: Option<StandardManoeuvres>,
-    pub turn: Option<Track>,
-    pub zigzag: Option<Track>,
+    pub turn: Option<PlotTrack>,
+    pub zigzag: Option<PlotTrack>,
     pub notes: Vec<String>,
 }
 
-impl Sailed {
+impl VersionManoeuvres {
     /// Simulates a version; its position in the comparison decides the line style. A model that
     /// cannot be simulated gives a note only.
-    pub fn of(version: &NamedVersion, place: usize) -> Self {
+    pub fn simulate_version(version: &NamedVersion, place: usize) -> Self {
         let label = version.label();
         match Ship::new(&version.document.model, &version.law) {
-            Ok(ship) => Self::by(&ship, &label, place),
+            Ok(ship) => Self::simulate_ship(&ship, &label, place),
             Err(error) => Self {
                 figures: None,
                 turn: None,
@@ -32,17 +33,19 @@ impl Sailed {
         }
     }
 
-    fn by(ship: &Ship, label: &str, place: usize) -> Self {
+    fn simulate_ship(ship: &Ship, label: &str, place: usize) -> Self {
         let settings = ManoeuvreSettings::default();
         let style = LINES[place % LINES.len()];
-        let figures = standard(ship, &settings);
+        let figures = simulate_standard_manoeuvres(ship, &settings);
         let notes = figures.failures.iter().map(|failure| format!("{label}: {failure}")).collect();
-        let track = |track| Track::simulated(style, label, &track, ship.has_roll());
+        let track = |track| PlotTrack::from_simulation(style, label, &track, ship.has_roll());
         Self {
             // The tracks are those of single manoeuvres; a manoeuvre that fails is absent, and its
             // failure is among the notes.
-            turn: turn(ship, 35.0, &settings).ok().map(|turn| track(turn.track)),
-            zigzag: zigzag(ship, 20.0, 20.0, &settings).ok().map(|zigzag| track(zigzag.track)),
+            turn: simulate_turn(ship, 35.0, &settings).ok().map(|turn| track(turn.track)),
+            zigzag: simulate_zigzag(ship, 20.0, 20.0, &settings)
+                .ok()
+                .map(|zigzag| track(zigzag.track)),
             figures: Some(figures),
             notes,
         }

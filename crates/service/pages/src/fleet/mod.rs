@@ -4,29 +4,29 @@ mod query;
 
 use askama::Template;
 use sistership_jobs::Archive;
-use sistership_jobs::condition::{Condition, trials_of};
-use sistership_jobs::search::standing::{Class, ERROR, LEFT};
-use sistership_jobs::search::{self, KnownVectors, Search};
-use sistership_report::numbers::{significant, stated};
-use sistership_store::{FoundShip, List, Page, ShipKey, ShipStanding};
+use sistership_jobs::condition::{Condition, diagnosed_trials};
+use sistership_jobs::search::standing::{ERROR_FACT, RESIDUAL_FACT_PREFIX, UrgencyClass};
+use sistership_jobs::search::{self, SearchCriteria, VectorCache};
+use sistership_report::numbers::{format_significant, format_stated};
+use sistership_store::{FoundShip, ListPage, PageRequest, ShipKey, ShipOverview};
 
-use self::query::{FleetQuery, Sort};
-use crate::cursor::cursor;
+use self::query::{FleetQuery, SortOrder};
+use crate::cursor::encode_cursor;
 use crate::error::Result;
-use crate::form::Fields;
-use crate::picture::svg;
-use crate::shell::Shell;
+use crate::form::FormFields;
+use crate::picture::render_svg;
+use crate::shell::PageShell;
 use crate::sparkline::sparkline;
 
 /// Number of ships on one page.
-const SHIPS: i64 = 50;
+const SHIPS_PER_PAGE: i64 = 50;
 /// Number of families named in a row.
-const FAMILIES: usize = 4;
+const FAMILIES_PER_ROW: usize = 4;
 
 #[derive(Template)]
 #[template(path = "fleet.html")]
 struct FleetPage {
-    shell: Shell,
+    shell: PageShell,
     query: FleetQuery,
     particulars: Vec<&'static str>,
     metrics: Vec<&'static str>,
@@ -54,55 +54,61 @@ struct ShipRow {
 ///
 /// # Errors
 /// Returns an error if a field of the query is wrong or the store fails.
-pub async fn page(
+pub async fn fleet_page(
     archive: &Archive,
-    known: &KnownVectors,
-    shell: Shell,
-    fields: &Fields,
+    known: &VectorCache,
+    shell: PageShell,
+    fields: &FormFields,
 ) -> Result<String> {
-    let query = FleetQuery::read(fields)?;
-    let found = found(archive, known, &query, query.search()?).await?;
-    let next = cursor(found.next.as_ref()).map(|next| query.address(&next));
+    let query = FleetQuery::from_fields(fields)?;
+    let found = find_ships(archive, known, &query, query.to_search()?).await?;
+    let next = encode_cursor(found.next.as_ref()).map(|next| query.next_address(&next));
     // Read for all rows together: a few statements instead of several for each ship.
     let names: Vec<String> = found.items.iter().map(|ship| ship.name.clone()).collect();
-    let mut standings = archive.store.standings(&names, ERROR, LEFT).await?;
-    let diagnosed = standings.values().flat_map(|standing| trials_of(&standing.diagnoses));
+    let mut standings =
+        archive.store.ship_overviews(&names, ERROR_FACT, RESIDUAL_FACT_PREFIX).await?;
+    let diagnosed = standings.values().flat_map(|standing| diagnosed_trials(&standing.diagnoses));
     let deleted = archive.store.deleted_trials(&diagnosed.collect::<Vec<_>>()).await?;
     let row = |ship: FoundShip| {
         let standing = standings.remove(&ship.name).unwrap_or_default();
-        row(ship, standing, &deleted, query.sort)
+        ship_row(ship, standing, &deleted, query.sort)
     };
     let ships = found.items.into_iter().map(row).collect::<Result<_>>()?;
     let page = FleetPage {
-        shell: shell.at("/"),
-        particulars: search::particulars().collect(),
-        metrics: search::metrics().collect(),
+        shell: shell.at_place("/"),
+        particulars: search::particular_names().collect(),
+        metrics: search::searchable_metrics().collect(),
         value: query.value_name(),
         query,
         ships,
         next,
-        changing: !archive.store.search_index().waiting("", 1).await?.is_empty(),
+        changing: !archive.store.search_index().list_stale("", 1).await?.is_empty(),
     };
     Ok(page.render()?)
 }
 
-async fn found(
+async fn find_ships(
     archive: &Archive,
-    known: &KnownVectors,
+    known: &VectorCache,
     query: &FleetQuery,
-    search: Search,
-) -> Result<List<FoundShip, ShipKey>> {
-    let page = Page { after: query.after()?, limit: SHIPS };
-    Ok(search::ships(archive, known, &search, &page).await?)
+    search: SearchCriteria,
+) -> Result<ListPage<FoundShip, ShipKey>> {
+    let page = PageRequest { after: query.start_key()?, limit: SHIPS_PER_PAGE };
+    Ok(search::search_ships(archive, known, &search, &page).await?)
 }
 
-fn row(ship: FoundShip, standing: ShipStanding, deleted: &[String], sort: Sort) -> Result<ShipRow> {
-    let ShipStanding { champion, diagnoses, fact, series, families } = standing;
-    let weighed = |champion| Condition::weighed(&champion, &diagnoses, deleted);
+fn ship_row(
+    ship: FoundShip,
+    standing: ShipOverview,
+    deleted: &[String],
+    sort: SortOrder,
+) -> Result<ShipRow> {
+    let ShipOverview { champion, diagnoses, fact, series, families } = standing;
+    let weighed = |champion| Condition::from_diagnoses(&champion, &diagnoses, deleted);
     let condition = champion.map(weighed).unwrap_or_default();
-    let class = Class::of(&condition);
+    let class = UrgencyClass::from_condition(&condition);
     // A value is shown only if it sorts the ships.
-    let value = ship.value.filter(|_| matches!(sort, Sort::Value | Sort::Similar));
+    let value = ship.value.filter(|_| matches!(sort, SortOrder::Value | SortOrder::Similar));
     // Sparklines of the list mark no trials.
     let trend = sparkline(series.into_iter().map(|left| (left, false)));
     Ok(ShipRow {
@@ -110,18 +116,18 @@ fn row(ship: FoundShip, standing: ShipStanding, deleted: &[String], sort: Sort) 
         title: ship.title,
         category: ship.category,
         class: class.name(),
-        says: says(class),
-        why: why(&condition),
+        says: class_label(class),
+        why: condition_reason(&condition),
         champion: condition.version,
-        error: fact.map_or_else(String::new, |error| significant(error, 2)),
-        trend: trend.as_ref().map(svg).transpose()?,
-        families: families.into_iter().take(FAMILIES).collect(),
-        value: value.map_or_else(String::new, |value| stated(value, 4)),
+        error: fact.map_or_else(String::new, |error| format_significant(error, 2)),
+        trend: trend.as_ref().map(render_svg).transpose()?,
+        families: families.into_iter().take(FAMILIES_PER_ROW).collect(),
+        value: value.map_or_else(String::new, |value| format_stated(value, 4)),
     })
 }
 
 /// Returns the effects that a champion lacks, or that it has drifted.
-fn why(condition: &Condition) -> String {
+fn condition_reason(condition: &Condition) -> String {
     match condition.verdict.as_deref() {
         Some("drift") => "drift".to_owned(),
         _ => condition.effects.join(", "),
@@ -129,11 +135,11 @@ fn why(condition: &Condition) -> String {
 }
 
 /// Returns a class of condition in words.
-pub(crate) fn says(class: Class) -> &'static str {
+pub(crate) fn class_label(class: UrgencyClass) -> &'static str {
     match class {
-        Class::DoesNotHold => "does not hold",
-        Class::Unknown => "cannot tell",
-        Class::NoModel => "no model",
-        Class::Holds => "holds",
+        UrgencyClass::DoesNotHold => "does not hold",
+        UrgencyClass::Unknown => "cannot tell",
+        UrgencyClass::NoModel => "no model",
+        UrgencyClass::Holds => "holds",
     }
 }

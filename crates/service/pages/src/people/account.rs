@@ -1,26 +1,26 @@
 //! The page of the user's own account.
 
 use askama::Template;
-use sistership_store::Identity;
+use sistership_store::IdentityRow;
 
 use crate::error::Result;
-use crate::shell::Shell;
+use crate::shell::PageShell;
 
 #[derive(Template)]
 #[template(path = "account.html")]
 struct AccountPage<'a> {
-    shell: Shell,
+    shell: PageShell,
     name: &'a str,
     roles: Vec<String>,
-    known: Known<'a>,
+    known: LinkedIdentities<'a>,
     notice: Option<&'a str>,
 }
 
 /// Identities of a user at OpenID providers.
 #[derive(Debug, Clone, Default)]
-pub struct Known<'a> {
+pub struct LinkedIdentities<'a> {
     /// The identities.
-    pub identities: Vec<Identity>,
+    pub identities: Vec<IdentityRow>,
     /// Provider with which the account can be linked, if there is one.
     pub provider: Option<&'a str>,
 }
@@ -29,13 +29,13 @@ pub struct Known<'a> {
 ///
 /// # Errors
 /// Returns an error if the page cannot be rendered.
-pub fn account(
-    shell: Shell,
+pub fn account_page(
+    shell: PageShell,
     name: &str,
     roles: Vec<String>,
-    known: Known<'_>,
+    known: LinkedIdentities<'_>,
     notice: Option<&str>,
 ) -> Result<String> {
-    let shell = shell.at("/account");
+    let shell = shell.at_place("/account");
     Ok(AccountPage { shell, name, roles, known, notice }.render()?)
 }

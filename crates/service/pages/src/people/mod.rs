@@ -5,6 +5,6 @@ mod roles;
 mod sign_in;
 mod users;
 
-pub use account::{Known, account};
-pub use sign_in::{Offered, leave, sign_in};
-pub use users::{new_key, users};
+pub use account::{LinkedIdentities, account_page};
+pub use sign_in::{ProviderLink, leave_page, sign_in_page};
+pub use users::{new_key_page, users_page};

@@ -3,20 +3,20 @@
 use askama::Template;
 
 use crate::error::Result;
-use crate::shell::Shell;
+use crate::shell::PageShell;
 
 #[derive(Template)]
 #[template(path = "sign_in.html")]
 struct SignInPage<'a> {
-    shell: Shell,
+    shell: PageShell,
     next: &'a str,
     why_not: Option<&'a str>,
-    provider: Option<Offered<'a>>,
+    provider: Option<ProviderLink<'a>>,
 }
 
 /// A provider at which people may sign in.
 #[derive(Debug, Clone, Copy)]
-pub struct Offered<'a> {
+pub struct ProviderLink<'a> {
     /// Display name.
     pub title: &'a str,
     /// Address of its sign-in.
@@ -28,11 +28,11 @@ pub struct Offered<'a> {
 ///
 /// # Errors
 /// Returns an error if the page cannot be rendered.
-pub fn sign_in(
-    shell: Shell,
+pub fn sign_in_page(
+    shell: PageShell,
     next: &str,
     why_not: Option<&str>,
-    provider: Option<Offered<'_>>,
+    provider: Option<ProviderLink<'_>>,
 ) -> Result<String> {
     Ok(SignInPage { shell, next, why_not, provider }.render()?)
 }
@@ -40,8 +40,8 @@ pub fn sign_in(
 #[derive(Template)]
 #[template(path = "leave.html")]
 struct LeavePage<'a> {
-    shell: Shell,
-    provider: Offered<'a>,
+    shell: PageShell,
+    provider: ProviderLink<'a>,
 }
 
 /// Returns the page with the link to the provider with which the account will be linked. A form
@@ -49,6 +49,6 @@ struct LeavePage<'a> {
 ///
 /// # Errors
 /// Returns an error if the page cannot be rendered.
-pub fn leave(shell: Shell, provider: Offered<'_>) -> Result<String> {
-    Ok(LeavePage { shell: shell.at("/account"), provider }.render()?)
+pub fn leave_page(shell: PageShell, provider: ProviderLink<'_>) -> Result<String> {
+    Ok(LeavePage { shell: shell.at_place("/account"), provider }.render()?)
 }

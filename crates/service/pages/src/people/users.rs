@@ -2,25 +2,25 @@
 
 use askama::Template;
 use sistership_jobs::Archive;
-use sistership_store::{Identity, KeyRow, Page, User};
+use sistership_store::{IdentityRow, KeyRow, PageRequest, User};
 
-use super::roles::words;
-use crate::cursor::{cursor, key};
-use crate::date::date;
+use super::roles::format_roles;
+use crate::cursor::{decode_cursor, encode_cursor};
+use crate::date::format_date;
 use crate::error::Result;
-use crate::form::Fields;
-use crate::shell::Shell;
+use crate::form::FormFields;
+use crate::shell::PageShell;
 
 /// Number of users, and of keys, on one page.
-const ROWS: i64 = 50;
+const ROWS_PER_PAGE: i64 = 50;
 
 #[derive(Template)]
 #[template(path = "users.html")]
 struct UsersPage {
-    shell: Shell,
+    shell: PageShell,
     users: Vec<UserRow>,
     next: Option<String>,
-    keys: Vec<KeyLine>,
+    keys: Vec<KeyRowView>,
     next_keys: Option<String>,
     second_person: bool,
 }
@@ -30,12 +30,12 @@ struct UserRow {
     title: String,
     roles: String,
     /// Identities of the user at OpenID providers.
-    identities: Vec<Identity>,
+    identities: Vec<IdentityRow>,
     enabled: bool,
     created: String,
 }
 
-struct KeyLine {
+struct KeyRowView {
     prefix: String,
     title: String,
     user: String,
@@ -50,35 +50,36 @@ struct KeyLine {
 ///
 /// # Errors
 /// Returns an error if a field is wrong or the store fails.
-pub async fn users(archive: &Archive, shell: Shell, query: &Fields) -> Result<String> {
+pub async fn users_page(archive: &Archive, shell: PageShell, query: &FormFields) -> Result<String> {
     let store = &archive.store;
-    let page = Page { after: key(query.text("after"))?, limit: ROWS };
+    let page = PageRequest { after: decode_cursor(query.get_text("after"))?, limit: ROWS_PER_PAGE };
     let list = store.users().list(&page).await?;
-    let next = cursor(list.next.as_ref());
+    let next = encode_cursor(list.next.as_ref());
     let mut users = Vec::new();
     for user in list.items {
-        let roles = store.grants().of(&User::principal(&user.name)).await?;
-        let identities = store.identities().of(&user.name).await?;
-        let (enabled, created) = (user.is_enabled(), date(user.created_us));
-        let (User { name, title, .. }, roles) = (user, words(&roles));
+        let roles = store.grants().list_by_principal(&User::principal_name(&user.name)).await?;
+        let identities = store.identities().list_by_user(&user.name).await?;
+        let (enabled, created) = (user.is_enabled(), format_date(user.created_us));
+        let (User { name, title, .. }, roles) = (user, format_roles(&roles));
         users.push(UserRow { name, title, roles, identities, enabled, created });
     }
     // Users and keys have separate cursors on one page.
     let mut keys = Vec::new();
-    let page = Page { after: key(query.text("keys_after"))?, limit: ROWS };
+    let page =
+        PageRequest { after: decode_cursor(query.get_text("keys_after"))?, limit: ROWS_PER_PAGE };
     let list = store.service_keys().list(&page).await?;
-    let next_keys = cursor(list.next.as_ref());
+    let next_keys = encode_cursor(list.next.as_ref());
     for row in list.items {
-        let roles = store.grants().of(&KeyRow::principal(&row.prefix)).await?;
-        keys.push(KeyLine::of(row, words(&roles), store.now_us()));
+        let roles = store.grants().list_by_principal(&KeyRow::principal_name(&row.prefix)).await?;
+        keys.push(KeyRowView::from_key(row, format_roles(&roles), store.now_us()));
     }
-    let second_person = store.settings().second_person().await?;
-    let shell = shell.at("/users");
+    let second_person = store.settings().requires_second_person().await?;
+    let shell = shell.at_place("/users");
     Ok(UsersPage { shell, users, next, keys, next_keys, second_person }.render()?)
 }
 
-impl KeyLine {
-    fn of(row: KeyRow, roles: String, now_us: i64) -> Self {
+impl KeyRowView {
+    fn from_key(row: KeyRow, roles: String, now_us: i64) -> Self {
         let valid = row.is_valid(now_us);
         let KeyRow {
             prefix,
@@ -92,12 +93,12 @@ impl KeyLine {
         } = row;
         // A revoked key has ended, whatever its date.
         let ends = match (revoked_us, expires_us) {
-            (Some(revoked), _) => format!("revoked {}", date(revoked)),
-            (None, Some(ends)) => date(ends),
+            (Some(revoked), _) => format!("revoked {}", format_date(revoked)),
+            (None, Some(ends)) => format_date(ends),
             (None, None) => "when it is revoked".to_owned(),
         };
-        let used = last_used_us.map_or_else(|| "never".to_owned(), date);
-        let (user, created) = (user_name.unwrap_or_default(), date(created_us));
+        let used = last_used_us.map_or_else(|| "never".to_owned(), format_date);
+        let (user, created) = (user_name.unwrap_or_default(), format_date(created_us));
         Self { prefix, title, user, roles, created, ends, used, valid }
     }
 }
@@ -105,7 +106,7 @@ impl KeyLine {
 #[derive(Template)]
 #[template(path = "new_key.html")]
 struct NewKeyPage<'a> {
-    shell: Shell,
+    shell: PageShell,
     title: &'a str,
     key: &'a str,
 }
@@ -114,6 +115,6 @@ struct NewKeyPage<'a> {
 ///
 /// # Errors
 /// Returns an error if the page cannot be rendered.
-pub fn new_key(shell: Shell, title: &str, key: &str) -> Result<String> {
-    Ok(NewKeyPage { shell: shell.at("/users"), title, key }.render()?)
+pub fn new_key_page(shell: PageShell, title: &str, key: &str) -> Result<String> {
+    Ok(NewKeyPage { shell: shell.at_place("/users"), title, key }.render()?)
 }

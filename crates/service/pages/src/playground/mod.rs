@@ -5,24 +5,24 @@ mod sailed;
 
 use askama::Template;
 use sistership_jobs::Archive;
-use sistership_jobs::surroundings::steady;
+use sistership_jobs::surroundings::steady_effect;
 use sistership_model::effect::AppliedEffect;
-use sistership_report::plots::Hull;
+use sistership_report::plots::HullOutline;
 use sistership_simulation::Ship;
 
-use self::orders::{Orders, Surroundings};
-use self::sailed::{Figures, sailed};
+use self::orders::{ManoeuvreOrders, Surroundings};
+use self::sailed::{FigureList, simulate_orders};
 use crate::error::{PageError, Result};
-use crate::form::Fields;
+use crate::form::FormFields;
 use crate::named::NamedVersion;
-use crate::picture::svg;
-use crate::plot::{LINES, Track, channels, ground};
-use crate::shell::Shell;
+use crate::picture::render_svg;
+use crate::plot::{LINES, PlotTrack, plot_channels, plot_ground};
+use crate::shell::PageShell;
 
 /// Inputs of the page.
-pub struct Gathered {
-    shell: Shell,
-    fields: Fields,
+pub struct PlaygroundInputs {
+    shell: PageShell,
+    fields: FormFields,
     version: Option<NamedVersion>,
     wrong: Option<String>,
 }
@@ -30,17 +30,17 @@ pub struct Gathered {
 #[derive(Template)]
 #[template(path = "playground.html")]
 struct PlaygroundPage<'a> {
-    shell: &'a Shell,
+    shell: &'a PageShell,
     model: &'a str,
     wrong: Option<String>,
-    orders: Orders,
+    orders: ManoeuvreOrders,
     around: Surroundings,
     label: Option<String>,
     deep: bool,
     speed_hint: String,
     track: Option<String>,
     series: Option<String>,
-    figures: Figures,
+    figures: FigureList,
     notes: Vec<String>,
 }
 
@@ -52,10 +52,10 @@ impl PlaygroundPage<'_> {
 }
 
 /// Plots and figures of a simulation.
-struct Drawn {
+struct PlaygroundResult {
     track: Option<String>,
     series: Option<String>,
-    figures: Figures,
+    figures: FigureList,
     notes: Vec<String>,
     deep: bool,
     speed_hint: String,
@@ -65,38 +65,42 @@ struct Drawn {
 ///
 /// # Errors
 /// Returns an error if the store fails. An unknown name is reported on the page.
-pub async fn gather(archive: &Archive, shell: Shell, fields: Fields) -> Result<Gathered> {
+pub async fn gather_inputs(
+    archive: &Archive,
+    shell: PageShell,
+    fields: FormFields,
+) -> Result<PlaygroundInputs> {
     let (mut version, mut wrong) = (None, None);
-    if let Some(name) = fields.text("model") {
+    if let Some(name) = fields.get_text("model") {
         match NamedVersion::find(archive, "model", name).await {
             Ok(found) => version = Some(found),
             Err(PageError::Invalid { message, .. }) => wrong = Some(message),
             Err(other) => return Err(other),
         }
     }
-    Ok(Gathered { shell: shell.at("/playground"), fields, version, wrong })
+    Ok(PlaygroundInputs { shell: shell.at_place("/playground"), fields, version, wrong })
 }
 
-impl Gathered {
+impl PlaygroundInputs {
     /// Returns the page, for which the manoeuvre of the form is simulated in at most `most` steps.
     ///
     /// # Errors
     /// Returns an error if the page cannot be rendered.
-    pub fn html(&self, most: usize) -> Result<String> {
+    pub fn render_html(&self, most: usize) -> Result<String> {
         let mut wrong = self.wrong.clone();
         // The page shows the first error only, and the form with the default values of the parts
         // that are wrong.
         let mut refused = |error: PageError| wrong = wrong.take().or(Some(error.to_string()));
-        let orders = Orders::read(&self.fields).unwrap_or_else(|error| {
+        let orders = ManoeuvreOrders::from_fields(&self.fields).unwrap_or_else(|error| {
             refused(error);
-            Orders::default()
+            ManoeuvreOrders::default()
         });
-        let around = Surroundings::read(&self.fields).unwrap_or_else(|error| {
+        let around = Surroundings::from_fields(&self.fields).unwrap_or_else(|error| {
             refused(error);
             Surroundings::default()
         });
         let drawn = match (&self.version, wrong.is_none()) {
-            (Some(version), true) => match drawn(version, &orders, &around, most) {
+            (Some(version), true) => match run_playground(version, &orders, &around, most) {
                 Ok(drawn) => Some(drawn),
                 Err(PageError::Invalid { field, message }) => {
                     wrong = Some(format!("{field}: {message}"));
@@ -107,7 +111,7 @@ impl Gathered {
             _ => None,
         };
         let label = self.version.as_ref().map(NamedVersion::label);
-        let empty = Drawn {
+        let empty = PlaygroundResult {
             track: None,
             series: None,
             figures: Vec::new(),
@@ -115,10 +119,11 @@ impl Gathered {
             deep: false,
             speed_hint: String::new(),
         };
-        let Drawn { track, series, figures, notes, deep, speed_hint } = drawn.unwrap_or(empty);
+        let PlaygroundResult { track, series, figures, notes, deep, speed_hint } =
+            drawn.unwrap_or(empty);
         let page = PlaygroundPage {
             shell: &self.shell,
-            model: self.fields.text("model").unwrap_or_default(),
+            model: self.fields.get_text("model").unwrap_or_default(),
             wrong,
             orders,
             around,
@@ -134,17 +139,17 @@ impl Gathered {
     }
 }
 
-fn drawn(
+fn run_playground(
     version: &NamedVersion,
-    orders: &Orders,
+    orders: &ManoeuvreOrders,
     around: &Surroundings,
     most: usize,
-) -> Result<Drawn> {
+) -> Result<PlaygroundResult> {
     let mut model = version.document.model.clone();
     // Current and wind are effects, as in a diagnosed model.
-    model.effects.extend(around.effects()?);
+    model.effects.extend(around.steady_effects()?);
     let mut ship = Ship::new(&model, &version.law)
-        .map_err(|error| PageError::invalid("model", error.to_string()))?;
+        .map_err(|error| PageError::invalid_field("model", error.to_string()))?;
     // The depth is an input of some laws only.
     let knows_depth = ship.law_inputs().any(|(name, _)| name == "depth");
     let mut notes = Vec::new();
@@ -157,14 +162,14 @@ fn drawn(
         (None, _) => {}
     }
     let speed = ship.approach_speed_m_s();
-    let run = sailed(&mut ship, orders, most)?;
+    let run = simulate_orders(&mut ship, orders, most)?;
     notes.extend(run.notes);
-    let track = Track::simulated(LINES[0], version.label(), &run.track, ship.has_roll());
+    let track = PlotTrack::from_simulation(LINES[0], version.label(), &run.track, ship.has_roll());
     let tracks = [track];
-    let hull = Hull::of(&model.particulars);
-    Ok(Drawn {
-        track: ground(&tracks, hull, "Track").as_ref().map(svg).transpose()?,
-        series: Some(svg(&channels(&tracks, "Motion over time"))?),
+    let hull = HullOutline::from_particulars(&model.particulars);
+    Ok(PlaygroundResult {
+        track: plot_ground(&tracks, hull, "Track").as_ref().map(render_svg).transpose()?,
+        series: Some(render_svg(&plot_channels(&tracks, "Motion over time"))?),
         figures: run.figures,
         notes,
         deep: !knows_depth,
@@ -174,12 +179,13 @@ fn drawn(
 
 impl Surroundings {
     /// Returns current and wind as effects of the library.
-    fn effects(&self) -> Result<Vec<AppliedEffect>> {
-        let named = [("current", self.current()), ("wind", self.wind())];
+    fn steady_effects(&self) -> Result<Vec<AppliedEffect>> {
+        let named = [("current", self.current_vector()), ("wind", self.wind_vector())];
         let some = named.into_iter().filter_map(|(name, of)| Some((name, of?)));
         some.map(|(name, (north, east))| {
-            let missing = || PageError::invalid(name, "the library has no constant form of it");
-            steady(name, [north, east], "playground").ok_or_else(missing)
+            let missing =
+                || PageError::invalid_field(name, "the library has no constant form of it");
+            steady_effect(name, [north, east], "playground").ok_or_else(missing)
         })
         .collect()
     }

@@ -1,18 +1,18 @@
 //! Orders of the manoeuvre, and its surroundings.
 
 use crate::error::{PageError, Result};
-use crate::form::Fields;
+use crate::form::FormFields;
 
 /// Longest simulation, s.
 const LONGEST_S: f64 = 20_000.0;
 /// Largest rudder angle, deg.
 const HARD_OVER: f64 = 45.0;
 /// Largest number of lines of a script.
-const LINES: usize = 500;
+const MOST_LINES: usize = 500;
 
 /// Kind of manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) enum Kind {
+pub(super) enum ManoeuvreKind {
     /// A turning circle.
     #[default]
     Turn,
@@ -22,7 +22,7 @@ pub(super) enum Kind {
     Script,
 }
 
-impl Kind {
+impl ManoeuvreKind {
     /// Name in the form.
     pub fn name(self) -> &'static str {
         match self {
@@ -35,8 +35,8 @@ impl Kind {
 
 /// Orders of a manoeuvre.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Orders {
-    pub kind: Kind,
+pub(super) struct ManoeuvreOrders {
+    pub kind: ManoeuvreKind,
     pub rudder_deg: f64,
     pub switch_deg: f64,
     pub speed_m_s: Option<f64>,
@@ -46,10 +46,10 @@ pub(super) struct Orders {
     pub script: String,
 }
 
-impl Default for Orders {
+impl Default for ManoeuvreOrders {
     fn default() -> Self {
         Self {
-            kind: Kind::Turn,
+            kind: ManoeuvreKind::Turn,
             rudder_deg: 20.0,
             switch_deg: 20.0,
             speed_m_s: None,
@@ -61,35 +61,39 @@ impl Default for Orders {
 }
 
 /// One line of a script: time, s; rudder, rad; revolutions, 1/s, if given.
-pub(super) type Line = (f64, f64, Option<f64>);
+pub(super) type ScriptLine = (f64, f64, Option<f64>);
 
-impl Orders {
-    pub fn read(fields: &Fields) -> Result<Self> {
+impl ManoeuvreOrders {
+    pub fn from_fields(fields: &FormFields) -> Result<Self> {
         let default = Self::default();
-        let kind = match fields.text("kind") {
-            None | Some("turn") => Kind::Turn,
-            Some("zigzag") => Kind::Zigzag,
-            Some("script") => Kind::Script,
+        let kind = match fields.get_text("kind") {
+            None | Some("turn") => ManoeuvreKind::Turn,
+            Some("zigzag") => ManoeuvreKind::Zigzag,
+            Some("script") => ManoeuvreKind::Script,
             Some(other) => {
                 let message = format!("there are turn, zigzag and script, not `{other}`");
-                return Err(PageError::invalid("kind", message));
+                return Err(PageError::invalid_field("kind", message));
             }
         };
         // Written so that NaN is refused as well.
-        let positive = |name: &str, most: f64| match fields.number(name)? {
+        let positive = |name: &str, most: f64| match fields.optional_number(name)? {
             Some(number) if !(number > 0.0 && number <= most) => {
-                Err(PageError::invalid(name, format!("must be above 0 and at most {most}")))
+                Err(PageError::invalid_field(name, format!("must be above 0 and at most {most}")))
             }
             number => Ok(number),
         };
         Ok(Self {
             kind,
-            rudder_deg: fields.within("rudder", (-HARD_OVER, HARD_OVER), default.rudder_deg)?,
-            switch_deg: fields.within("switch", (1.0, 90.0), default.switch_deg)?,
+            rudder_deg: fields.number_within(
+                "rudder",
+                (-HARD_OVER, HARD_OVER),
+                default.rudder_deg,
+            )?,
+            switch_deg: fields.number_within("switch", (1.0, 90.0), default.switch_deg)?,
             speed_m_s: positive("speed", 40.0)?,
-            n_rpm: fields.number("n")?,
+            n_rpm: fields.optional_number("n")?,
             duration_s: positive("duration", LONGEST_S)?,
-            script: fields.text("script").map_or(default.script, str::to_owned),
+            script: fields.get_text("script").map_or(default.script, str::to_owned),
         })
     }
 
@@ -97,15 +101,16 @@ impl Orders {
     ///
     /// # Errors
     /// Returns an error that names the wrong line, or the limit that the script exceeds.
-    pub fn lines(&self) -> Result<Vec<Line>> {
+    pub fn script_lines(&self) -> Result<Vec<ScriptLine>> {
         // Empty lines are allowed, but counted: an error names the line of the text.
         let written = self.script.lines().map(str::trim).enumerate();
         let written = written.filter(|(_, line)| !line.is_empty());
-        let lines = written.map(|(at, text)| line(at + 1, text)).collect::<Result<Vec<_>>>()?;
-        let wrong = |message: String| Err(PageError::invalid("script", message));
+        let lines =
+            written.map(|(at, text)| parse_line(at + 1, text)).collect::<Result<Vec<_>>>()?;
+        let wrong = |message: String| Err(PageError::invalid_field("script", message));
         match lines.as_slice() {
             [] | [_] => wrong("needs two lines at least, such as `0 0` and `60 20`".to_owned()),
-            many if many.len() > LINES => wrong(format!("has more than {LINES} lines")),
+            many if many.len() > MOST_LINES => wrong(format!("has more than {MOST_LINES} lines")),
             all if all.windows(2).any(|pair| pair[1].0 <= pair[0].0) => {
                 wrong("times must increase from line to line".to_owned())
             }
@@ -117,7 +122,7 @@ impl Orders {
     }
 }
 
-fn line(number: usize, text: &str) -> Result<Line> {
+fn parse_line(number: usize, text: &str) -> Result<ScriptLine> {
     let cells: Vec<Option<f64>> = text
         .split([' ', '\t', ';'])
         // Separators are spaces, tabs and semicolons, since a comma may be decimal.
@@ -129,7 +134,7 @@ fn line(number: usize, text: &str) -> Result<Line> {
         [Some(t), Some(rudder), Some(rpm)] if rudder.abs() <= HARD_OVER => {
             Ok((*t, rudder.to_radians(), Some(rpm / 60.0)))
         }
-        _ => Err(PageError::invalid(
+        _ => Err(PageError::invalid_field(
             "script",
             format!(
                 "line {number}, `{text}`: write time in s, rudder in deg (at most {HARD_OVER} to \
@@ -150,34 +155,37 @@ pub(super) struct Surroundings {
 }
 
 impl Surroundings {
-    pub fn read(fields: &Fields) -> Result<Self> {
-        let depth_m = match fields.number("depth")? {
+    pub fn from_fields(fields: &FormFields) -> Result<Self> {
+        let depth_m = match fields.optional_number("depth")? {
             Some(depth) if !(depth > 0.0 && depth <= 12_000.0) => {
-                return Err(PageError::invalid("depth", "must be above 0 and at most 12000 m"));
+                return Err(PageError::invalid_field(
+                    "depth",
+                    "must be above 0 and at most 12000 m",
+                ));
             }
             depth => depth,
         };
         Ok(Self {
-            current_m_s: fields.within("current", (0.0, 4.0), 0.0)?,
-            current_to_deg: fields.within("current_to", (-360.0, 360.0), 0.0)?,
-            wind_m_s: fields.within("wind", (0.0, 40.0), 0.0)?,
-            wind_from_deg: fields.within("wind_from", (-360.0, 360.0), 0.0)?,
+            current_m_s: fields.number_within("current", (0.0, 4.0), 0.0)?,
+            current_to_deg: fields.number_within("current_to", (-360.0, 360.0), 0.0)?,
+            wind_m_s: fields.number_within("wind", (0.0, 40.0), 0.0)?,
+            wind_from_deg: fields.number_within("wind_from", (-360.0, 360.0), 0.0)?,
             depth_m,
         })
     }
 
     /// Velocity of the water to north and east, m/s.
-    pub fn current(&self) -> Option<(f64, f64)> {
-        split(self.current_m_s, self.current_to_deg)
+    pub fn current_vector(&self) -> Option<(f64, f64)> {
+        north_east(self.current_m_s, self.current_to_deg)
     }
 
     /// Components of the wind speed from north and from east, m/s.
-    pub fn wind(&self) -> Option<(f64, f64)> {
-        split(self.wind_m_s, self.wind_from_deg)
+    pub fn wind_vector(&self) -> Option<(f64, f64)> {
+        north_east(self.wind_m_s, self.wind_from_deg)
     }
 }
 
-fn split(speed: f64, direction_deg: f64) -> Option<(f64, f64)> {
+fn north_east(speed: f64, direction_deg: f64) -> Option<(f64, f64)> {
     // A speed of zero means that the effect is absent.
     let (sin, cos) = direction_deg.to_radians().sin_cos();
     (speed > 0.0).then_some((speed * cos, speed * sin))
@@ -190,7 +198,9 @@ mod tests {
 
     #[test]
     fn a_script_is_read_line_by_line_or_its_line_is_named() {
-        let script = |text: &str| Orders { script: text.to_owned(), ..Orders::default() }.lines();
+        let script = |text: &str| {
+            ManoeuvreOrders { script: text.to_owned(), ..ManoeuvreOrders::default() }.script_lines()
+        };
         let lines = script("0 0\n\n 60; 20 ;90\n").unwrap();
         assert_eq!(lines[1], (60.0, 20_f64.to_radians(), Some(1.5)));
         for (text, says) in [
@@ -207,8 +217,8 @@ mod tests {
     #[test]
     fn current_is_where_it_goes() {
         let around = Surroundings { current_m_s: 2.0, current_to_deg: 90.0, ..Default::default() };
-        let (north, east) = around.current().unwrap();
+        let (north, east) = around.current_vector().unwrap();
         assert!(north.abs() < 1e-12 && (east - 2.0).abs() < 1e-12);
-        assert_eq!(around.wind(), None);
+        assert_eq!(around.wind_vector(), None);
     }
 }

@@ -1,25 +1,25 @@
 //! Simulation of the manoeuvre of the playground.
 
 use sistership_model::trial::{Channel, Trial};
-use sistership_report::numbers::significant;
-use sistership_simulation::manoeuvre::{ManoeuvreSettings, turn, zigzag};
+use sistership_report::numbers::format_significant;
+use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
 use sistership_simulation::metrics::{TurningMetrics, ZigzagMetrics};
-use sistership_simulation::recorded::{ReplaySettings, replay};
+use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 use sistership_simulation::{Ship, Trajectory};
 
-use super::orders::{Kind, Line, Orders};
+use super::orders::{ManoeuvreKind, ManoeuvreOrders, ScriptLine};
 use crate::error::{PageError, Result};
 
 /// Longest time step, s.
 const STEP_S: f64 = 0.1;
 
 /// Name, value and unit of each figure.
-pub(super) type Figures = Vec<(&'static str, String, &'static str)>;
+pub(super) type FigureList = Vec<(&'static str, String, &'static str)>;
 
 /// A simulation with its figures.
-pub(super) struct Run {
+pub(super) struct PlaygroundRun {
     pub track: Trajectory,
-    pub figures: Figures,
+    pub figures: FigureList,
     pub notes: Vec<String>,
 }
 
@@ -27,16 +27,20 @@ pub(super) struct Run {
 ///
 /// # Errors
 /// Returns an error if it would take more steps, or if the motion leaves the physical range.
-pub(super) fn sailed(ship: &mut Ship, orders: &Orders, most: usize) -> Result<Run> {
+pub(super) fn simulate_orders(
+    ship: &mut Ship,
+    orders: &ManoeuvreOrders,
+    most: usize,
+) -> Result<PlaygroundRun> {
     let speed = orders.speed_m_s.unwrap_or(ship.approach_speed_m_s());
     // The range of speeds in which the simulation counts as physical follows the approach speed.
     ship.set_envelope_speed(speed);
     let (track, figures) = match orders.kind {
-        Kind::Script => (scripted(ship, orders, speed, most)?, Vec::new()),
-        _ => standard(ship, orders, speed, most)?,
+        ManoeuvreKind::Script => (simulate_script(ship, orders, speed, most)?, Vec::new()),
+        _ => simulate_standard(ship, orders, speed, most)?,
     };
     let mut notes = Vec::new();
-    if let Some(outside) = ship.leaves(&track) {
+    if let Some(outside) = ship.find_excursion(&track) {
         notes.push(format!(
             "{:.0} % of this run lies outside what the model's trials covered, first after {:.0} \
              s, by {}.",
@@ -45,19 +49,19 @@ pub(super) fn sailed(ship: &mut Ship, orders: &Orders, most: usize) -> Result<Ru
             outside.along
         ));
     }
-    Ok(Run { track, figures, notes })
+    Ok(PlaygroundRun { track, figures, notes })
 }
 
-fn standard(
+fn simulate_standard(
     ship: &Ship,
-    orders: &Orders,
+    orders: &ManoeuvreOrders,
     speed: f64,
     most: usize,
-) -> Result<(Trajectory, Figures)> {
+) -> Result<(Trajectory, FigureList)> {
     // The step and the default duration follow the time in which the ship passes its own length.
     let length_s = ship.lpp_m() / speed;
     let step_s = STEP_S.min(0.02 * length_s);
-    bounded(orders.duration_s.unwrap_or(60.0 * length_s) / step_s, most)?;
+    check_step_count(orders.duration_s.unwrap_or(60.0 * length_s) / step_s, most)?;
     let settings = ManoeuvreSettings {
         speed_m_s: Some(speed),
         n_rps: orders.n_rpm.map(|rpm| rpm / 60.0),
@@ -65,8 +69,8 @@ fn standard(
         step_s: Some(step_s),
         ..ManoeuvreSettings::default()
     };
-    let left = |stopped: sistership_simulation::Stopped| {
-        PageError::invalid(
+    let left = |stopped: sistership_simulation::SimulationStop| {
+        PageError::invalid_field(
             "rudder",
             format!(
                 "the simulation left the physical range, {stopped}; the model does not hold there"
@@ -74,29 +78,29 @@ fn standard(
         )
     };
     Ok(match orders.kind {
-        Kind::Zigzag => {
-            let run =
-                zigzag(ship, orders.rudder_deg, orders.switch_deg, &settings).map_err(left)?;
-            (run.track, of_zigzag(&run.metrics))
+        ManoeuvreKind::Zigzag => {
+            let run = simulate_zigzag(ship, orders.rudder_deg, orders.switch_deg, &settings)
+                .map_err(left)?;
+            (run.track, zigzag_figures(&run.metrics))
         }
         _ => {
-            let run = turn(ship, orders.rudder_deg, &settings).map_err(left)?;
-            (run.track, of_turn(&run.metrics))
+            let run = simulate_turn(ship, orders.rudder_deg, &settings).map_err(left)?;
+            (run.track, turn_figures(&run.metrics))
         }
     })
 }
 
-fn bounded(steps: f64, most: usize) -> Result<()> {
+fn check_step_count(steps: f64, most: usize) -> Result<()> {
     match steps <= most as f64 {
         true => Ok(()),
-        false => Err(PageError::invalid(
+        false => Err(PageError::invalid_field(
             "speed",
             format!("would take {steps:.0} steps, at most {most} are made: faster, or shorter"),
         )),
     }
 }
 
-fn of_turn(metrics: &TurningMetrics) -> Figures {
+fn turn_figures(metrics: &TurningMetrics) -> FigureList {
     let figures = [
         ("advance", metrics.advance_m, "m"),
         ("transfer", metrics.transfer_m, "m"),
@@ -104,49 +108,57 @@ fn of_turn(metrics: &TurningMetrics) -> Figures {
         ("steady turning radius", metrics.steady_radius_m, "m"),
         ("speed loss", Some(metrics.speed_loss_m_s), "m/s"),
     ];
-    known(&figures)
+    format_figures(&figures)
 }
 
-fn of_zigzag(metrics: &ZigzagMetrics) -> Figures {
+fn zigzag_figures(metrics: &ZigzagMetrics) -> FigureList {
     let figures = [
         ("first overshoot", metrics.first_overshoot_deg, "deg"),
         ("second overshoot", metrics.second_overshoot_deg, "deg"),
         ("initial turning time", metrics.initial_turning_time_s, "s"),
         ("period", metrics.period_s, "s"),
     ];
-    known(&figures)
+    format_figures(&figures)
 }
 
-fn known(figures: &[(&'static str, Option<f64>, &'static str)]) -> Figures {
+fn format_figures(figures: &[(&'static str, Option<f64>, &'static str)]) -> FigureList {
     let text = |value: Option<f64>| {
-        value.map_or_else(|| "not reached".to_owned(), |value| significant(value, 4))
+        value.map_or_else(|| "not reached".to_owned(), |value| format_significant(value, 4))
     };
     figures.iter().map(|&(name, value, unit)| (name, text(value), unit)).collect()
 }
 
 /// Simulates a script like recorded inputs: the rudder angle is that of the script, linear between
 /// its times.
-fn scripted(ship: &Ship, orders: &Orders, speed: f64, most: usize) -> Result<Trajectory> {
-    let lines = orders.lines()?;
+fn simulate_script(
+    ship: &Ship,
+    orders: &ManoeuvreOrders,
+    speed: f64,
+    most: usize,
+) -> Result<Trajectory> {
+    let lines = orders.script_lines()?;
     let settings = ReplaySettings::default();
-    let trial = trial(ship, &lines, orders, speed);
-    bounded(trial.duration_s() / settings.step_s + trial.len() as f64, most)?;
-    let run = replay(ship, &trial, &settings)
-        .map_err(|error| PageError::invalid("script", error.to_string()))?;
+    let trial = script_trial(ship, &lines, orders, speed);
+    check_step_count(trial.duration_s() / settings.step_s + trial.len() as f64, most)?;
+    let run = replay_trial(ship, &trial, &settings)
+        .map_err(|error| PageError::invalid_field("script", error.to_string()))?;
     Ok(run.track)
 }
 
 /// Returns the script as a trial with evenly spaced samples that starts straight ahead at a speed,
 /// m/s.
-fn trial(ship: &Ship, lines: &[Line], orders: &Orders, speed: f64) -> Trial {
+fn script_trial(ship: &Ship, lines: &[ScriptLine], orders: &ManoeuvreOrders, speed: f64) -> Trial {
     let (first, last) = (lines[0].0, lines[lines.len() - 1].0);
     // About one sample a second, at most 4000.
     let count = ((last - first).ceil() as usize).clamp(2, 4000);
     let t_s: Vec<f64> =
         (0..=count).map(|k| first + (last - first) * k as f64 / count as f64).collect();
     let steady = orders.n_rpm.map_or(ship.revolutions_at(speed), |rpm| rpm / 60.0);
-    let delta = t_s.iter().map(|t| between(lines, *t, |line| line.1)).collect();
-    let n = t_s.iter().map(|t| between(lines, *t, |line| line.2.unwrap_or(steady))).collect();
+    let delta = t_s.iter().map(|t| interpolate_script(lines, *t, |line| line.1)).collect();
+    let n = t_s
+        .iter()
+        .map(|t| interpolate_script(lines, *t, |line| line.2.unwrap_or(steady)))
+        .collect();
     // Only the first state matters: the replay starts from it and reads inputs alone afterwards.
     let mut trial = Trial { name: "script".into(), ..Trial::default() };
     for channel in [
@@ -169,7 +181,7 @@ fn trial(ship: &Ship, lines: &[Line], orders: &Orders, speed: f64) -> Trial {
 
 /// Interpolates linearly between the lines of a script; constant before the first and after the
 /// last.
-fn between(lines: &[Line], t: f64, of: impl Fn(&Line) -> f64) -> f64 {
+fn interpolate_script(lines: &[ScriptLine], t: f64, of: impl Fn(&ScriptLine) -> f64) -> f64 {
     let after = lines.partition_point(|line| line.0 <= t);
     match (after.checked_sub(1).map(|before| &lines[before]), lines.get(after)) {
         (Some(a), Some(b)) => of(a) + (of(b) - of(a)) * (t - a.0) / (b.0 - a.0),

@@ -1,49 +1,60 @@
 //! Tracks over the ground, with the outline of the ship at the same instants on each.
 
-use sistership_report::plots::axes::extent;
-use sistership_report::plots::{GroundChart, Hull, Plot, Shape, WIDTH, mark_interval_s, path};
+use sistership_report::plots::axes::value_range;
+use sistership_report::plots::{
+    GroundChart, HullOutline, Shape, SvgPlot, WIDTH, mark_interval_s, path_data,
+};
 
-use super::track::Track;
+use super::track::PlotTrack;
 use sistership_model::trial::Channel;
 
 /// Returns the tracks; `None` if no track has positions. `label` describes the plot.
-pub(crate) fn ground(tracks: &[Track], hull: Option<Hull>, label: &str) -> Option<Plot> {
-    let placed: Vec<(&Track, Vec<(f64, f64)>)> =
-        tracks.iter().filter_map(|track| Some((track, track.places()?))).collect();
+pub(crate) fn plot_ground(
+    tracks: &[PlotTrack],
+    hull: Option<HullOutline>,
+    label: &str,
+) -> Option<SvgPlot> {
+    let placed: Vec<(&PlotTrack, Vec<(f64, f64)>)> =
+        tracks.iter().filter_map(|track| Some((track, track.positions()?))).collect();
     let range = |of: fn(&(f64, f64)) -> f64| {
-        extent(placed.iter().flat_map(|(_, places)| places.iter().map(of)))
+        value_range(placed.iter().flat_map(|(_, places)| places.iter().map(of)))
     };
-    let chart = GroundChart::of(range(|place| place.0)?, range(|place| place.1)?, hull);
+    let chart = GroundChart::from_ranges(range(|place| place.0)?, range(|place| place.1)?, hull);
     let mut inside: Vec<Shape> =
-        placed.iter().map(|(track, places)| curve(&chart, track, places)).collect();
+        placed.iter().map(|(track, places)| track_curve(&chart, track, places)).collect();
     // The same interval for all tracks, so that outlines of the same number belong to the same
     // instant.
     let interval = mark_interval_s(0.5 * duration_s(&placed));
     inside.extend(
-        placed.iter().flat_map(|(track, places)| marks(&chart, track, places, hull, interval)),
+        placed
+            .iter()
+            .flat_map(|(track, places)| track_marks(&chart, track, places, hull, interval)),
     );
-    let mut shapes = chart.drawn(inside);
+    let mut shapes = chart.draw_chart(inside);
     let first = placed.first().and_then(|(_, places)| places.first());
-    shapes.extend(first.into_iter().flat_map(|place| chart.start(*place)));
-    Some(Plot { width: WIDTH, height: chart.height(), label: label.to_owned(), shapes })
+    shapes.extend(first.into_iter().flat_map(|place| chart.start_mark(*place)));
+    Some(SvgPlot { width: WIDTH, height: chart.plot_height(), label: label.to_owned(), shapes })
 }
 
-fn duration_s(placed: &[(&Track, Vec<(f64, f64)>)]) -> f64 {
-    let of = |track: &Track| Some(track.t_s.last()? - track.t_s.first()?);
+fn duration_s(placed: &[(&PlotTrack, Vec<(f64, f64)>)]) -> f64 {
+    let of = |track: &PlotTrack| Some(track.t_s.last()? - track.t_s.first()?);
     placed.iter().filter_map(|(track, _)| of(track)).fold(0.0, f64::max)
 }
 
-fn curve(chart: &GroundChart, track: &Track, places: &[(f64, f64)]) -> Shape {
-    let points: Vec<(f64, f64)> = places.iter().map(|place| chart.at(*place)).collect();
-    Shape::Path { d: path(&points, |from, to| track.jumps(from, to)), class: track.style.line }
+fn track_curve(chart: &GroundChart, track: &PlotTrack, places: &[(f64, f64)]) -> Shape {
+    let points: Vec<(f64, f64)> = places.iter().map(|place| chart.position_of(*place)).collect();
+    Shape::Path {
+        d: path_data(&points, |from, to| track.has_gap(from, to)),
+        class: track.style.line,
+    }
 }
 
 /// Returns outlines where heading and hull are known, otherwise dots.
-fn marks(
+fn track_marks(
     chart: &GroundChart,
-    track: &Track,
+    track: &PlotTrack,
     places: &[(f64, f64)],
-    hull: Option<Hull>,
+    hull: Option<HullOutline>,
     interval: f64,
 ) -> Vec<Shape> {
     let heading = track.channels.get(&Channel::Psi);
@@ -53,8 +64,8 @@ fn marks(
     let due = |sample: &usize| *sample == 0 || number(*sample) > number(*sample - 1);
     let mark = |sample: usize| {
         let outline =
-            || chart.outline(hull?, places[sample], *heading?.get(sample)?, track.style.hull);
-        let (at, class) = (chart.at(places[sample]), track.style.dot);
+            || chart.ship_outline(hull?, places[sample], *heading?.get(sample)?, track.style.hull);
+        let (at, class) = (chart.position_of(places[sample]), track.style.dot);
         outline().unwrap_or(Shape::Dot { at, radius: 1.4, class })
     };
     (0..places.len()).filter(due).map(mark).collect()

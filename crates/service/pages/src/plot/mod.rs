@@ -4,6 +4,6 @@ mod channels;
 mod ground;
 mod track;
 
-pub(crate) use channels::channels;
-pub(crate) use ground::ground;
-pub(crate) use track::{LINES, Track, legend};
+pub(crate) use channels::plot_channels;
+pub(crate) use ground::plot_ground;
+pub(crate) use track::{LINES, PlotTrack, legend_entries};

@@ -4,10 +4,10 @@
 //! and stern is not the ship's own.
 
 use sistership_model::particulars::Particulars;
-use sistership_report::numbers::stated;
-use sistership_report::plots::{Hull, Plot, Shape};
+use sistership_report::numbers::format_stated;
+use sistership_report::plots::{HullOutline, Shape, SvgPlot};
 
-use crate::picture::{line, polygon, text};
+use crate::picture::{line_shape, polygon_shape, text_shape};
 
 const WIDTH: f64 = 640.0;
 const MARGIN: f64 = 26.0;
@@ -15,79 +15,92 @@ const MARGIN: f64 = 26.0;
 const GAP: f64 = 46.0;
 
 /// Mapping of the ship's metres to the drawing.
-struct Frame {
+struct DrawingFrame {
     per_metre: f64,
     lpp_m: f64,
 }
 
-impl Frame {
+impl DrawingFrame {
     /// Returns the x coordinate of a point forward of midship; the aft perpendicular is at the
     /// left.
-    fn x(&self, forward_m: f64) -> f64 {
+    fn x_at(&self, forward_m: f64) -> f64 {
         MARGIN + (0.5 * self.lpp_m + forward_m) * self.per_metre
     }
 }
 
 /// Returns the drawing; `None` if length or beam are unknown.
-pub(super) fn drawing(particulars: &Particulars, title: &str) -> Option<Plot> {
-    let hull = Hull::of(particulars)?;
+pub(super) fn draw_ship(particulars: &Particulars, title: &str) -> Option<SvgPlot> {
+    let hull = HullOutline::from_particulars(particulars)?;
     let known = |name: &str| particulars.get(name).map(|quantity| quantity.value);
-    let frame = Frame { per_metre: (WIDTH - 2.0 * MARGIN) / hull.lpp_m, lpp_m: hull.lpp_m };
+    let frame = DrawingFrame { per_metre: (WIDTH - 2.0 * MARGIN) / hull.lpp_m, lpp_m: hull.lpp_m };
     let middle = 22.0 + 0.5 * hull.beam_m * frame.per_metre;
-    let mut shapes = from_above(&frame, hull, middle, known("x_g_m"));
+    let mut shapes = top_view(&frame, hull, middle, known("x_g_m"));
     let mut bottom = middle + 0.5 * hull.beam_m * frame.per_metre + 20.0;
     if let Some(draught) = known("draught_m") {
         // Without a moulded depth the side view shows a freeboard of half the draught.
         let depth = known("depth_moulded_m").unwrap_or(1.5 * draught).max(draught);
         let water = bottom + GAP + (depth - draught) * frame.per_metre;
-        shapes.extend(from_the_side(&frame, &known, draught, depth, water));
+        shapes.extend(side_view(&frame, &known, draught, depth, water));
         bottom = water + draught * frame.per_metre + 22.0;
     }
     shapes.extend(scale_bar(&frame, bottom + 6.0));
     let label = format!(
         "{title} to scale: length {} m, beam {} m",
-        stated(hull.lpp_m, 4),
-        stated(hull.beam_m, 4)
+        format_stated(hull.lpp_m, 4),
+        format_stated(hull.beam_m, 4)
     );
-    Some(Plot { width: WIDTH, height: bottom + 30.0, label, shapes })
+    Some(SvgPlot { width: WIDTH, height: bottom + 30.0, label, shapes })
 }
 
-fn from_above(frame: &Frame, hull: Hull, middle: f64, x_g_m: Option<f64>) -> Vec<Shape> {
+fn top_view(
+    frame: &DrawingFrame,
+    hull: HullOutline,
+    middle: f64,
+    x_g_m: Option<f64>,
+) -> Vec<Shape> {
     let corners: Vec<(f64, f64)> = hull
-        .outline((0.0, 0.0), 0.0)
+        .corners_at((0.0, 0.0), 0.0)
         .into_iter()
-        .map(|(forward, right)| (frame.x(forward), middle + right * frame.per_metre))
+        .map(|(forward, right)| (frame.x_at(forward), middle + right * frame.per_metre))
         .collect();
-    let (aft, fore) = (frame.x(-0.5 * frame.lpp_m), frame.x(0.5 * frame.lpp_m));
+    let (aft, fore) = (frame.x_at(-0.5 * frame.lpp_m), frame.x_at(0.5 * frame.lpp_m));
     let half = 0.5 * hull.beam_m * frame.per_metre;
     let mut shapes = vec![
-        polygon(&corners, "body"),
-        line((aft - 10.0, middle), (fore + 10.0, middle), "axis"),
-        line((frame.x(0.0), middle - half - 4.0), (frame.x(0.0), middle + half + 4.0), "axis"),
-        text((aft, middle - half - 8.0), format!("Lpp {} m", stated(frame.lpp_m, 4)), "small"),
-        text(
-            (frame.x(0.0) + 5.0, middle - half - 8.0),
-            format!("midship, beam {} m", stated(hull.beam_m, 4)),
+        polygon_shape(&corners, "body"),
+        line_shape((aft - 10.0, middle), (fore + 10.0, middle), "axis"),
+        line_shape(
+            (frame.x_at(0.0), middle - half - 4.0),
+            (frame.x_at(0.0), middle + half + 4.0),
+            "axis",
+        ),
+        text_shape(
+            (aft, middle - half - 8.0),
+            format!("Lpp {} m", format_stated(frame.lpp_m, 4)),
+            "small",
+        ),
+        text_shape(
+            (frame.x_at(0.0) + 5.0, middle - half - 8.0),
+            format!("midship, beam {} m", format_stated(hull.beam_m, 4)),
             "small",
         ),
     ];
     if let Some(x_g) = x_g_m {
-        shapes.push(Shape::Dot { at: (frame.x(x_g), middle), radius: 3.2, class: "part" });
-        let words = format!("G {} m from midship", stated(x_g, 3));
-        shapes.push(text((frame.x(x_g), middle + half + 14.0), words, "small mid"));
+        shapes.push(Shape::Dot { at: (frame.x_at(x_g), middle), radius: 3.2, class: "part" });
+        let words = format!("G {} m from midship", format_stated(x_g, 3));
+        shapes.push(text_shape((frame.x_at(x_g), middle + half + 14.0), words, "small mid"));
     }
     shapes
 }
 
-fn from_the_side(
-    frame: &Frame,
+fn side_view(
+    frame: &DrawingFrame,
     known: &dyn Fn(&str) -> Option<f64>,
     draught: f64,
     depth: f64,
     water: f64,
 ) -> Vec<Shape> {
     let scale = frame.per_metre;
-    let (aft, fore) = (frame.x(-0.5 * frame.lpp_m), frame.x(0.5 * frame.lpp_m));
+    let (aft, fore) = (frame.x_at(-0.5 * frame.lpp_m), frame.x_at(0.5 * frame.lpp_m));
     let (keel, deck) = (water + draught * scale, water - (depth - draught) * scale);
     let overhang = 0.03 * frame.lpp_m * scale;
     let rise = 0.45 * draught * scale;
@@ -96,33 +109,33 @@ fn from_the_side(
         (fore + overhang * 0.7, deck),
         (fore, water),
         (fore - overhang * 0.4, keel),
-        (frame.x(-0.42 * frame.lpp_m), keel),
-        (frame.x(-0.47 * frame.lpp_m), keel - rise),
+        (frame.x_at(-0.42 * frame.lpp_m), keel),
+        (frame.x_at(-0.47 * frame.lpp_m), keel - rise),
         (aft, water),
     ];
     let mut shapes = vec![
-        polygon(&body, "body"),
-        line((aft - 14.0, water), (fore + 14.0, water), "water"),
-        line((fore + 12.0, water), (fore + 12.0, keel), "measure"),
+        polygon_shape(&body, "body"),
+        line_shape((aft - 14.0, water), (fore + 14.0, water), "water"),
+        line_shape((fore + 12.0, water), (fore + 12.0, keel), "measure"),
     ];
-    let draught_words = format!("draught {} m", stated(draught, 3));
-    shapes.push(text((fore + 12.0, keel + 13.0), draught_words, "small end"));
-    shapes.extend(rudder(frame, known, draught, keel));
+    let draught_words = format!("draught {} m", format_stated(draught, 3));
+    shapes.push(text_shape((fore + 12.0, keel + 13.0), draught_words, "small end"));
+    shapes.extend(rudder_shape(frame, known, draught, keel));
     if let Some(diameter) = known("propeller_diameter_m") {
-        let (x, half) = (frame.x(-0.475 * frame.lpp_m), 0.5 * diameter * scale);
+        let (x, half) = (frame.x_at(-0.475 * frame.lpp_m), 0.5 * diameter * scale);
         let at = (x - 1.5, keel - 2.0 * half - 0.02 * draught * scale);
         shapes.push(Shape::Rect { at, size: (3.0, 2.0 * half), class: "part" });
     }
-    let words = aft_words(known);
+    let words = stern_text(known);
     if !words.is_empty() {
-        shapes.push(text((aft, keel + 13.0), words, "small"));
+        shapes.push(text_shape((aft, keel + 13.0), words, "small"));
     }
     shapes
 }
 
 /// Returns the rudder as a rectangle: its height as stated, otherwise from area and aspect ratio.
-fn rudder(
-    frame: &Frame,
+fn rudder_shape(
+    frame: &DrawingFrame,
     known: &dyn Fn(&str) -> Option<f64>,
     draught: f64,
     keel: f64,
@@ -132,13 +145,13 @@ fn rudder(
     // Not much higher than the draught, whatever the particulars say.
     let height = known("rudder_height_m").unwrap_or((area * ratio).sqrt()).min(1.2 * draught);
     let scale = frame.per_metre;
-    let at = (frame.x(-0.5 * frame.lpp_m) - 0.5 * area / height * scale, keel - height * scale);
+    let at = (frame.x_at(-0.5 * frame.lpp_m) - 0.5 * area / height * scale, keel - height * scale);
     Some(Shape::Rect { at, size: (area / height * scale, height * scale), class: "part" })
 }
 
-fn aft_words(known: &dyn Fn(&str) -> Option<f64>) -> String {
+fn stern_text(known: &dyn Fn(&str) -> Option<f64>) -> String {
     let part = |name: &str, what: &str, unit: &str| {
-        known(name).map(|value| format!("{what} {} {unit}", stated(value, 3)))
+        known(name).map(|value| format!("{what} {} {unit}", format_stated(value, 3)))
     };
     let parts = [
         part("rudder_area_m2", "rudder", "m²"),
@@ -148,14 +161,14 @@ fn aft_words(known: &dyn Fn(&str) -> Option<f64>) -> String {
 }
 
 /// Returns a bar of a round length.
-fn scale_bar(frame: &Frame, y: f64) -> [Shape; 4] {
+fn scale_bar(frame: &DrawingFrame, y: f64) -> [Shape; 4] {
     let length = sistership_report::plots::axes::nice_step(0.12 * frame.lpp_m);
     let (from, to) = (MARGIN, MARGIN + length * frame.per_metre);
     [
-        line((from, y), (to, y), "measure"),
-        line((from, y - 3.0), (from, y + 3.0), "measure"),
-        line((to, y - 3.0), (to, y + 3.0), "measure"),
-        text((to + 6.0, y + 3.5), format!("{} m", stated(length, 2)), "small"),
+        line_shape((from, y), (to, y), "measure"),
+        line_shape((from, y - 3.0), (from, y + 3.0), "measure"),
+        line_shape((to, y - 3.0), (to, y + 3.0), "measure"),
+        text_shape((to + 6.0, y + 3.5), format!("{} m", format_stated(length, 2)), "small"),
     ]
 }
 
@@ -167,15 +180,17 @@ mod tests {
 
     #[test]
     fn every_ship_of_the_zoo_with_length_and_beam_can_be_drawn() {
-        let zoo = Zoo::embedded().unwrap();
-        let hulls = zoo.vessels().filter(|vessel| Hull::of(&vessel.particulars).is_some());
-        let heights = hulls.map(|vessel| drawing(&vessel.particulars, "").unwrap().height);
+        let zoo = Zoo::load_embedded().unwrap();
+        let hulls = zoo
+            .vessels()
+            .filter(|vessel| HullOutline::from_particulars(&vessel.particulars).is_some());
+        let heights = hulls.map(|vessel| draw_ship(&vessel.particulars, "").unwrap().height);
         let heights: Vec<f64> = heights.collect();
         assert!(heights.len() > 20 && heights.iter().all(|height| (60.0..500.0).contains(height)));
     }
 
     #[test]
     fn without_a_beam_nothing_is_drawn() {
-        assert!(drawing(&Particulars::new(), "").is_none());
+        assert!(draw_ship(&Particulars::new(), "").is_none());
     }
 }

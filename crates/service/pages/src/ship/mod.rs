@@ -7,31 +7,31 @@ use std::sync::Arc;
 
 use askama::Template;
 use sistership_jobs::Archive;
-use sistership_jobs::archive::vessel;
+use sistership_jobs::archive::parse_vessel;
 use sistership_jobs::champions::most_similar_ships;
 use sistership_jobs::condition::{Condition, SinceTrial, WeighedDiagnosis};
 use sistership_jobs::line::CHAMPION;
-use sistership_jobs::search::standing::Class;
+use sistership_jobs::search::standing::UrgencyClass;
 use sistership_model::{Vessel, Zoo};
 use sistership_priors::similarity::RankedSource;
-use sistership_report::numbers::{significant, stated};
-use sistership_store::{Alias, JobFilter, Note, Page, Ship};
+use sistership_report::numbers::{format_significant, format_stated};
+use sistership_store::{Alias, JobFilter, PageRequest, Ship, ShipNote};
 
-use self::versions::{VersionRow, versions};
-use crate::date::date;
+use self::versions::{VersionRow, list_versions};
+use crate::date::format_date;
 use crate::error::Result;
-use crate::picture::svg;
+use crate::picture::render_svg;
 use crate::rows::{JobRow, TrialRow};
-use crate::shell::Shell;
+use crate::shell::PageShell;
 
 /// Number of lines of each list.
-const LINES: i64 = 50;
+const LIST_LINES: i64 = 50;
 /// Number of similar ships on the page.
 pub const SIMILAR: usize = 5;
 
 /// Inputs of the page.
-pub struct Gathered {
-    shell: Shell,
+pub struct ShipPageInputs {
+    shell: PageShell,
     ship: Ship,
     vessel: Vessel,
     condition: Condition,
@@ -50,8 +50,8 @@ pub struct Gathered {
 #[derive(Template)]
 #[template(path = "ship.html")]
 struct ShipPage<'a> {
-    of: &'a Gathered,
-    shell: &'a Shell,
+    of: &'a ShipPageInputs,
+    shell: &'a PageShell,
     class: &'static str,
     since: Option<String>,
     evidence: Vec<EvidenceRow>,
@@ -78,8 +78,8 @@ struct NoteRow {
 }
 
 impl NoteRow {
-    fn of(note: Note) -> Self {
-        Self { made: date(note.at_us), actor: note.actor, text: note.text }
+    fn from_note(note: ShipNote) -> Self {
+        Self { made: format_date(note.at_us), actor: note.actor, text: note.text }
     }
 }
 
@@ -92,20 +92,20 @@ struct EvidenceRow {
 }
 
 impl EvidenceRow {
-    fn of(diagnosis: &WeighedDiagnosis) -> Self {
+    fn from_diagnosis(diagnosis: &WeighedDiagnosis) -> Self {
         let trials = match diagnosis.trials.len() {
             1 => "1 trial".to_owned(),
             count => format!("{count} trials"),
         };
         let what = if diagnosis.whole { format!("the whole: {trials}") } else { trials };
-        let (made, report) = (date(diagnosis.by.at_us), diagnosis.by.report.clone());
+        let (made, report) = (format_date(diagnosis.by.at_us), diagnosis.by.report.clone());
         Self { made, what, verdict: diagnosis.verdict.clone(), report }
     }
 }
 
 /// Formats the trial since which a condition holds.
-fn since(since: &SinceTrial) -> String {
-    format!("{}, uploaded {}", since.name, date(since.at_us))
+fn since_text(since: &SinceTrial) -> String {
+    format!("{}, uploaded {}", since.name, format_date(since.at_us))
 }
 
 struct SimilarRow {
@@ -129,47 +129,57 @@ const METHODS: [(&str, &str); 5] = [
 ///
 /// # Errors
 /// Returns an error if there is no such ship or the store fails.
-pub async fn gather(archive: &Archive, shell: Shell, name: &str) -> Result<Gathered> {
+pub async fn gather_inputs(
+    archive: &Archive,
+    shell: PageShell,
+    name: &str,
+) -> Result<ShipPageInputs> {
     let store = &archive.store;
     let ship = store.ships().get(name).await?;
     // Only the first entries of each list are shown.
-    let aliases = store.aliases().list(name, &Page::first(LINES)).await?.items;
-    let trials = store.trials().list(name, &Page::first(LINES)).await?;
+    let aliases = store.aliases().list(name, &PageRequest::first_page(LIST_LINES)).await?.items;
+    let trials = store.trials().list(name, &PageRequest::first_page(LIST_LINES)).await?;
     let filter = JobFilter { ship: Some(name.to_owned()), state: None };
-    let jobs = store.jobs().list(&filter, &Page::first(10)).await?;
-    let families = store.families().of_ship(name, &Page::first(LINES)).await?;
-    let laws = store.laws().list(&Page::first(200)).await?;
-    let notes = store.ships().notes(name, &Page::first(10)).await?;
-    Ok(Gathered {
-        vessel: vessel(&ship.name, &ship.document)?,
-        condition: Condition::of(store, name).await?,
-        before: before(archive, &aliases, name).await?,
-        versions: versions(archive, name, &aliases).await?,
+    let jobs = store.jobs().list(&filter, &PageRequest::first_page(10)).await?;
+    let families =
+        store.families().list_by_ship(name, &PageRequest::first_page(LIST_LINES)).await?;
+    let laws = store.laws().list(&PageRequest::first_page(200)).await?;
+    let notes = store.ships().list_notes(name, &PageRequest::first_page(10)).await?;
+    Ok(ShipPageInputs {
+        vessel: parse_vessel(&ship.name, &ship.document)?,
+        condition: Condition::read_current(store, name).await?,
+        before: previous_champion(archive, &aliases, name).await?,
+        versions: list_versions(archive, name, &aliases).await?,
         more_trials: trials.next.is_some(),
-        trials: trials.items.into_iter().map(TrialRow::of).collect(),
-        jobs: jobs.items.into_iter().map(JobRow::of).collect(),
-        tags: store.ships().tags(name).await?,
-        notes: notes.items.into_iter().map(NoteRow::of).collect(),
+        trials: trials.items.into_iter().map(TrialRow::from_trial).collect(),
+        jobs: jobs.items.into_iter().map(JobRow::from_job).collect(),
+        tags: store.ships().list_tags(name).await?,
+        notes: notes.items.into_iter().map(NoteRow::from_note).collect(),
         families: families.items.into_iter().map(|family| family.name).collect(),
         laws: laws.items.into_iter().map(|law| law.name).collect(),
         aliases,
         ship,
-        shell: shell.at("/"),
+        shell: shell.at_place("/"),
     })
 }
 
 /// Returns the version that was champion before the present one.
-async fn before(archive: &Archive, aliases: &[Alias], ship: &str) -> Result<Option<i64>> {
+async fn previous_champion(
+    archive: &Archive,
+    aliases: &[Alias],
+    ship: &str,
+) -> Result<Option<i64>> {
     // Without champion the alias has no history.
     if !aliases.iter().any(|alias| alias.alias == CHAMPION) {
         return Ok(None);
     }
     // The latest move names the version before it.
-    let history = archive.store.aliases().history(ship, CHAMPION, &Page::first(1)).await?;
+    let history =
+        archive.store.aliases().list_history(ship, CHAMPION, &PageRequest::first_page(1)).await?;
     Ok(history.items.first().and_then(|change| change.from_number))
 }
 
-impl Gathered {
+impl ShipPageInputs {
     /// The ship, to which others are compared.
     pub fn vessel(&self) -> &Vessel {
         &self.vessel
@@ -179,7 +189,11 @@ impl Gathered {
     ///
     /// # Errors
     /// Returns an error if the store fails.
-    pub async fn similar(&self, archive: &Archive, zoo: Arc<Zoo>) -> Result<Vec<RankedSource>> {
+    pub async fn similar_ships(
+        &self,
+        archive: &Archive,
+        zoo: Arc<Zoo>,
+    ) -> Result<Vec<RankedSource>> {
         Ok(most_similar_ships(archive, zoo, self.vessel.clone(), SIMILAR).await?)
     }
 
@@ -187,24 +201,24 @@ impl Gathered {
     ///
     /// # Errors
     /// Returns an error if the page cannot be rendered.
-    pub fn html(&self, similar: Vec<RankedSource>) -> Result<String> {
+    pub fn render_html(&self, similar: Vec<RankedSource>) -> Result<String> {
         let particulars = &self.vessel.particulars;
-        let drawing = drawing::drawing(particulars, &self.ship.title);
+        let drawing = drawing::draw_ship(particulars, &self.ship.title);
         let champion = self.aliases.iter().find(|alias| alias.alias == CHAMPION);
         let page = ShipPage {
             of: self,
             shell: &self.shell,
-            class: Class::of(&self.condition).name(),
-            since: self.condition.since.as_ref().map(since),
-            evidence: self.condition.diagnoses.iter().map(EvidenceRow::of).collect(),
+            class: UrgencyClass::from_condition(&self.condition).name(),
+            since: self.condition.since.as_ref().map(since_text),
+            evidence: self.condition.diagnoses.iter().map(EvidenceRow::from_diagnosis).collect(),
             revision: champion.map(|alias| alias.revision),
             particulars: particulars
                 .iter()
-                .map(|(name, of)| (name.clone(), stated(of.value, 6), of.source.clone()))
+                .map(|(name, of)| (name.clone(), format_stated(of.value, 6), of.source.clone()))
                 .collect(),
-            drawing: drawing.as_ref().map(svg).transpose()?,
-            similar: similar.into_iter().map(SimilarRow::of).collect(),
-            compare: compare(&self.ship.name, &self.versions.0),
+            drawing: drawing.as_ref().map(render_svg).transpose()?,
+            similar: similar.into_iter().map(SimilarRow::from_ranked).collect(),
+            compare: comparison_address(&self.ship.name, &self.versions.0),
             methods: METHODS,
         };
         Ok(page.render()?)
@@ -212,15 +226,16 @@ impl Gathered {
 }
 
 /// Returns the address of a comparison of the two newest versions.
-fn compare(ship: &str, versions: &[VersionRow]) -> String {
+fn comparison_address(ship: &str, versions: &[VersionRow]) -> String {
     let each = versions.iter().take(2).map(|version| format!("v={ship}/{}", version.number));
     format!("/compare?{}", each.collect::<Vec<_>>().join("&"))
 }
 
 impl SimilarRow {
-    fn of(ranked: RankedSource) -> Self {
+    fn from_ranked(ranked: RankedSource) -> Self {
         let RankedSource { ship, law, correlation, eligible, reasons, .. } = ranked;
-        let correlation = correlation.map_or_else(String::new, |value| significant(value, 4));
+        let correlation =
+            correlation.map_or_else(String::new, |value| format_significant(value, 4));
         Self { ship, law: law.unwrap_or_default(), correlation, eligible, reasons }
     }
 }

@@ -3,32 +3,32 @@
 use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
-use sistership_model::manifest::{ColumnMapping, Missing, RudderSign, VelocityFrame};
+use sistership_model::manifest::{ColumnMapping, MissingValues, RudderSign, VelocityFrame};
 use sistership_trials::ManifestFile;
 
-use super::proposed::{DERIVED, Proposed, TARGETS};
+use super::proposed::{DERIVED, TARGETS, UploadProposal};
 use crate::error::{PageError, Result};
-use crate::form::Fields;
+use crate::form::FormFields;
 
 /// Returns the manifest with the form's columns, signs, manoeuvres and depths.
 ///
 /// # Errors
 /// Returns an error if a channel is unknown or given twice, a unit is missing, or a depth is no
 /// number.
-pub fn corrected(of: &Proposed, fields: &Fields) -> Result<ManifestFile> {
+pub fn correct_manifest(of: &UploadProposal, fields: &FormFields) -> Result<ManifestFile> {
     let mut manifest = of.manifest.clone();
     let mut by_file: BTreeMap<&str, IndexMap<String, ColumnMapping>> = BTreeMap::new();
     let mut ignored = Vec::new();
     for (key, guess) in of.guesses.iter().enumerate().filter(|(_, one)| of.is_mapped(&one.file)) {
         let columns = by_file.entry(&guess.file).or_default();
-        match mapped(fields, key, &guess.column)? {
+        match column_mapping(fields, key, &guess.column)? {
             None => ignored.push(guess.column.clone()),
             Some((channel, mut mapping)) => {
                 // The sign of the rudder is a field of its own.
                 mapping.reversed = guess.reversed && !channel.starts_with("delta");
                 if let Some(first) = columns.insert(channel.clone(), mapping) {
                     let message = format!("`{}` is taken for {channel} already", first.column);
-                    return Err(PageError::invalid(&format!("channel.{key}"), message));
+                    return Err(PageError::invalid_field(&format!("channel.{key}"), message));
                 }
             }
         }
@@ -47,27 +47,33 @@ pub fn corrected(of: &Proposed, fields: &Fields) -> Result<ManifestFile> {
     ignored.sort_unstable();
     ignored.dedup();
     manifest.declarations.ignore = ignored;
-    signs(&mut manifest, fields)?;
-    trials(&mut manifest, fields)?;
+    apply_conventions(&mut manifest, fields)?;
+    apply_trial_fields(&mut manifest, fields)?;
     Ok(manifest)
 }
 
 /// Returns channel and unit of a column; `None` if it is not used.
-fn mapped(fields: &Fields, key: usize, column: &str) -> Result<Option<(String, ColumnMapping)>> {
+fn column_mapping(
+    fields: &FormFields,
+    key: usize,
+    column: &str,
+) -> Result<Option<(String, ColumnMapping)>> {
     let field = format!("channel.{key}");
-    let Some(channel) = fields.text(&field) else { return Ok(None) };
+    let Some(channel) = fields.get_text(&field) else { return Ok(None) };
     if !TARGETS.contains(&channel) {
-        return Err(PageError::invalid(&field, format!("there is no channel `{channel}`")));
+        return Err(PageError::invalid_field(&field, format!("there is no channel `{channel}`")));
     }
-    let unit = fields.needed(&format!("unit.{key}"))?.to_owned();
+    let unit = fields.required_text(&format!("unit.{key}"))?.to_owned();
     Ok(Some((channel.to_owned(), ColumnMapping::new(column, unit))))
 }
 
-fn signs(manifest: &mut ManifestFile, fields: &Fields) -> Result<()> {
-    let one_of = |name: &str, words: [&str; 2]| match fields.text(name) {
+fn apply_conventions(manifest: &mut ManifestFile, fields: &FormFields) -> Result<()> {
+    let one_of = |name: &str, words: [&str; 2]| match fields.get_text(name) {
         Some(text) if text == words[0] => Ok(true),
         Some(text) if text == words[1] => Ok(false),
-        _ => Err(PageError::invalid(name, format!("is one of {} and {}", words[0], words[1]))),
+        _ => {
+            Err(PageError::invalid_field(name, format!("is one of {} and {}", words[0], words[1])))
+        }
     };
     let conventions = &mut manifest.manifest.conventions;
     conventions.rudder_positive = match one_of("rudder_positive", ["starboard_turn", "port_turn"])?
@@ -79,26 +85,27 @@ fn signs(manifest: &mut ManifestFile, fields: &Fields) -> Result<()> {
         true => VelocityFrame::Ground,
         false => VelocityFrame::Water,
     };
-    conventions.missing = match fields.text("missing") {
-        Some("bridge") => Missing::Bridge,
-        Some("drop") => Missing::Drop,
-        Some("refuse") => Missing::Refuse,
-        _ => return Err(PageError::invalid("missing", "is one of bridge, drop and refuse")),
+    conventions.missing = match fields.get_text("missing") {
+        Some("bridge") => MissingValues::Bridge,
+        Some("drop") => MissingValues::Drop,
+        Some("refuse") => MissingValues::Refuse,
+        _ => return Err(PageError::invalid_field("missing", "is one of bridge, drop and refuse")),
     };
-    let wanted =
-        DERIVED.into_iter().filter(|(name, _)| fields.text(&format!("derive_{name}")).is_some());
+    let wanted = DERIVED
+        .into_iter()
+        .filter(|(name, _)| fields.get_text(&format!("derive_{name}")).is_some());
     manifest.declarations.derive = wanted.map(|(_, one)| one).collect();
     Ok(())
 }
 
-fn trials(manifest: &mut ManifestFile, fields: &Fields) -> Result<()> {
+fn apply_trial_fields(manifest: &mut ManifestFile, fields: &FormFields) -> Result<()> {
     for (place, trial) in manifest.manifest.trials.iter_mut().enumerate() {
-        trial.manoeuvre = fields.text(&format!("manoeuvre.{place}")).map(str::to_owned);
+        trial.manoeuvre = fields.get_text(&format!("manoeuvre.{place}")).map(str::to_owned);
         let field = format!("depth.{place}");
-        trial.depth_m = match fields.number(&field)? {
+        trial.depth_m = match fields.optional_number(&field)? {
             Some(depth) if depth <= 0.0 => {
                 let message = "must be above 0; leave it empty for deep water";
-                return Err(PageError::invalid(&field, message));
+                return Err(PageError::invalid_field(&field, message));
             }
             depth => depth,
         };
@@ -110,23 +117,29 @@ fn trials(manifest: &mut ManifestFile, fields: &Fields) -> Result<()> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use sistership_trials::propose;
+    use sistership_trials::propose_manifest;
 
-    fn proposed(text: &str) -> (tempfile::TempDir, Proposed) {
+    fn proposed(text: &str) -> (tempfile::TempDir, UploadProposal) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.csv");
         std::fs::write(&path, text).unwrap();
-        let proposal = propose("kcs", &[&path]).unwrap();
+        let proposal = propose_manifest("kcs", &[&path]).unwrap();
         let (guesses, manifest) = (proposal.guesses, proposal.manifest);
-        let of = Proposed { ship: "kcs".into(), id: "1".into(), guesses, manifest, diagnose: true };
+        let of = UploadProposal {
+            ship: "kcs".into(),
+            id: "1".into(),
+            guesses,
+            manifest,
+            diagnose: true,
+        };
         (folder, of)
     }
 
-    fn fields(pairs: &[(&str, &str)]) -> Fields {
+    fn fields(pairs: &[(&str, &str)]) -> FormFields {
         let signs = [("rudder_positive", "port_turn"), ("velocity", "water"), ("missing", "drop")];
         let all = signs.iter().chain(pairs);
         let pairs = all.map(|(name, text)| ((*name).to_owned(), (*text).to_owned()));
-        Fields::from(pairs.collect::<Vec<_>>())
+        FormFields::from(pairs.collect::<Vec<_>>())
     }
 
     #[test]
@@ -141,7 +154,7 @@ mod tests {
             ("depth.0", "12,5"),
             ("derive_r", "on"),
         ];
-        let manifest = corrected(&of, &fields(&form)).unwrap();
+        let manifest = correct_manifest(&of, &fields(&form)).unwrap();
         let psi = &manifest.manifest.columns["psi"];
         assert_eq!((psi.column.as_str(), psi.unit.as_str()), ("strange", "deg"));
         assert_eq!(manifest.declarations.ignore, ["other"]);
@@ -153,7 +166,8 @@ mod tests {
     #[test]
     fn a_wrong_field_is_named() {
         let (_folder, of) = proposed("t_s,psi_deg\n0,1\n1,2\n");
-        let wrong = |form: &[(&str, &str)]| corrected(&of, &fields(form)).unwrap_err().to_string();
+        let wrong =
+            |form: &[(&str, &str)]| correct_manifest(&of, &fields(form)).unwrap_err().to_string();
         let twice = [("channel.0", "t"), ("unit.0", "s"), ("channel.1", "t"), ("unit.1", "s")];
         assert!(wrong(&twice).starts_with("channel.1: "));
         assert!(wrong(&[("channel.0", "t")]).starts_with("unit.0: "));

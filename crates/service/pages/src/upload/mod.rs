@@ -6,16 +6,16 @@ mod preview;
 mod proposed;
 
 use askama::Template;
-use sistership_model::manifest::{Missing, RudderSign, VelocityFrame};
-use sistership_trials::Guess;
+use sistership_model::manifest::{MissingValues, RudderSign, VelocityFrame};
+use sistership_trials::ColumnGuess;
 
-pub use corrected::corrected;
-pub use preview::Preview;
-pub use proposed::Proposed;
+pub use corrected::correct_manifest;
+pub use preview::FilePreview;
+pub use proposed::UploadProposal;
 
-use self::proposed::{DERIVED, TARGETS, columns_of};
+use self::proposed::{DERIVED, TARGETS, mapped_columns};
 use crate::error::Result;
-use crate::shell::Shell;
+use crate::shell::PageShell;
 
 /// Units offered by the form.
 const UNITS: [&str; 17] = [
@@ -26,7 +26,7 @@ const UNITS: [&str; 17] = [
 #[derive(Template)]
 #[template(path = "upload.html")]
 struct UploadPage<'a> {
-    shell: &'a Shell,
+    shell: &'a PageShell,
     ship: &'a str,
 }
 
@@ -34,19 +34,19 @@ struct UploadPage<'a> {
 ///
 /// # Errors
 /// Returns an error if the page cannot be rendered.
-pub fn choose(shell: &Shell, ship: &str) -> Result<String> {
+pub fn choose_page(shell: &PageShell, ship: &str) -> Result<String> {
     Ok(UploadPage { shell, ship }.render()?)
 }
 
 #[derive(Template)]
 #[template(path = "mapping.html")]
 struct MappingPage<'a> {
-    shell: &'a Shell,
-    of: &'a Proposed,
+    shell: &'a PageShell,
+    of: &'a UploadProposal,
     targets: [&'static str; 28],
     units: [&'static str; 17],
     columns: Vec<ColumnRow<'a>>,
-    previews: &'a [Preview],
+    previews: &'a [FilePreview],
     accepted: bool,
     port: bool,
     water: bool,
@@ -59,7 +59,7 @@ struct MappingPage<'a> {
 /// A column of one of the files whose columns are mapped.
 struct ColumnRow<'a> {
     key: usize,
-    guess: &'a Guess,
+    guess: &'a ColumnGuess,
     channel: &'a str,
     unit: &'a str,
 }
@@ -68,7 +68,11 @@ struct ColumnRow<'a> {
 ///
 /// # Errors
 /// Returns an error if the page cannot be rendered.
-pub fn mapping(shell: &Shell, of: &Proposed, previews: &[Preview]) -> Result<String> {
+pub fn mapping_page(
+    shell: &PageShell,
+    of: &UploadProposal,
+    previews: &[FilePreview],
+) -> Result<String> {
     let conventions = &of.manifest.manifest.conventions;
     let derive = &of.manifest.declarations.derive;
     let page = MappingPage {
@@ -76,14 +80,14 @@ pub fn mapping(shell: &Shell, of: &Proposed, previews: &[Preview]) -> Result<Str
         of,
         targets: TARGETS,
         units: UNITS,
-        columns: rows(of),
+        columns: column_rows(of),
         previews,
         // Only an upload without errors may be stored.
-        accepted: previews.iter().all(Preview::is_accepted),
+        accepted: previews.iter().all(FilePreview::is_accepted),
         port: conventions.rudder_positive == RudderSign::PortTurn,
         water: conventions.velocity == VelocityFrame::Water,
-        refuse: conventions.missing == Missing::Refuse,
-        drop: conventions.missing == Missing::Drop,
+        refuse: conventions.missing == MissingValues::Refuse,
+        drop: conventions.missing == MissingValues::Drop,
         derived: DERIVED.map(|(name, one)| (name, derive.contains(&one))),
         manifest: of.manifest.to_yaml().unwrap_or_default(),
     };
@@ -92,10 +96,10 @@ pub fn mapping(shell: &Shell, of: &Proposed, previews: &[Preview]) -> Result<Str
 
 /// Returns the guesses whose columns the manifest maps: those of the first file, which the other
 /// trials share, and those of further sensors. A sentence of NMEA 0183 needs no mapping.
-fn rows(of: &Proposed) -> Vec<ColumnRow<'_>> {
+fn column_rows(of: &UploadProposal) -> Vec<ColumnRow<'_>> {
     let own = of.guesses.iter().enumerate().filter(|(_, guess)| of.is_mapped(&guess.file));
     own.map(|(key, guess)| {
-        let columns = columns_of(&of.manifest, &guess.file);
+        let columns = mapped_columns(&of.manifest, &guess.file);
         let known = columns.iter().find(|(_, mapped)| mapped.column == guess.column);
         let (channel, unit) =
             known.map_or(("", ""), |(channel, mapped)| (channel.as_str(), mapped.unit.as_str()));

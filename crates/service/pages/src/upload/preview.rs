@@ -3,12 +3,12 @@
 use sistership_model::trial::{Finding, Trial};
 use sistership_trials::Refusal;
 
-use crate::picture::svg;
-use crate::plot::{Track, channels, ground};
+use crate::picture::render_svg;
+use crate::plot::{PlotTrack, plot_channels, plot_ground};
 
 /// Data of a file, or its errors.
 #[derive(Debug)]
-pub struct Preview {
+pub struct FilePreview {
     pub(super) file: String,
     pub(super) rows: usize,
     pub(super) duration: String,
@@ -18,11 +18,11 @@ pub struct Preview {
     pub(super) series: Option<String>,
 }
 
-impl Preview {
+impl FilePreview {
     /// Returns the preview of a trial, or of a refusal.
-    pub fn of(read: Result<Trial, Refusal>) -> Self {
+    pub fn from_result(read: Result<Trial, Refusal>) -> Self {
         match read {
-            Ok(trial) => Self::accepted(&trial),
+            Ok(trial) => Self::from_trial(&trial),
             Err(Refusal { file, findings }) => Self {
                 file,
                 rows: 0,
@@ -40,18 +40,18 @@ impl Preview {
         Self { track: None, series: None, ..self }
     }
 
-    fn accepted(trial: &Trial) -> Self {
-        let tracks = [Track::measured(trial)];
-        let track = ground(&tracks, None, &format!("Track of {}", trial.name));
-        let series = channels(&tracks, &format!("Channels of {} over time", trial.name));
+    fn from_trial(trial: &Trial) -> Self {
+        let tracks = [PlotTrack::from_trial(trial)];
+        let track = plot_ground(&tracks, None, &format!("Track of {}", trial.name));
+        let series = plot_channels(&tracks, &format!("Channels of {} over time", trial.name));
         Self {
             file: trial.name.clone(),
             rows: trial.len(),
             duration: format!("{:.1} s", trial.duration_s()),
             errors: Vec::new(),
             remarks: trial.warnings.clone(),
-            track: track.and_then(|plot| svg(&plot).ok()),
-            series: svg(&series).ok(),
+            track: track.and_then(|plot| render_svg(&plot).ok()),
+            series: render_svg(&series).ok(),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The proposed reading of an upload.
 
 use sistership_model::manifest::ColumnMapping;
-use sistership_trials::{Derivable, Guess, ManifestFile};
+use sistership_trials::{ColumnGuess, Derivable, ManifestFile};
 
 /// Channels that a column may be mapped to, as manifests name them.
 pub(super) const TARGETS: [&str; 28] = [
@@ -40,20 +40,20 @@ pub(super) const DERIVED: [(&str, Derivable); 3] =
 
 /// An upload whose files have arrived.
 #[derive(Debug, Clone)]
-pub struct Proposed {
+pub struct UploadProposal {
     /// The ship.
     pub ship: String,
     /// Id of the upload in addresses.
     pub id: String,
     /// First guess for each column, with its reason.
-    pub guesses: Vec<Guess>,
+    pub guesses: Vec<ColumnGuess>,
     /// Manifest by which the files are read now.
     pub manifest: ManifestFile,
     /// True if the champion is to be diagnosed on the stored trials.
     pub diagnose: bool,
 }
 
-impl Proposed {
+impl UploadProposal {
     /// Returns true if the manifest maps the columns of a file: of the first trial, which the other
     /// trials share, or of a further sensor.
     pub(super) fn is_mapped(&self, file: &str) -> bool {
@@ -65,7 +65,7 @@ impl Proposed {
 }
 
 /// Returns the columns of a file as they are mapped now.
-pub(super) fn columns_of<'a>(
+pub(super) fn mapped_columns<'a>(
     manifest: &'a ManifestFile,
     file: &str,
 ) -> Vec<(&'a String, &'a ColumnMapping)> {

@@ -1,11 +1,11 @@
 //! Figures of the standard manoeuvres of a version, with uncertainty bands if its report has them.
 
 use serde_json::Value;
-use sistership_report::numbers::{fixed, known, significant};
-use sistership_simulation::manoeuvre::{Figure, StandardManoeuvres};
+use sistership_report::numbers::{format_fixed, format_known, format_significant};
+use sistership_simulation::manoeuvre::{NamedFigure, StandardManoeuvres};
 
 /// A band wider than this share of the figure is marked as wide.
-const WIDE: f64 = 0.5;
+const WIDE_SHARE: f64 = 0.5;
 
 /// A figure of a manoeuvre.
 #[derive(Debug)]
@@ -31,18 +31,18 @@ pub(super) struct CriterionRow {
 }
 
 /// Returns figures and criteria.
-pub(super) fn rows(
+pub(super) fn figure_rows(
     sailed: &StandardManoeuvres,
     report: &Value,
 ) -> (Vec<FigureRow>, Vec<CriterionRow>) {
     let bands = &report["manoeuvres"]["bands"]["figures"];
-    let figures = sailed.figures();
+    let figures = sailed.list_figures();
     // Figures with a verdict are in the table of criteria.
     let plain = figures.iter().filter(|figure| figure.pass.is_none());
     let plain = plain.filter(|figure| !figure.name.starts_with("IMO"));
     let criteria = sailed.imo.iter().map(|criterion| {
         let name = format!("IMO: {}", criterion.criterion);
-        let share = band_of(&name, bands).and_then(|band| band["pass"].as_f64());
+        let share = find_band(&name, bands).and_then(|band| band["pass"].as_f64());
         let (verdict, class) = match criterion.pass {
             Some(true) => ("met", "good"),
             Some(false) => ("not met", "bad"),
@@ -51,38 +51,40 @@ pub(super) fn rows(
         CriterionRow {
             name: criterion.criterion.clone(),
             unit: criterion.unit.clone(),
-            value: known_value(criterion.value),
-            limit: significant(criterion.limit, 3),
+            value: format_value(criterion.value),
+            limit: format_significant(criterion.limit, 3),
             verdict,
             class,
-            share: share.map_or_else(String::new, |share| format!("{} %", fixed(100.0 * share, 0))),
+            share: share
+                .map_or_else(String::new, |share| format!("{} %", format_fixed(100.0 * share, 0))),
         }
     });
-    (plain.map(|figure| row(figure, bands)).collect(), criteria.collect())
+    (plain.map(|figure| figure_row(figure, bands)).collect(), criteria.collect())
 }
 
-fn known_value(value: Option<f64>) -> String {
-    known(value, |value| significant(value, 4))
+fn format_value(value: Option<f64>) -> String {
+    format_known(value, |value| format_significant(value, 4))
 }
 
-fn row(figure: &Figure, bands: &Value) -> FigureRow {
-    let band = band_of(&figure.name, bands)
+fn figure_row(figure: &NamedFigure, bands: &Value) -> FigureRow {
+    let band = find_band(&figure.name, bands)
         .and_then(|band| Some((band["low"].as_f64()?, band["high"].as_f64()?)));
     // A band is judged by its width relative to the value.
-    let wide =
-        |(low, high): (f64, f64)| figure.value.is_some_and(|value| high - low > WIDE * value.abs());
+    let wide = |(low, high): (f64, f64)| {
+        figure.value.is_some_and(|value| high - low > WIDE_SHARE * value.abs())
+    };
     FigureRow {
         name: figure.name.clone(),
         unit: figure.unit.clone(),
-        value: known_value(figure.value),
+        value: format_value(figure.value),
         band: band.map_or_else(String::new, |(low, high)| {
-            format!("{} to {}", significant(low, 3), significant(high, 3))
+            format!("{} to {}", format_significant(low, 3), format_significant(high, 3))
         }),
         wide: band.is_some_and(wide),
     }
 }
 
 /// Returns the band of a figure, by its name.
-fn band_of<'a>(name: &str, bands: &'a Value) -> Option<&'a Value> {
+fn find_band<'a>(name: &str, bands: &'a Value) -> Option<&'a Value> {
     bands.as_array()?.iter().find(|band| band["figure"] == name)
 }

@@ -9,34 +9,35 @@ use quick_cache::Weighter;
 use quick_cache::sync::Cache;
 use sistership_jobs::version::VersionDocument;
 use sistership_model::Law;
-use sistership_report::plots::Hull;
+use sistership_report::plots::HullOutline;
 use sistership_simulation::manoeuvre::{
-    Manoeuvre, ManoeuvreSettings, STANDARD, StandardManoeuvres, sail_together, standard_with_tracks,
+    Manoeuvre, ManoeuvreSettings, STANDARD_MANOEUVRES, StandardManoeuvres,
+    simulate_manoeuvre_batch, simulate_standard_with_tracks,
 };
 use sistership_simulation::{PlantError, Ship, Trajectory};
 
 use super::figures::{self, CriterionRow, FigureRow};
 use crate::error::Result;
-use crate::picture::svg;
-use crate::plot::{LINES, Track, channels, ground, legend};
+use crate::picture::render_svg;
+use crate::plot::{LINES, PlotTrack, legend_entries, plot_channels, plot_ground};
 
 /// Memory of the cache, bytes.
-const MOST: u64 = 32 << 20;
+const CACHE_BYTES: u64 = 32 << 20;
 /// Estimated number of versions in the cache.
-const COUNT: usize = 500;
+const CACHED_VERSIONS: usize = 500;
 /// Manoeuvres in the plots, by their index among the standard manoeuvres.
-const DRAWN: [(usize, &str); 3] =
+const PLOTTED: [(usize, &str); 3] =
     [(0, "turn, 35 deg to starboard"), (1, "turn, 35 deg to port"), (4, "zigzag 20/20")];
 /// Manoeuvre that is plotted over time.
-const OVER_TIME: &str = DRAWN[2].1;
+const PLOTTED_OVER_TIME: &str = PLOTTED[2].1;
 
 /// Cache of manoeuvres by the version's id; the least recently used are removed first.
 #[derive(Debug)]
-pub struct KnownManoeuvres(Cache<String, Arc<Manoeuvres>, Size>);
+pub struct ManoeuvreCache(Cache<String, Arc<ManoeuvreResults>, ManoeuvreSize>);
 
 /// Manoeuvres on the page.
 #[derive(Debug)]
-pub(super) struct Manoeuvres {
+pub(super) struct ManoeuvreResults {
     pub figures: Vec<FigureRow>,
     pub criteria: Vec<CriterionRow>,
     pub banded: bool,
@@ -50,10 +51,10 @@ pub(super) struct Manoeuvres {
 }
 
 #[derive(Debug, Clone)]
-struct Size;
+struct ManoeuvreSize;
 
-impl Weighter<String, Arc<Manoeuvres>> for Size {
-    fn weight(&self, _: &String, manoeuvres: &Arc<Manoeuvres>) -> u64 {
+impl Weighter<String, Arc<ManoeuvreResults>> for ManoeuvreSize {
+    fn weight(&self, _: &String, manoeuvres: &Arc<ManoeuvreResults>) -> u64 {
         let drawn = [&manoeuvres.track, &manoeuvres.series];
         let drawn: usize = drawn.into_iter().flatten().map(String::len).sum();
         // Estimated bytes of one row.
@@ -62,49 +63,49 @@ impl Weighter<String, Arc<Manoeuvres>> for Size {
     }
 }
 
-impl Default for KnownManoeuvres {
+impl Default for ManoeuvreCache {
     fn default() -> Self {
-        Self(Cache::with_weighter(COUNT, MOST, Size))
+        Self(Cache::with_weighter(CACHED_VERSIONS, CACHE_BYTES, ManoeuvreSize))
     }
 }
 
-impl KnownManoeuvres {
+impl ManoeuvreCache {
     /// Returns the manoeuvres of a version, from the cache if possible.
     ///
     /// # Errors
     /// Returns an error if a plot cannot be rendered.
-    pub(super) fn of(
+    pub(super) fn get_or_simulate(
         &self,
         id: &str,
         document: &VersionDocument,
         law: &Law,
-    ) -> Result<Arc<Manoeuvres>> {
+    ) -> Result<Arc<ManoeuvreResults>> {
         if let Some(known) = self.0.get(id) {
             return Ok(known);
         }
-        let manoeuvres = Arc::new(Manoeuvres::of(document, law)?);
+        let manoeuvres = Arc::new(ManoeuvreResults::from_version(document, law)?);
         // Two requests at a time may both simulate; the results are equal.
         self.0.insert(id.to_owned(), Arc::clone(&manoeuvres));
         Ok(manoeuvres)
     }
 }
 
-impl Manoeuvres {
-    fn of(document: &VersionDocument, law: &Law) -> Result<Self> {
+impl ManoeuvreResults {
+    fn from_version(document: &VersionDocument, law: &Law) -> Result<Self> {
         let model = &document.model;
         // A model that cannot be simulated still has its page, with the reason among the notes.
-        let (figures, tracks) = match sailed(document, law) {
+        let (figures, tracks) = match simulate_manoeuvres(document, law) {
             Ok((figures, tracks)) => (figures, tracks),
             Err(error) => {
                 let failures = vec![error.to_string()];
                 (StandardManoeuvres { failures, ..StandardManoeuvres::default() }, Vec::new())
             }
         };
-        let (notes, legend) = (figures.failures.clone(), legend(&tracks));
-        let (figures, criteria) = figures::rows(&figures, &document.report);
+        let (notes, legend) = (figures.failures.clone(), legend_entries(&tracks));
+        let (figures, criteria) = figures::figure_rows(&figures, &document.report);
         // The zigzag is plotted over time, the circles over the ground.
-        let (zigzags, circles): (Vec<Track>, Vec<Track>) =
-            tracks.into_iter().partition(|track| track.name == OVER_TIME);
+        let (zigzags, circles): (Vec<PlotTrack>, Vec<PlotTrack>) =
+            tracks.into_iter().partition(|track| track.name == PLOTTED_OVER_TIME);
         let label = format!("Turning circles of {}", model.name);
         Ok(Self {
             banded: figures.iter().any(|figure| !figure.band.is_empty()),
@@ -113,48 +114,49 @@ impl Manoeuvres {
             criteria,
             notes,
             legend,
-            track: ground(&circles, Hull::of(&model.particulars), &label)
+            track: plot_ground(&circles, HullOutline::from_particulars(&model.particulars), &label)
                 .as_ref()
-                .map(svg)
+                .map(render_svg)
                 .transpose()?,
             series: match zigzags.as_slice() {
                 [] => None,
-                zigzags => Some(svg(&channels(zigzags, "Zigzag 20/20 over time"))?),
+                zigzags => Some(render_svg(&plot_channels(zigzags, "Zigzag 20/20 over time"))?),
             },
         })
     }
 }
 
 /// Returns the figures, from the report if it has them, and the tracks.
-fn sailed(
+fn simulate_manoeuvres(
     document: &VersionDocument,
     law: &Law,
-) -> std::result::Result<(StandardManoeuvres, Vec<Track>), PlantError> {
+) -> std::result::Result<(StandardManoeuvres, Vec<PlotTrack>), PlantError> {
     let ship = Ship::new(&document.model, law)?;
     let settings = ManoeuvreSettings::default();
-    let (figures, tracks) = match reported(document) {
-        Some(figures) => (figures, drawn_alone(&ship, &settings)),
+    let (figures, tracks) = match reported_figures(document) {
+        Some(figures) => (figures, simulate_plotted(&ship, &settings)),
         None => {
-            let (figures, mut all) = standard_with_tracks(&ship, &settings);
-            (figures, DRAWN.map(|(place, _)| all[place].take()).into_iter().collect())
+            let (figures, mut all) = simulate_standard_with_tracks(&ship, &settings);
+            (figures, PLOTTED.map(|(place, _)| all[place].take()).into_iter().collect())
         }
     };
-    let named = tracks.into_iter().zip(DRAWN).zip(LINES);
+    let named = tracks.into_iter().zip(PLOTTED).zip(LINES);
     let tracks = named.filter_map(|((track, (_, name)), style)| {
-        Some(Track::simulated(style, name, &track?, ship.has_roll()))
+        Some(PlotTrack::from_simulation(style, name, &track?, ship.has_roll()))
     });
     Ok((figures, tracks.collect()))
 }
 
 /// Returns the figures of the report, which were simulated when the version was made.
-fn reported(document: &VersionDocument) -> Option<StandardManoeuvres> {
+fn reported_figures(document: &VersionDocument) -> Option<StandardManoeuvres> {
     let refined = document.report.pointer("/manoeuvres/refined")?;
     serde_json::from_value(refined.clone()).ok()
 }
 
-fn drawn_alone(ship: &Ship, settings: &ManoeuvreSettings) -> Vec<Option<Trajectory>> {
-    let manoeuvres: [(Manoeuvre, &[f64]); 3] = DRAWN.map(|(place, _)| (STANDARD[place], &[][..]));
-    let sailed = sail_together(ship, &manoeuvres, settings);
+fn simulate_plotted(ship: &Ship, settings: &ManoeuvreSettings) -> Vec<Option<Trajectory>> {
+    let manoeuvres: [(Manoeuvre, &[f64]); 3] =
+        PLOTTED.map(|(place, _)| (STANDARD_MANOEUVRES[place], &[][..]));
+    let sailed = simulate_manoeuvre_batch(ship, &manoeuvres, settings);
     sailed.into_iter().map(|sailed| Some(sailed.ok()?.track)).collect()
 }
 
@@ -165,27 +167,28 @@ mod tests {
     use serde_json::json;
     use sistership_jobs::derive::published_document;
     use sistership_model::Zoo;
-    use sistership_simulation::manoeuvre::standard;
+    use sistership_simulation::manoeuvre::simulate_standard_manoeuvres;
 
     #[test]
     fn manoeuvres_are_sailed_once_and_as_the_report_has_them_where_it_does() {
-        let zoo = Zoo::embedded().unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
         let (vessel, law) = (zoo.vessel("mariner").unwrap(), zoo.law("abkowitz").unwrap());
         let name = &vessel.file.models[0].name;
         let mut document = published_document(vessel, name, law, "", "").unwrap();
-        let known = KnownManoeuvres::default();
-        let first = known.of("a", &document, law).unwrap();
-        assert!(Arc::ptr_eq(&first, &known.of("a", &document, law).unwrap()));
+        let known = ManoeuvreCache::default();
+        let first = known.get_or_simulate("a", &document, law).unwrap();
+        assert!(Arc::ptr_eq(&first, &known.get_or_simulate("a", &document, law).unwrap()));
         assert_eq!(
             (first.legend.len(), first.track.is_some(), first.series.is_some()),
             (3, true, true)
         );
         let ship = Ship::new(&document.model, law).unwrap();
-        let refined = standard(&ship, &ManoeuvreSettings::default());
+        let refined = simulate_standard_manoeuvres(&ship, &ManoeuvreSettings::default());
         document.report = json!({ "manoeuvres": { "refined": refined } });
-        let reported = known.of("b", &document, law).unwrap();
-        let values =
-            |of: &Manoeuvres| of.figures.iter().map(|row| row.value.clone()).collect::<Vec<_>>();
+        let reported = known.get_or_simulate("b", &document, law).unwrap();
+        let values = |of: &ManoeuvreResults| {
+            of.figures.iter().map(|row| row.value.clone()).collect::<Vec<_>>()
+        };
         assert_eq!(values(&reported), values(&first));
         assert_eq!((&reported.track, &reported.series), (&first.track, &first.series));
     }

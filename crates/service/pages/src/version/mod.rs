@@ -9,26 +9,26 @@ use std::sync::Arc;
 
 use askama::Template;
 use sistership_jobs::Archive;
-use sistership_jobs::archive::document;
+use sistership_jobs::archive::version_document;
 use sistership_jobs::line::CHAMPION;
 use sistership_jobs::version::VersionDocument;
 use sistership_model::Law;
-use sistership_report::numbers::stated;
-use sistership_store::{Page, Version};
+use sistership_report::numbers::format_stated;
+use sistership_store::{PageRequest, Version};
 
 use self::coefficients::CoefficientRow;
-use self::lineage::Lineage;
-use self::manoeuvres::Manoeuvres;
-use crate::date::date;
+use self::lineage::VersionLineage;
+use self::manoeuvres::ManoeuvreResults;
+use crate::date::format_date;
 use crate::error::Result;
-use crate::picture::svg;
-use crate::shell::Shell;
+use crate::picture::render_svg;
+use crate::shell::PageShell;
 
-pub use self::manoeuvres::KnownManoeuvres;
+pub use self::manoeuvres::ManoeuvreCache;
 
 /// Inputs of the page.
-pub struct Gathered {
-    shell: Shell,
+pub struct VersionPageInputs {
+    shell: PageShell,
     version: Version,
     document: VersionDocument,
     law: Law,
@@ -36,19 +36,19 @@ pub struct Gathered {
     /// Revision of the alias `champion`, if there is one.
     champion: Option<i64>,
     report: Option<String>,
-    lineage: Lineage,
+    lineage: VersionLineage,
     recipe: String,
 }
 
 #[derive(Template)]
 #[template(path = "version.html")]
 struct VersionPage<'a> {
-    of: &'a Gathered,
-    shell: &'a Shell,
+    of: &'a VersionPageInputs,
+    shell: &'a PageShell,
     created: String,
     coefficients: Vec<CoefficientRow>,
     effects: Vec<EffectRow>,
-    sailed: Arc<Manoeuvres>,
+    sailed: Arc<ManoeuvreResults>,
     validity: Vec<(String, String, String)>,
     lineage: String,
     promotable: bool,
@@ -64,18 +64,23 @@ struct EffectRow {
 ///
 /// # Errors
 /// Returns an error if there is no such version or the store fails.
-pub async fn gather(archive: &Archive, shell: Shell, ship: &str, number: i64) -> Result<Gathered> {
+pub async fn gather_inputs(
+    archive: &Archive,
+    shell: PageShell,
+    ship: &str,
+    number: i64,
+) -> Result<VersionPageInputs> {
     let store = &archive.store;
     let version = store.versions().get(ship, number).await?;
-    let mut parsed = document(&version)?;
+    let mut parsed = version_document(&version)?;
     // The weights of a learned correction are an object of their own.
-    archive.attach(&mut parsed.model).await?;
+    archive.attach_weights(&mut parsed.model).await?;
     // The law is that of the hash in the recipe.
-    let law = archive.law(&parsed.model.law, parsed.recipe.law_sha256()).await?;
-    let aliases = store.aliases().list(ship, &Page::first(50)).await?.items;
-    let reports = store.reports().by_version(&version.head.id, &Page::first(1)).await?;
+    let law = archive.law_by_hash(&parsed.model.law, parsed.recipe.law_sha256()).await?;
+    let aliases = store.aliases().list(ship, &PageRequest::first_page(50)).await?.items;
+    let reports = store.reports().by_version(&version.head.id, &PageRequest::first_page(1)).await?;
     let champion = aliases.iter().find(|alias| alias.alias == CHAMPION);
-    Ok(Gathered {
+    Ok(VersionPageInputs {
         champion: champion.map(|alias| alias.revision),
         aliases: aliases
             .into_iter()
@@ -83,38 +88,38 @@ pub async fn gather(archive: &Archive, shell: Shell, ship: &str, number: i64) ->
             .map(|alias| alias.alias)
             .collect(),
         report: reports.items.into_iter().next().map(|report| report.id),
-        lineage: Lineage::of(archive, &version.head, &parsed).await?,
+        lineage: VersionLineage::load(archive, &version.head, &parsed).await?,
         recipe: serde_json::to_string_pretty(&parsed.recipe)?,
-        shell: shell.at("/"),
+        shell: shell.at_place("/"),
         document: parsed,
         version,
         law,
     })
 }
 
-impl Gathered {
+impl VersionPageInputs {
     /// Returns the page; the standard manoeuvres are simulated for it unless they are in the cache.
     ///
     /// # Errors
     /// Returns an error if the page cannot be rendered.
-    pub fn html(&self, known: &KnownManoeuvres) -> Result<String> {
+    pub fn render_html(&self, known: &ManoeuvreCache) -> Result<String> {
         let model = &self.document.model;
         let page = VersionPage {
             of: self,
             shell: &self.shell,
-            created: date(self.version.head.created_us),
-            coefficients: coefficients::rows(model, &self.law),
-            effects: effects(model),
-            sailed: known.of(&self.version.head.id, &self.document, &self.law)?,
-            validity: validity(model),
-            lineage: svg(&self.lineage.drawn())?,
+            created: format_date(self.version.head.created_us),
+            coefficients: coefficients::coefficient_rows(model, &self.law),
+            effects: effect_rows(model),
+            sailed: known.get_or_simulate(&self.version.head.id, &self.document, &self.law)?,
+            validity: validity_rows(model),
+            lineage: render_svg(&self.lineage.draw())?,
             promotable: !self.aliases.iter().any(|alias| alias == CHAMPION),
         };
         Ok(page.render()?)
     }
 }
 
-fn effects(model: &sistership_model::Model) -> Vec<EffectRow> {
+fn effect_rows(model: &sistership_model::Model) -> Vec<EffectRow> {
     let row = |effect: &sistership_model::effect::AppliedEffect| EffectRow {
         name: effect.name.clone(),
         meaning: effect.form.meaning.clone(),
@@ -123,7 +128,7 @@ fn effects(model: &sistership_model::Model) -> Vec<EffectRow> {
             .iter()
             .map(|(name, of)| {
                 let unit = effect.form.parameters.get(name).map(|one| one.unit.clone());
-                (name.clone(), stated(of.value, 4), unit.unwrap_or_default())
+                (name.clone(), format_stated(of.value, 4), unit.unwrap_or_default())
             })
             .collect(),
     };
@@ -131,8 +136,10 @@ fn effects(model: &sistership_model::Model) -> Vec<EffectRow> {
 }
 
 /// Returns name, minimum and maximum of the ranges that the trials covered.
-fn validity(model: &sistership_model::Model) -> Vec<(String, String, String)> {
+fn validity_rows(model: &sistership_model::Model) -> Vec<(String, String, String)> {
     let ranges = model.validity.iter().flat_map(|region| &region.ranges);
     // Ranges are in SI units and radians, as the model states them.
-    ranges.map(|(name, [low, high])| (name.clone(), stated(*low, 4), stated(*high, 4))).collect()
+    ranges
+        .map(|(name, [low, high])| (name.clone(), format_stated(*low, 4), format_stated(*high, 4)))
+        .collect()
 }

@@ -2,19 +2,19 @@
 
 use askama::Template;
 use sistership_jobs::error::DeriveError;
-use sistership_jobs::library::library;
+use sistership_jobs::library::embedded_library;
 use sistership_model::effect::{ActsOn, FormFile};
 use sistership_store::StoreError;
 
 use super::citation::{Citation, citations};
-use super::equations::mathml;
+use super::equations::formula_mathml;
 use crate::error::Result;
-use crate::shell::Shell;
+use crate::shell::PageShell;
 
 #[derive(Template)]
 #[template(path = "effect.html")]
 struct EffectPage {
-    shell: Shell,
+    shell: PageShell,
     name: String,
     title: String,
     acts_on: &'static str,
@@ -39,25 +39,25 @@ struct FormRows {
 ///
 /// # Errors
 /// Returns an error if there is no such effect.
-pub fn effect(shell: Shell, name: &str) -> Result<String> {
-    let known = library()?.effects.iter().find(|effect| effect.name == name);
+pub fn effect_page(shell: PageShell, name: &str) -> Result<String> {
+    let known = embedded_library()?.effects.iter().find(|effect| effect.name == name);
     let effect = known.ok_or_else(|| {
         DeriveError::Store(StoreError::NotFound { kind: "effect", id: name.to_owned() })
     })?;
     let page = EffectPage {
-        shell: shell.at("/zoo"),
+        shell: shell.at_place("/zoo"),
         name: effect.name.clone(),
         title: effect.title.clone(),
-        acts_on: words(effect.acts_on),
+        acts_on: acts_on_text(effect.acts_on),
         note: effect.note.clone(),
-        forms: effect.forms.iter().map(|form| rows(&form.file)).collect(),
+        forms: effect.forms.iter().map(|form| form_rows(&form.file)).collect(),
         searched: effect.grammar.is_some(),
         citations: citations(&effect.sources),
     };
     Ok(page.render()?)
 }
 
-fn words(acts_on: ActsOn) -> &'static str {
+fn acts_on_text(acts_on: ActsOn) -> &'static str {
     match acts_on {
         ActsOn::Force => "adds forces",
         ActsOn::Inflow => "changes what hull, propeller or rudder see",
@@ -65,7 +65,7 @@ fn words(acts_on: ActsOn) -> &'static str {
     }
 }
 
-fn rows(form: &FormFile) -> FormRows {
+fn form_rows(form: &FormFile) -> FormRows {
     let parameters = form.parameters.iter().map(|(name, of)| {
         let [low, high] = of.bounds;
         (name.clone(), of.unit.clone(), of.meaning.clone(), format!("{low} to {high}"))
@@ -93,7 +93,7 @@ fn rows(form: &FormFile) -> FormRows {
             .chain(lags)
             .chain(bands)
             .chain(measures)
-            .map(|(what, formula)| (what, mathml(formula)))
+            .map(|(what, formula)| (what, formula_mathml(formula)))
             .collect(),
     }
 }

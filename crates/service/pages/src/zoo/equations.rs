@@ -4,15 +4,15 @@
 ///
 /// Names become italic letters with the part after the first `_` as subscript; powers are raised.
 /// The order of the terms is that of the file.
-pub(super) fn mathml(formula: &str) -> String {
-    let tokens = tokens(formula);
+pub(super) fn formula_mathml(formula: &str) -> String {
+    let tokens = tokenize(formula);
     let mut row = String::new();
     let mut at = 0;
     while at < tokens.len() {
-        let base = atom(&tokens, &mut at);
+        let base = parse_atom(&tokens, &mut at);
         if tokens.get(at).is_some_and(|token| token == "^") {
             at += 1;
-            let power = atom(&tokens, &mut at);
+            let power = parse_atom(&tokens, &mut at);
             row.push_str(&format!("<msup>{base}{power}</msup>"));
         } else {
             row.push_str(&base);
@@ -22,14 +22,16 @@ pub(super) fn mathml(formula: &str) -> String {
 }
 
 /// Splits a formula into names, numbers and marks; comparisons may have two characters.
-fn tokens(formula: &str) -> Vec<String> {
+fn tokenize(formula: &str) -> Vec<String> {
     let letters: Vec<char> = formula.chars().collect();
     let (mut tokens, mut at) = (Vec::new(), 0);
     while at < letters.len() {
         let first = letters[at];
         let length = match first {
             _ if first.is_ascii_digit() => number_length(&letters[at..]),
-            _ if is_name(first) => letters[at..].iter().take_while(|one| is_name(**one)).count(),
+            _ if is_name_char(first) => {
+                letters[at..].iter().take_while(|one| is_name_char(**one)).count()
+            }
             '<' | '>' | '=' | '!' if letters.get(at + 1) == Some(&'=') => 2,
             _ => 1,
         };
@@ -42,7 +44,7 @@ fn tokens(formula: &str) -> Vec<String> {
 }
 
 /// Returns true for characters of a name.
-fn is_name(letter: char) -> bool {
+fn is_name_char(letter: char) -> bool {
     letter.is_alphanumeric() || "_.@".contains(letter)
 }
 
@@ -61,11 +63,11 @@ fn number_length(letters: &[char]) -> usize {
 }
 
 /// Parses the base of a power: a bracketed group, a name with its arguments, a number; or a mark.
-fn atom(tokens: &[String], at: &mut usize) -> String {
+fn parse_atom(tokens: &[String], at: &mut usize) -> String {
     let Some(token) = tokens.get(*at) else { return String::new() };
     *at += 1;
     match token.as_str() {
-        "(" => format!("<mrow>{}</mrow>", group(tokens, at)),
+        "(" => format!("<mrow>{}</mrow>", parse_group(tokens, at)),
         "*" => "<mo>\u{00b7}</mo>".to_owned(),
         ">=" => "<mo>\u{2265}</mo>".to_owned(),
         "<=" => "<mo>\u{2264}</mo>".to_owned(),
@@ -73,27 +75,27 @@ fn atom(tokens: &[String], at: &mut usize) -> String {
         // The guards are tried in order: marks have no letters, numbers begin with a digit, and
         // functions are names before a bracket.
         mark if mark.chars().all(|letter| !letter.is_alphanumeric()) => {
-            format!("<mo>{}</mo>", escaped(mark))
+            format!("<mo>{}</mo>", escape_html(mark))
         }
         number if number.starts_with(|letter: char| letter.is_ascii_digit()) => {
-            format!("<mn>{}</mn>", escaped(number))
+            format!("<mn>{}</mn>", escape_html(number))
         }
         name if tokens.get(*at).is_some_and(|next| next == "(") => {
             *at += 1;
-            format!("<mrow><mi>{}</mi>{}</mrow>", escaped(name), group(tokens, at))
+            format!("<mrow><mi>{}</mi>{}</mrow>", escape_html(name), parse_group(tokens, at))
         }
-        name => symbol(name),
+        name => name_symbol(name),
     }
 }
 
 /// Parses up to the closing bracket, and returns the group with both brackets.
-fn group(tokens: &[String], at: &mut usize) -> String {
+fn parse_group(tokens: &[String], at: &mut usize) -> String {
     let mut inside = String::from("<mo>(</mo>");
     while *at < tokens.len() && tokens[*at] != ")" {
-        let base = atom(tokens, at);
+        let base = parse_atom(tokens, at);
         if tokens.get(*at).is_some_and(|token| token == "^") {
             *at += 1;
-            let power = atom(tokens, at);
+            let power = parse_atom(tokens, at);
             inside.push_str(&format!("<msup>{base}{power}</msup>"));
         } else {
             inside.push_str(&base);
@@ -120,7 +122,7 @@ const GREEK: [(&str, &str); 12] = [
 ];
 
 /// Symbols of particulars, without their units.
-const PARTICULARS: [(&str, &str); 4] = [
+const PARTICULAR_SYMBOLS: [(&str, &str); 4] = [
     ("lpp_m", "<msub><mi>L</mi><mi>pp</mi></msub>"),
     ("beam_m", "<mi>B</mi>"),
     ("draught_m", "<mi>d</mi>"),
@@ -129,24 +131,24 @@ const PARTICULARS: [(&str, &str); 4] = [
 
 /// Returns the symbol of a name: its first part, with the rest as subscript; a particular by its
 /// letter.
-pub(super) fn symbol(name: &str) -> String {
-    if let Some((_, letter)) = PARTICULARS.iter().find(|(known, _)| *known == name) {
+pub(super) fn name_symbol(name: &str) -> String {
+    if let Some((_, letter)) = PARTICULAR_SYMBOLS.iter().find(|(known, _)| *known == name) {
         return (*letter).to_owned();
     }
     let (first, below) = name.split_once('_').unwrap_or((name, ""));
-    let letter = format!("<mi>{}</mi>", escaped(&greek(first)));
+    let letter = format!("<mi>{}</mi>", escape_html(&replace_greek(first)));
     match below {
         "" => letter,
-        below => format!("<msub>{letter}<mi>{}</mi></msub>", escaped(&greek(below))),
+        below => format!("<msub>{letter}<mi>{}</mi></msub>", escape_html(&replace_greek(below))),
     }
 }
 
 /// Replaces names of Greek letters by the letters.
-fn greek(text: &str) -> String {
+fn replace_greek(text: &str) -> String {
     GREEK.iter().fold(text.to_owned(), |text, (name, letter)| text.replace(name, letter))
 }
 
-fn escaped(text: &str) -> String {
+fn escape_html(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
@@ -157,15 +159,15 @@ mod tests {
     #[test]
     fn formulas_are_set_as_they_are_written() {
         assert_eq!(
-            mathml("u^2 + v"),
+            formula_mathml("u^2 + v"),
             "<math><mrow><msup><mi>u</mi><mn>2</mn></msup><mo>+</mo><mi>v</mi></mrow></math>"
         );
-        assert!(mathml("(u - U0)/U").contains("<mo>(</mo><mi>u</mi><mo>\u{2212}</mo>"));
-        assert!(mathml("sqrt(u^2)").contains("<mi>sqrt</mi><mo>(</mo><msup>"));
-        assert_eq!(symbol("Y_vvdelta"), "<msub><mi>Y</mi><mi>vvδ</mi></msub>");
-        assert_eq!(tokens("1e-4*lpp_m>=x^2"), ["1e-4", "*", "lpp_m", ">=", "x", "^", "2"]);
-        assert!(mathml("0.5*draught_m").contains("<mn>0.5</mn><mo>\u{b7}</mo><mi>d</mi>"));
-        assert!(mathml("a<b").contains("&lt;"), "what is written is not taken for a tag");
-        assert!(mathml("((((").contains("math"), "an open bracket ends");
+        assert!(formula_mathml("(u - U0)/U").contains("<mo>(</mo><mi>u</mi><mo>\u{2212}</mo>"));
+        assert!(formula_mathml("sqrt(u^2)").contains("<mi>sqrt</mi><mo>(</mo><msup>"));
+        assert_eq!(name_symbol("Y_vvdelta"), "<msub><mi>Y</mi><mi>vvδ</mi></msub>");
+        assert_eq!(tokenize("1e-4*lpp_m>=x^2"), ["1e-4", "*", "lpp_m", ">=", "x", "^", "2"]);
+        assert!(formula_mathml("0.5*draught_m").contains("<mn>0.5</mn><mo>\u{b7}</mo><mi>d</mi>"));
+        assert!(formula_mathml("a<b").contains("&lt;"), "what is written is not taken for a tag");
+        assert!(formula_mathml("((((").contains("math"), "an open bracket ends");
     }
 }

@@ -6,14 +6,14 @@ use sistership_model::law::{AxisFile, LawFile, TermFile};
 use sistership_model::{FileError, yaml};
 
 use super::citation::{Citation, citations};
-use super::equations::{mathml, symbol};
+use super::equations::{formula_mathml, name_symbol};
 use crate::error::Result;
-use crate::shell::Shell;
+use crate::shell::PageShell;
 
 #[derive(Template)]
 #[template(path = "law.html")]
 struct LawPage {
-    shell: Shell,
+    shell: PageShell,
     law: LawFile,
     sha256: String,
     values: Vec<(String, String)>,
@@ -37,12 +37,13 @@ struct AxisRows {
 ///
 /// # Errors
 /// Returns an error if there is no such law or the store fails.
-pub async fn law(archive: &Archive, shell: Shell, name: &str) -> Result<String> {
+pub async fn law_page(archive: &Archive, shell: PageShell, name: &str) -> Result<String> {
     let stored = archive.store.laws().get(name).await?;
     let law: LawFile =
-        yaml::read(&stored.document).map_err(|error| FileError::of_yaml(name, error))?;
+        yaml::read_document(&stored.document).map_err(|error| FileError::from_yaml(name, error))?;
     let set = |formulas: &mut dyn Iterator<Item = (&String, &String)>| {
-        let pair = |(name, formula): (&String, &String)| (symbol_alone(name), mathml(formula));
+        let pair =
+            |(name, formula): (&String, &String)| (symbol_mathml(name), formula_mathml(formula));
         formulas.map(pair).collect::<Vec<_>>()
     };
     let page = LawPage {
@@ -54,36 +55,36 @@ pub async fn law(archive: &Archive, shell: Shell, name: &str) -> Result<String> 
             .iter()
             .flat_map(|(row, entries)| {
                 entries.iter().map(move |(column, formula)| {
-                    (symbol_alone(&format!("M_{row}{column}")), mathml(formula))
+                    (symbol_mathml(&format!("M_{row}{column}")), formula_mathml(formula))
                 })
             })
             .collect(),
         citations: citations(&law.sources),
         sha256: stored.sha256,
-        shell: shell.at("/zoo"),
+        shell: shell.at_place("/zoo"),
         law,
     };
     Ok(page.render()?)
 }
 
-fn symbol_alone(name: &str) -> String {
-    format!("<math>{}</math>", symbol(name))
+fn symbol_mathml(name: &str) -> String {
+    format!("<math>{}</math>", name_symbol(name))
 }
 
 fn axis_rows(name: &str, file: &AxisFile) -> AxisRows {
     // A term is a name, whose factor its letters give, or a pair of name and formula.
     let terms = file.terms.iter().flat_map(|term| match term {
-        TermFile::Name(name) => vec![(symbol_alone(name), None)],
+        TermFile::Name(name) => vec![(symbol_mathml(name), None)],
         TermFile::Formula(pairs) => pairs
             .iter()
-            .map(|(name, formula)| (symbol_alone(name), Some(mathml(formula))))
+            .map(|(name, formula)| (symbol_mathml(name), Some(formula_mathml(formula))))
             .collect(),
     });
     AxisRows {
         name: name.to_owned(),
-        scale: file.scale.as_deref().map(mathml),
+        scale: file.scale.as_deref().map(formula_mathml),
         terms: terms.collect(),
-        rest: file.rest.as_deref().map(mathml),
+        rest: file.rest.as_deref().map(formula_mathml),
         open: file.open,
     }
 }

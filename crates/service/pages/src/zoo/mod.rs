@@ -6,19 +6,19 @@ mod equations;
 mod law;
 
 use askama::Template;
-use sistership_jobs::library::library;
+use sistership_jobs::library::embedded_library;
 use sistership_model::{Effect, Law, Zoo};
 
-pub use effect::effect;
-pub use law::law;
+pub use effect::effect_page;
+pub use law::law_page;
 
 use crate::error::Result;
-use crate::shell::Shell;
+use crate::shell::PageShell;
 
 #[derive(Template)]
 #[template(path = "zoo.html")]
 struct ZooPage<'a> {
-    shell: Shell,
+    shell: PageShell,
     laws: Vec<LawRow<'a>>,
     effects: Vec<&'a Effect>,
 }
@@ -34,7 +34,7 @@ struct LawRow<'a> {
 ///
 /// # Errors
 /// Returns an error if the page cannot be rendered.
-pub fn index(zoo: &Zoo, shell: Shell) -> Result<String> {
+pub fn zoo_page(zoo: &Zoo, shell: PageShell) -> Result<String> {
     let row = |law| {
         let law: &Law = law;
         LawRow {
@@ -44,7 +44,7 @@ pub fn index(zoo: &Zoo, shell: Shell) -> Result<String> {
             inputs: law.inputs.keys().cloned().collect::<Vec<_>>().join(", "),
         }
     };
-    let effects = library()?.effects.iter().map(|effect| &**effect).collect();
+    let effects = embedded_library()?.effects.iter().map(|effect| &**effect).collect();
     let laws = zoo.laws().map(|law| row(&**law)).collect();
-    Ok(ZooPage { shell: shell.at("/zoo"), laws, effects }.render()?)
+    Ok(ZooPage { shell: shell.at_place("/zoo"), laws, effects }.render()?)
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Query of the keys of all objects that rows refer to: the samples of trials, and the weights of
 /// learned corrections.
-pub(crate) const KEYS: &str = "SELECT object_key FROM trials UNION \
+pub(crate) const OBJECT_KEYS: &str = "SELECT object_key FROM trials UNION \
     SELECT weights_key FROM versions WHERE weights_key IS NOT NULL ORDER BY 1";
 
 /// Kind of database.
@@ -50,7 +50,7 @@ pub(crate) struct DatabaseCopy {
 
 impl DatabaseKind {
     /// Returns the scheme with which the URL of such a database begins.
-    pub(crate) fn scheme(self) -> &'static str {
+    pub(crate) fn url_scheme(self) -> &'static str {
         match self {
             Self::Sqlite => "sqlite:",
             Self::Postgres => "postgres:",
@@ -58,7 +58,7 @@ impl DatabaseKind {
     }
 
     /// Returns true if a URL names a database of this kind.
-    pub(crate) fn is_of(self, url: &str) -> bool {
+    pub(crate) fn matches_url(self, url: &str) -> bool {
         match self {
             Self::Sqlite => url.starts_with("sqlite:"),
             Self::Postgres => url.starts_with("postgres:") || url.starts_with("postgresql:"),

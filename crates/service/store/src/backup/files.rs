@@ -11,14 +11,14 @@ use crate::error::{Result, StoreError};
 use crate::folders;
 
 /// Returns a conversion of I/O errors that adds the path.
-pub(crate) fn at(path: &Path) -> impl FnOnce(io::Error) -> StoreError {
+pub(crate) fn file_error(path: &Path) -> impl FnOnce(io::Error) -> StoreError {
     move |error| StoreError::File { path: path.to_path_buf(), error }
 }
 
 /// Creates the folder of a new backup, which must be empty or absent.
-pub(crate) fn claim(folder: &Path) -> Result<()> {
-    folders::make(folder).map_err(at(folder))?;
-    let first = fs::read_dir(folder).map_err(at(folder))?.next();
+pub(crate) fn create_empty(folder: &Path) -> Result<()> {
+    folders::create_durably(folder).map_err(file_error(folder))?;
+    let first = fs::read_dir(folder).map_err(file_error(folder))?.next();
     match first {
         Some(_) => Err(not_a_backup(folder, "is not empty; a backup needs a folder of its own")),
         None => Ok(()),
@@ -26,12 +26,12 @@ pub(crate) fn claim(folder: &Path) -> Result<()> {
 }
 
 /// Returns size and hash of a file, read on a thread for blocking work.
-pub(crate) async fn head(path: PathBuf) -> Result<FileHead> {
-    let reading = tokio::task::spawn_blocking(move || hash(&path).map_err(at(&path)));
+pub(crate) async fn file_head(path: PathBuf) -> Result<FileHead> {
+    let reading = tokio::task::spawn_blocking(move || hash_file(&path).map_err(file_error(&path)));
     reading.await.map_err(crate::objects_error::ObjectsError::from)?
 }
 
-fn hash(path: &Path) -> io::Result<FileHead> {
+fn hash_file(path: &Path) -> io::Result<FileHead> {
     let (mut file, mut hasher, mut bytes) = (File::open(path)?, Sha256::new(), 0);
     // Read in pieces of 1 MiB: a database may be larger than the memory.
     let mut buffer = vec![0; 1 << 20];
@@ -56,7 +56,8 @@ pub(crate) fn write_whole(path: &Path, write: impl FnOnce(&Path) -> io::Result<(
     let done = write(&partial)
         .and_then(|()| File::open(&partial)?.sync_all())
         .and_then(|()| fs::rename(&partial, path));
-    done.and_then(|()| folders::sync(path.parent().unwrap_or(Path::new("")))).map_err(at(path))
+    done.and_then(|()| folders::sync_folder(path.parent().unwrap_or(Path::new(""))))
+        .map_err(file_error(path))
 }
 
 /// Returns the error of a folder that is not a backup, or is a damaged one.

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::content::{DatabaseCopy, DatabaseKind, FileHead, TableHead};
-use super::files::{self, at, not_a_backup, write_whole};
+use super::files::{self, file_error, not_a_backup, write_whole};
 use super::objects::CopiedObjects;
 use crate::error::{Result, StoreError};
 use crate::migrate;
@@ -50,7 +50,7 @@ impl BackupManifest {
     ) -> Result<Self> {
         let mut files = BTreeMap::new();
         for file in taken.files {
-            let head = files::head(folder.join(&file)).await?;
+            let head = files::file_head(folder.join(&file)).await?;
             files.insert(file, head);
         }
         Ok(Self {
@@ -82,24 +82,24 @@ impl BackupManifest {
             ),
             // Only a missing manifest means that it is not a backup; other errors are reported as
             // such.
-            _ => at(&path)(error),
+            _ => file_error(&path)(error),
         })?;
         serde_json::from_slice(&text)
             .map_err(|error| not_a_backup(folder, format!("{FILE} does not read: {error}")))
     }
 
     /// Checks that this program can restore the backup to `url`, and that its files are unchanged.
-    pub(crate) async fn check(&self, folder: &Path, url: &str) -> Result<()> {
+    pub(crate) async fn check_restorable(&self, folder: &Path, url: &str) -> Result<()> {
         // A newer schema may have columns that this program does not know.
-        if self.format != FORMAT || self.schema > migrate::newest() {
+        if self.format != FORMAT || self.schema > migrate::newest_version() {
             let message = format!(
                 "was made by a newer program ({}, schema {}); restore it with that",
                 self.format, self.schema
             );
             return Err(not_a_backup(folder, message));
         }
-        if !self.database.is_of(url) {
-            let kind = self.database.scheme();
+        if !self.database.matches_url(url) {
+            let kind = self.database.url_scheme();
             return Err(StoreError::invalid(
                 "database_url",
                 format!("the backup is of another kind of database; must begin with {kind}"),
@@ -107,7 +107,7 @@ impl BackupManifest {
         }
         // Every file is read once before anything is restored.
         for (file, expected) in &self.files {
-            if files::head(folder.join(file)).await? != *expected {
+            if files::file_head(folder.join(file)).await? != *expected {
                 return Err(not_a_backup(folder, format!("its file {file} is damaged")));
             }
         }

@@ -6,8 +6,8 @@ use futures::stream::{self, StreamExt as _, TryStreamExt as _};
 
 use super::files::not_a_backup;
 use crate::error::{Result, StoreError};
-use crate::object_list::{AT_ONCE, ObjectName};
-use crate::objects::Objects;
+use crate::object_list::{MAX_CONCURRENT, ObjectName};
+use crate::objects::ObjectStorage;
 use crate::objects_error::ObjectsError;
 
 /// Summary of the copied objects.
@@ -25,11 +25,15 @@ enum ObjectCopy {
 }
 
 /// Copies objects, each verified by its hash; continues if one is missing or damaged.
-pub(crate) async fn copy(from: &Objects, keys: &[String], to: &Objects) -> Result<CopiedObjects> {
+pub(crate) async fn copy_objects(
+    from: &ObjectStorage,
+    keys: &[String],
+    to: &ObjectStorage,
+) -> Result<CopiedObjects> {
     let mut copied = CopiedObjects::default();
     let copies: Vec<_> = keys.iter().map(|key| copy_one(from, key.clone(), to)).collect();
     // Several copies at a time; `buffered` keeps their order.
-    let mut copies = stream::iter(copies).buffered(AT_ONCE);
+    let mut copies = stream::iter(copies).buffered(MAX_CONCURRENT);
     while let Some(copy) = copies.try_next().await? {
         match copy {
             ObjectCopy::Whole { bytes } => {
@@ -43,7 +47,7 @@ pub(crate) async fn copy(from: &Objects, keys: &[String], to: &Objects) -> Resul
 }
 
 /// Copies an object if it is present and undamaged; other errors end the backup.
-async fn copy_one(from: &Objects, key: String, to: &Objects) -> Result<ObjectCopy> {
+async fn copy_one(from: &ObjectStorage, key: String, to: &ObjectStorage) -> Result<ObjectCopy> {
     match from.get(&key).await {
         Ok(bytes) => {
             let size = bytes.len() as u64;
@@ -60,7 +64,7 @@ async fn copy_one(from: &Objects, key: String, to: &Objects) -> Result<ObjectCop
     }
 }
 
-pub(crate) async fn must_be_empty(objects: &Objects) -> Result<()> {
+pub(crate) async fn must_be_empty(objects: &ObjectStorage) -> Result<()> {
     match objects.list().try_next().await? {
         Some(_) => Err(StoreError::conflict(
             "object store",
@@ -73,8 +77,12 @@ pub(crate) async fn must_be_empty(objects: &Objects) -> Result<()> {
 
 /// Restores the objects of a backup. A missing or damaged object is an error: all `expected`
 /// objects were complete when the backup was made.
-pub(crate) async fn put(folder: &Path, expected: usize, to: &Objects) -> Result<()> {
-    let from = Objects::local(folder)?;
+pub(crate) async fn restore_objects(
+    folder: &Path,
+    expected: usize,
+    to: &ObjectStorage,
+) -> Result<()> {
+    let from = ObjectStorage::open_folder(folder)?;
     let (mut count, mut all) = (0, from.list());
     while let Some(head) = all.try_next().await? {
         // Other files in the folder are no objects of the backup.

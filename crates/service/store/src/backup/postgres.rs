@@ -9,8 +9,8 @@ use sqlx::{Connection as _, PgConnection, PgPool};
 use tokio::fs::File;
 use tokio::io::AsyncWriteExt as _;
 
-use super::content::{DatabaseCopy, DatabaseKind, KEYS, TableHead};
-use super::files::{at, not_a_backup};
+use super::content::{DatabaseCopy, DatabaseKind, OBJECT_KEYS, TableHead};
+use super::files::{file_error, not_a_backup};
 use super::manifest::BackupManifest;
 use crate::error::{Result, StoreError};
 use crate::folders;
@@ -60,8 +60,8 @@ const FOLDER: &str = "tables";
 const COLUMNS: &str = "SELECT CAST(column_name AS TEXT) FROM information_schema.columns \
     WHERE table_schema = current_schema() AND table_name = $1 ORDER BY ordinal_position";
 
-pub(crate) async fn take(pool: &PgPool, folder: &Path) -> Result<DatabaseCopy> {
-    folders::make(&folder.join(FOLDER)).map_err(at(folder))?;
+pub(crate) async fn copy_database(pool: &PgPool, folder: &Path) -> Result<DatabaseCopy> {
+    folders::create_durably(&folder.join(FOLDER)).map_err(file_error(folder))?;
     // One snapshot for all tables, for the list of objects and for the number of the schema.
     let mut tx = pool.begin_with("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY").await?;
     let mut tables = Vec::with_capacity(TABLES.len());
@@ -72,7 +72,7 @@ pub(crate) async fn take(pool: &PgPool, folder: &Path) -> Result<DatabaseCopy> {
         take_table(&mut tx, &table, &folder.join(file_of(&table))).await?;
         tables.push(table);
     }
-    let keys = sqlx::query_scalar(KEYS).fetch_all(&mut *tx).await?;
+    let keys = sqlx::query_scalar(OBJECT_KEYS).fetch_all(&mut *tx).await?;
     let schema =
         sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations").fetch_one(&mut *tx).await?;
     tx.commit().await?;
@@ -86,13 +86,14 @@ pub(crate) async fn take(pool: &PgPool, folder: &Path) -> Result<DatabaseCopy> {
 }
 
 async fn take_table(connection: &mut PgConnection, table: &TableHead, path: &Path) -> Result<()> {
-    let mut file = File::create(path).await.map_err(at(path))?;
-    let mut rows = connection.copy_out_raw(&format!("COPY {} TO STDOUT", list(table))).await?;
+    let mut file = File::create(path).await.map_err(file_error(path))?;
+    let mut rows =
+        connection.copy_out_raw(&format!("COPY {} TO STDOUT", column_list(table))).await?;
     while let Some(bytes) = rows.try_next().await? {
-        file.write_all(&bytes).await.map_err(at(path))?;
+        file.write_all(&bytes).await.map_err(file_error(path))?;
     }
-    file.flush().await.map_err(at(path))?;
-    file.sync_all().await.map_err(at(path))
+    file.flush().await.map_err(file_error(path))?;
+    file.sync_all().await.map_err(file_error(path))
 }
 
 pub(crate) async fn must_be_empty(url: &str) -> Result<()> {
@@ -113,7 +114,11 @@ pub(crate) async fn must_be_empty(url: &str) -> Result<()> {
 }
 
 /// Restores schema and rows in one transaction: if it fails, the database stays empty.
-pub(crate) async fn put(folder: &Path, manifest: &BackupManifest, url: &str) -> Result<()> {
+pub(crate) async fn restore_database(
+    folder: &Path,
+    manifest: &BackupManifest,
+    url: &str,
+) -> Result<()> {
     let mut connection = PgConnection::connect(url).await?;
     let mut tx = connection.begin().await?;
     // The schema of the backup, not the newest one: its columns must match the files.
@@ -127,8 +132,8 @@ pub(crate) async fn put(folder: &Path, manifest: &BackupManifest, url: &str) -> 
             ));
         }
         let path = folder.join(file_of(table));
-        let file = File::open(&path).await.map_err(at(&path))?;
-        let mut copy = tx.copy_in_raw(&format!("COPY {} FROM STDIN", list(table))).await?;
+        let file = File::open(&path).await.map_err(file_error(&path))?;
+        let mut copy = tx.copy_in_raw(&format!("COPY {} FROM STDIN", column_list(table))).await?;
         copy.read_from(file).await?;
         copy.finish().await?;
     }
@@ -141,7 +146,7 @@ fn file_of(table: &TableHead) -> String {
 }
 
 /// `table ("column", ...)`
-fn list(table: &TableHead) -> String {
+fn column_list(table: &TableHead) -> String {
     let columns: Vec<String> =
         table.columns.iter().map(|column| format!("\"{}\"", column.replace('"', "\"\""))).collect();
     format!("{} ({})", table.name, columns.join(", "))

@@ -7,14 +7,14 @@ use std::str::FromStr as _;
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions as _, Connection as _, SqlitePool};
 
-use super::content::{DatabaseCopy, DatabaseKind, KEYS};
-use super::files::{at, write_whole};
+use super::content::{DatabaseCopy, DatabaseKind, OBJECT_KEYS};
+use super::files::{file_error, write_whole};
 use crate::error::{Result, StoreError};
 use crate::folders;
 
 const FILE: &str = "database.sqlite";
 
-pub(crate) async fn take(pool: &SqlitePool, folder: &Path) -> Result<DatabaseCopy> {
+pub(crate) async fn copy_database(pool: &SqlitePool, folder: &Path) -> Result<DatabaseCopy> {
     let file: String =
         sqlx::query_scalar("SELECT file FROM pragma_database_list WHERE name = 'main'")
             .fetch_one(pool)
@@ -32,16 +32,16 @@ pub(crate) async fn take(pool: &SqlitePool, folder: &Path) -> Result<DatabaseCop
     let mut connection = pool.connect_options().as_ref().clone().connect().await?;
     sqlx::query("VACUUM INTO $1").bind(into).execute(&mut connection).await?;
     connection.close().await?;
-    std::fs::File::open(&path).and_then(|file| file.sync_all()).map_err(at(&path))?;
-    look(&path).await
+    std::fs::File::open(&path).and_then(|file| file.sync_all()).map_err(file_error(&path))?;
+    describe_copy(&path).await
 }
 
 /// Reads schema and object keys from the copy itself, so that they belong to the same moment.
-async fn look(path: &Path) -> Result<DatabaseCopy> {
+async fn describe_copy(path: &Path) -> Result<DatabaseCopy> {
     // Immutable: no lock and no log file is created next to the copy.
     let options = SqliteConnectOptions::new().filename(path).read_only(true).immutable(true);
     let mut connection = options.connect().await?;
-    let keys = sqlx::query_scalar(KEYS).fetch_all(&mut connection).await?;
+    let keys = sqlx::query_scalar(OBJECT_KEYS).fetch_all(&mut connection).await?;
     let schema = sqlx::query_scalar("SELECT MAX(version) FROM _sqlx_migrations")
         .fetch_one(&mut connection)
         .await?;
@@ -71,9 +71,9 @@ pub(crate) fn must_be_absent(url: &str) -> Result<()> {
     }
 }
 
-pub(crate) async fn put(folder: &Path, url: &str) -> Result<()> {
+pub(crate) async fn restore_database(folder: &Path, url: &str) -> Result<()> {
     let (from, to) = (folder.join(FILE), file_of(url)?);
-    to.parent().map_or(Ok(()), folders::make).map_err(at(&to))?;
+    to.parent().map_or(Ok(()), folders::create_durably).map_err(file_error(&to))?;
     let copying = tokio::task::spawn_blocking(move || {
         write_whole(&to, |path| std::fs::copy(&from, path).map(drop))
     });

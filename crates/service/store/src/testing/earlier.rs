@@ -12,13 +12,13 @@ use super::TestDatabase;
 use crate::migrate;
 
 /// Returns the numbers of all migrations.
-pub fn migrations() -> Vec<i64> {
-    (1..=migrate::newest()).collect()
+pub fn migration_numbers() -> Vec<i64> {
+    (1..=migrate::newest_version()).collect()
 }
 
 impl TestDatabase {
     /// Migrates an empty database to the schema of a migration.
-    pub async fn migrated(self, version: i64) -> Self {
+    pub async fn migrate_to(self, version: i64) -> Self {
         match self.url.starts_with("sqlite") {
             true => {
                 let mut connection = self.sqlite_connection().await.expect("a connection");

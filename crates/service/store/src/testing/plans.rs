@@ -3,7 +3,7 @@
 use serde_json::Value;
 use sqlx::{AssertSqlSafe, Executor as _, PgConnection, PgPool, Row as _, SqlitePool};
 
-use crate::connections::Writer;
+use crate::connections::DatabaseWriter;
 use crate::error::{Result, StoreError};
 use crate::statements::{ALL, Statement};
 use crate::store::Store;
@@ -35,7 +35,7 @@ impl Store {
                 {
                     continue;
                 }
-                let scans = self.scans(*statement).await;
+                let scans = self.statement_scans(*statement).await;
                 let scans =
                     scans.map_err(|error| StoreError::conflict(table, *name, error.to_string()))?;
                 found.extend(scans.into_iter().map(|scan| format!("{table}::{name}: {scan}")));
@@ -44,15 +44,17 @@ impl Store {
         Ok(found)
     }
 
-    async fn scans(&self, statement: Statement) -> sqlx::Result<Vec<String>> {
+    async fn statement_scans(&self, statement: Statement) -> sqlx::Result<Vec<String>> {
         match &self.database().write {
-            Writer::Sqlite(group) => sqlite(group.pool(), statement.sqlite).await,
-            Writer::Postgres(pool) => postgres(&pool.lease().pool, statement.postgres).await,
+            DatabaseWriter::Sqlite(group) => sqlite_scans(group.pool(), statement.sqlite).await,
+            DatabaseWriter::Postgres(pool) => {
+                postgres_scans(&pool.current_lease().pool, statement.postgres).await
+            }
         }
     }
 }
 
-async fn sqlite(pool: &SqlitePool, sql: &str) -> sqlx::Result<Vec<String>> {
+async fn sqlite_scans(pool: &SqlitePool, sql: &str) -> sqlx::Result<Vec<String>> {
     let rows = pool.fetch_all(AssertSqlSafe(format!("EXPLAIN QUERY PLAN {sql}"))).await?;
     let steps = rows
         .into_iter()
@@ -67,18 +69,18 @@ async fn sqlite(pool: &SqlitePool, sql: &str) -> sqlx::Result<Vec<String>> {
 
 /// Returns the full scans in the plan for any values, on a connection that avoids sequential scans
 /// if possible.
-async fn postgres(pool: &PgPool, sql: &str) -> sqlx::Result<Vec<String>> {
+async fn postgres_scans(pool: &PgPool, sql: &str) -> sqlx::Result<Vec<String>> {
     let mut connection = pool.acquire().await?;
-    let plan = explained(&mut connection, sql).await;
+    let plan = explain_statement(&mut connection, sql).await;
     connection.execute("RESET ALL").await?;
     connection.execute("DEALLOCATE ALL").await?;
     connection.close().await?;
     let mut scans = Vec::new();
-    collect(&plan?, &mut scans);
+    collect_scans(&plan?, &mut scans);
     Ok(scans)
 }
 
-async fn explained(connection: &mut PgConnection, sql: &str) -> sqlx::Result<Value> {
+async fn explain_statement(connection: &mut PgConnection, sql: &str) -> sqlx::Result<Value> {
     connection
         .execute("SET enable_seqscan = off; SET plan_cache_mode = force_generic_plan")
         .await?;
@@ -96,9 +98,9 @@ async fn explained(connection: &mut PgConnection, sql: &str) -> sqlx::Result<Val
 }
 
 /// Collects the steps of a plan that read all rows: of a table, or of an index without a condition.
-fn collect(plan: &Value, scans: &mut Vec<String>) {
+fn collect_scans(plan: &Value, scans: &mut Vec<String>) {
     match plan {
-        Value::Array(all) => all.iter().for_each(|one| collect(one, scans)),
+        Value::Array(all) => all.iter().for_each(|one| collect_scans(one, scans)),
         Value::Object(fields) => {
             let text = |field: &str| fields.get(field).and_then(Value::as_str).unwrap_or_default();
             let kind = text("Node Type");
@@ -108,7 +110,7 @@ fn collect(plan: &Value, scans: &mut Vec<String>) {
             if whole {
                 scans.push(format!("{kind} on {}{}", text("Relation Name"), text("Index Name")));
             }
-            fields.values().for_each(|value| collect(value, scans));
+            fields.values().for_each(|value| collect_scans(value, scans));
         }
         _ => {}
     }

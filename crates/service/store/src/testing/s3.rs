@@ -12,8 +12,8 @@ use tempfile::TempDir;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::task::JoinHandle;
 
-use crate::objects::Objects;
-use crate::objects_place::{ObjectsPlace, S3Place, bucket, builder};
+use crate::objects::ObjectStorage;
+use crate::objects_place::{ObjectsPlace, S3Place, bucket_builder, bucket_store};
 
 /// Name of the only bucket.
 const BUCKET: &str = "samples";
@@ -44,7 +44,7 @@ impl TestS3 {
 
     /// Returns the options of the command line for a store below a prefix: the URL of the objects
     /// and the endpoint.
-    pub fn settings(&self, prefix: &str) -> [(&'static str, String); 2] {
+    pub fn store_options(&self, prefix: &str) -> [(&'static str, String); 2] {
         [
             ("--objects-url", format!("s3://{BUCKET}/{prefix}")),
             ("--objects-endpoint", format!("http://{}", self.address)),
@@ -52,32 +52,35 @@ impl TestS3 {
     }
 
     /// Returns the environment variables with which another process is accepted.
-    pub fn credentials(&self) -> [(&'static str, &'static str); 2] {
+    pub fn environment_credentials(&self) -> [(&'static str, &'static str); 2] {
         [("AWS_ACCESS_KEY_ID", KEY.0), ("AWS_SECRET_ACCESS_KEY", KEY.1)]
     }
 
     /// Opens a store below a prefix.
-    pub fn objects(&self, prefix: &str) -> Objects {
+    pub fn open_objects(&self, prefix: &str) -> ObjectStorage {
         self.objects_as(KEY.0, prefix)
     }
 
     /// Opens a store below a prefix with another access key.
-    pub fn objects_as(&self, user: &str, prefix: &str) -> Objects {
-        let [(_, url), (_, endpoint)] = self.settings(prefix);
+    pub fn objects_as(&self, user: &str, prefix: &str) -> ObjectStorage {
+        let [(_, url), (_, endpoint)] = self.store_options(prefix);
         let ObjectsPlace::S3(place) =
-            ObjectsPlace::s3(&url, Some(endpoint), None).expect("a place")
+            ObjectsPlace::parse_s3(&url, Some(endpoint), None).expect("a place")
         else {
             unreachable!()
         };
-        Objects::over(made(&place, user))
+        ObjectStorage::from_store(build_store(&place, user))
     }
 }
 
 /// Creates the store of a location, with the credentials that the environment of a test does not
 /// have.
-fn made(place: &S3Place, user: &str) -> std::sync::Arc<dyn object_store::ObjectStore> {
-    bucket(builder(place).with_access_key_id(user).with_secret_access_key(KEY.1), place)
-        .expect("a bucket")
+fn build_store(place: &S3Place, user: &str) -> std::sync::Arc<dyn object_store::ObjectStore> {
+    bucket_store(
+        bucket_builder(place).with_access_key_id(user).with_secret_access_key(KEY.1),
+        place,
+    )
+    .expect("a bucket")
 }
 
 impl Drop for TestS3 {
@@ -88,11 +91,11 @@ impl Drop for TestS3 {
 
 async fn serve(listener: TcpListener, service: S3Service) {
     while let Ok((stream, _)) = listener.accept().await {
-        tokio::spawn(connection(stream, service.clone()));
+        tokio::spawn(serve_client(stream, service.clone()));
     }
 }
 
-async fn connection(stream: TcpStream, service: S3Service) {
+async fn serve_client(stream: TcpStream, service: S3Service) {
     // An error means that the client has hung up, which is no failure.
     let _ =
         Builder::new(TokioExecutor::new()).serve_connection(TokioIo::new(stream), service).await;

@@ -28,20 +28,22 @@ rm -rf "$2"
 "#;
 
 /// The server, which lives as long as the process: dropping the keeper's pipe stops it.
-pub(super) struct Server {
+pub(super) struct PostgresServer {
     folder: PathBuf,
     _keeper: Child,
 }
 
 /// Returns the server of this process, if PostgreSQL is installed.
-pub(super) fn shared() -> Option<&'static Server> {
-    static SERVER: OnceLock<Option<Server>> = OnceLock::new();
+pub(super) fn shared_server() -> Option<&'static PostgresServer> {
+    static SERVER: OnceLock<Option<PostgresServer>> = OnceLock::new();
     SERVER
-        .get_or_init(|| programs().map(|programs| Server::start(&programs)).or_else(without))
+        .get_or_init(|| {
+            find_programs().map(|programs| PostgresServer::start(&programs)).or_else(skip_tests)
+        })
         .as_ref()
 }
 
-fn without() -> Option<Server> {
+fn skip_tests() -> Option<PostgresServer> {
     let required = std::env::var("SISTERSHIP_REQUIRE_POSTGRES").is_ok_and(|value| value == "1");
     assert!(!required, "no PostgreSQL binaries, and SISTERSHIP_REQUIRE_POSTGRES=1");
     eprintln!("skipped: no PostgreSQL binaries");
@@ -49,7 +51,7 @@ fn without() -> Option<Server> {
 }
 
 /// Returns the folder of `initdb` and `postgres`, from the search path or Debian's location.
-fn programs() -> Option<PathBuf> {
+fn find_programs() -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let mut debian: Vec<_> =
         fs::read_dir("/usr/lib/postgresql").into_iter().flatten().flatten().collect();
@@ -59,56 +61,56 @@ fn programs() -> Option<PathBuf> {
         .find(|folder| folder.join("initdb").exists() && folder.join("postgres").exists())
 }
 
-impl Server {
+impl PostgresServer {
     fn start(programs: &Path) -> Self {
         let folder = tempfile::Builder::new()
             .prefix("sistership-pg-")
             .tempdir()
             .expect("a temporary folder")
             .keep();
-        let user = user(&folder);
+        let user = run_user(&folder);
         if let Some((uid, gid)) = user {
             chown(&folder, Some(uid), Some(gid)).expect("the folder for another user");
         }
-        initialise(programs, &folder, user);
+        initialise_cluster(programs, &folder, user);
         // The folder is not removed by this process: the keeper does so after the server has
         // stopped.
-        let keeper = keep(programs, &folder, user);
+        let keeper = spawn_keeper(programs, &folder, user);
         await_ready(&folder);
         Self { folder, _keeper: keeper }
     }
 
     /// Returns the options of a connection to the server itself.
-    pub(super) fn options(&self) -> PgConnectOptions {
+    pub(super) fn connect_options(&self) -> PgConnectOptions {
         PgConnectOptions::new().socket(&self.folder).username("postgres").database("postgres")
     }
 
     /// Returns the URL of a database on the server.
-    pub(super) fn url(&self, database: &str) -> String {
+    pub(super) fn database_url(&self, database: &str) -> String {
         format!("postgres://postgres@localhost/{database}?host={}", self.folder.display())
     }
 }
 
 /// Returns user and group to run as if this process is root, which PostgreSQL refuses: those of
 /// `postgres`, or of the unprivileged default user.
-fn user(own: &Path) -> Option<(u32, u32)> {
+fn run_user(own: &Path) -> Option<(u32, u32)> {
     if fs::metadata(own).expect("a folder of our own").uid() != 0 {
         return None;
     }
     let users = fs::read_to_string("/etc/passwd").unwrap_or_default();
-    let find = |name: &str| users.lines().find_map(|line| ids(line, name));
+    let find = |name: &str| users.lines().find_map(|line| parse_ids(line, name));
     find("postgres").or_else(|| find("nobody"))
 }
 
 /// Parses user and group from a line of `/etc/passwd`, if it is about `name`.
-fn ids(line: &str, name: &str) -> Option<(u32, u32)> {
+fn parse_ids(line: &str, name: &str) -> Option<(u32, u32)> {
     let mut fields = line.split(':');
     (fields.next()? == name).then_some(())?;
     // Fields after the name: password, user, group.
     Some((fields.nth(1)?.parse().ok()?, fields.next()?.parse().ok()?))
 }
 
-fn command(
+fn isolated_command(
     program: impl AsRef<std::ffi::OsStr>,
     folder: &Path,
     user: Option<(u32, u32)>,
@@ -128,8 +130,8 @@ fn command(
     command
 }
 
-fn initialise(programs: &Path, folder: &Path, user: Option<(u32, u32)>) {
-    let mut initdb = command(programs.join("initdb"), folder, user);
+fn initialise_cluster(programs: &Path, folder: &Path, user: Option<(u32, u32)>) {
+    let mut initdb = isolated_command(programs.join("initdb"), folder, user);
     initdb.args([
         "--username=postgres",
         "--auth=trust",
@@ -142,8 +144,8 @@ fn initialise(programs: &Path, folder: &Path, user: Option<(u32, u32)>) {
     assert!(output.status.success(), "initdb: {}", String::from_utf8_lossy(&output.stderr));
 }
 
-fn keep(programs: &Path, folder: &Path, user: Option<(u32, u32)>) -> Child {
-    let mut keeper = command("/bin/sh", folder, user);
+fn spawn_keeper(programs: &Path, folder: &Path, user: Option<(u32, u32)>) -> Child {
+    let mut keeper = isolated_command("/bin/sh", folder, user);
     keeper.args(["-c", KEEPER, "keeper"]).arg(programs.join("postgres")).arg(folder);
     keeper.stdin(Stdio::piped()).spawn().expect("the keeper of a private PostgreSQL server")
 }

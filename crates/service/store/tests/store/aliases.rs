@@ -1,19 +1,25 @@
-use sistership_store::{AliasMove, Expect, Page};
+use sistership_store::{AliasMove, ExpectedRevision, PageRequest};
 
 use crate::support::*;
 
 async fn an_alias_moves_by_compare_and_swap(on: &TestStore) {
     versions(on, "kcs", 3).await;
     let aliases = on.store.aliases();
-    assert_stale(aliases.move_to("kcs", 1, &champion(Expect::Revision(1))).await, None);
-    assert_eq!(aliases.move_to("kcs", 1, &champion(Expect::Absent)).await.unwrap().revision, 1);
-    assert_stale(aliases.move_to("kcs", 2, &champion(Expect::Absent)).await, Some(1));
+    assert_stale(aliases.move_to("kcs", 1, &champion(ExpectedRevision::Revision(1))).await, None);
     assert_eq!(
-        aliases.move_to("kcs", 2, &champion(Expect::Revision(1))).await.unwrap().revision,
+        aliases.move_to("kcs", 1, &champion(ExpectedRevision::Absent)).await.unwrap().revision,
+        1
+    );
+    assert_stale(aliases.move_to("kcs", 2, &champion(ExpectedRevision::Absent)).await, Some(1));
+    assert_eq!(
+        aliases.move_to("kcs", 2, &champion(ExpectedRevision::Revision(1))).await.unwrap().revision,
         2
     );
-    assert_stale(aliases.move_to("kcs", 3, &champion(Expect::Revision(1))).await, Some(2));
-    let alias = aliases.move_to("kcs", 3, &champion(Expect::Any)).await.unwrap();
+    assert_stale(
+        aliases.move_to("kcs", 3, &champion(ExpectedRevision::Revision(1))).await,
+        Some(2),
+    );
+    let alias = aliases.move_to("kcs", 3, &champion(ExpectedRevision::Any)).await.unwrap();
     assert_eq!((alias.version_number, alias.revision), (3, 3));
     assert_eq!(aliases.get("kcs", "champion").await.unwrap(), alias);
 }
@@ -21,13 +27,18 @@ async fn an_alias_moves_by_compare_and_swap(on: &TestStore) {
 async fn an_alias_remembers_its_moves(on: &TestStore) {
     versions(on, "kcs", 2).await;
     for to in [1, 2, 1] {
-        on.store.aliases().move_to("kcs", to, &champion(Expect::Any)).await.unwrap();
+        on.store.aliases().move_to("kcs", to, &champion(ExpectedRevision::Any)).await.unwrap();
     }
-    let first = on.store.aliases().history("kcs", "champion", &Page::first(2)).await.unwrap();
+    let first = on
+        .store
+        .aliases()
+        .list_history("kcs", "champion", &PageRequest::first_page(2))
+        .await
+        .unwrap();
     let second = on
         .store
         .aliases()
-        .history("kcs", "champion", &Page::after(first.next.unwrap(), 2))
+        .list_history("kcs", "champion", &PageRequest::after_key(first.next.unwrap(), 2))
         .await
         .unwrap();
     let moves: Vec<_> = first
@@ -42,19 +53,33 @@ async fn an_alias_remembers_its_moves(on: &TestStore) {
 
 async fn an_alias_stands_for_a_version_that_exists(on: &TestStore) {
     versions(on, "kcs", 1).await;
-    assert_not_found(on.store.aliases().move_to("kcs", 2, &champion(Expect::Any)).await, "version");
-    assert_not_found(on.store.aliases().move_to("pcc", 1, &champion(Expect::Any)).await, "model");
+    assert_not_found(
+        on.store.aliases().move_to("kcs", 2, &champion(ExpectedRevision::Any)).await,
+        "version",
+    );
+    assert_not_found(
+        on.store.aliases().move_to("pcc", 1, &champion(ExpectedRevision::Any)).await,
+        "model",
+    );
     assert_not_found(on.store.aliases().get("kcs", "champion").await, "alias");
-    assert!(on.store.aliases().list("kcs", &Page::first(10)).await.unwrap().items.is_empty());
+    assert!(
+        on.store
+            .aliases()
+            .list("kcs", &PageRequest::first_page(10))
+            .await
+            .unwrap()
+            .items
+            .is_empty()
+    );
 }
 
 async fn aliases_are_listed(on: &TestStore) {
     versions(on, "kcs", 1).await;
     for alias in ["champion", "candidate", "best-in-wind"] {
-        let change = AliasMove { alias: alias.into(), ..champion(Expect::Absent) };
+        let change = AliasMove { alias: alias.into(), ..champion(ExpectedRevision::Absent) };
         on.store.aliases().move_to("kcs", 1, &change).await.unwrap();
     }
-    let list = on.store.aliases().list("kcs", &Page::first(2)).await.unwrap();
+    let list = on.store.aliases().list("kcs", &PageRequest::first_page(2)).await.unwrap();
     let names: Vec<_> = list.items.iter().map(|alias| alias.alias.as_str()).collect();
     assert_eq!(
         (names, list.next.as_deref()),

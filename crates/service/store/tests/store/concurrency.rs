@@ -2,7 +2,10 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use futures::future::join_all;
-use sistership_store::{Begun, Claimed, Expect, Page, Store, StoreError, SystemClock, sha256_hex};
+use sistership_store::{
+    ExpectedRevision, JobClaim, PageRequest, RequestClaim, Store, StoreError, SystemClock,
+    sha256_hex,
+};
 
 use crate::support::*;
 
@@ -11,14 +14,24 @@ async fn fifty_creators_leave_no_gap(on: &TestStore) {
     let creators = (0..50).map(|n| {
         let store = if n % 2 == 0 { on.store.clone() } else { other.clone() };
         tokio::spawn(async move {
-            store.versions().create(&version("kcs"), &[champion(Expect::Any)]).await.unwrap().number
+            store
+                .versions()
+                .create(&version("kcs"), &[champion(ExpectedRevision::Any)])
+                .await
+                .unwrap()
+                .number
         })
     });
     let mut numbers: Vec<_> = join_all(creators).await.into_iter().map(Result::unwrap).collect();
     numbers.sort_unstable();
     assert_eq!(numbers, (1..=50).collect::<Vec<_>>());
-    let history =
-        on.store.aliases().history("kcs", "champion", &Page::first(100)).await.unwrap().items;
+    let history = on
+        .store
+        .aliases()
+        .list_history("kcs", "champion", &PageRequest::first_page(100))
+        .await
+        .unwrap()
+        .items;
     assert!(history.windows(2).all(|pair| pair[0].from_number == Some(pair[1].to_number)));
 }
 
@@ -26,7 +39,8 @@ async fn a_hundred_movers_have_one_winner(on: &TestStore) {
     versions(on, "kcs", 2).await;
     let other = Store::connect(&on.database.url, Arc::new(SystemClock)).await.unwrap();
     for round in 0..5 {
-        let expect = if round == 0 { Expect::Absent } else { Expect::Revision(round) };
+        let expect =
+            if round == 0 { ExpectedRevision::Absent } else { ExpectedRevision::Revision(round) };
         let movers = (0..100).map(|n| {
             let store = if n % 2 == 0 { on.store.clone() } else { other.clone() };
             tokio::spawn(async move { store.aliases().move_to("kcs", 2, &champion(expect)).await })
@@ -49,10 +63,14 @@ async fn no_job_is_claimed_twice(on: &TestStore) {
     let workers = (0..30).map(|n| {
         let store = on.store.clone();
         tokio::spawn(async move {
-            store.jobs().claim(&format!("worker-{n}"), crate::jobs::LEASE, false).await.unwrap()
+            store
+                .jobs()
+                .claim_next(&format!("worker-{n}"), crate::jobs::LEASE, false)
+                .await
+                .unwrap()
         })
     });
-    let id = |claimed| if let Claimed::Job(job) = claimed { Some(job.id) } else { None };
+    let id = |claimed| if let JobClaim::Job(job) = claimed { Some(job.id) } else { None };
     let claimed: Vec<_> =
         join_all(workers).await.into_iter().filter_map(|claim| id(claim.unwrap())).collect();
     assert_eq!((claimed.len(), claimed.iter().collect::<HashSet<_>>().len()), (20, 20));
@@ -62,12 +80,16 @@ async fn one_of_many_requests_is_carried_out(on: &TestStore) {
     let requests = (0..30).map(|_| {
         let store = on.store.clone();
         tokio::spawn(async move {
-            store.idempotency().begin("POST /v1/ships", "k", &sha256_hex(b"")).await.unwrap()
+            store
+                .idempotency()
+                .begin_request("POST /v1/ships", "k", &sha256_hex(b""))
+                .await
+                .unwrap()
         })
     });
     let begun: Vec<_> = join_all(requests).await.into_iter().map(Result::unwrap).collect();
-    assert_eq!(begun.iter().filter(|begun| matches!(begun, Begun::New(_))).count(), 1);
-    assert_eq!(begun.iter().filter(|begun| **begun == Begun::InProgress).count(), 29);
+    assert_eq!(begun.iter().filter(|begun| matches!(begun, RequestClaim::New(_))).count(), 1);
+    assert_eq!(begun.iter().filter(|begun| **begun == RequestClaim::InProgress).count(), 29);
 }
 
 async fn one_upload_of_many_is_new(on: &TestStore) {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
 use futures::future::join_all;
-use sistership_store::{Expect, NewReport, Store};
+use sistership_store::{ExpectedRevision, NewReport, Store};
 
 use crate::support::*;
 
@@ -20,22 +20,24 @@ async fn fleet(on: &TestStore) {
         on.store.ships().create(&ship(&name(number))).await.unwrap();
         on.store
             .versions()
-            .create(&version(&name(number)), &[champion(Expect::Any)])
+            .create(&version(&name(number)), &[champion(ExpectedRevision::Any)])
             .await
             .unwrap();
     }
 }
 
 async fn number(store: &Store, ship: &str, alias: &str) -> Option<i64> {
-    let current = store.versions().current(ship, alias).await.unwrap()?;
+    let current = store.versions().current_version(ship, alias).await.unwrap()?;
     assert_eq!(current.model, ship);
     Some(current.number)
 }
 
 async fn each_who_asks_gets_an_answer_of_their_own(on: &TestStore) {
     fleet(on).await;
-    let candidate =
-        sistership_store::AliasMove { alias: "candidate".into(), ..champion(Expect::Any) };
+    let candidate = sistership_store::AliasMove {
+        alias: "candidate".into(),
+        ..champion(ExpectedRevision::Any)
+    };
     let second = on.store.versions().create(&version("ship-07"), &[candidate]).await.unwrap();
     let new = NewReport { version_id: Some(second.id.clone()), ..report("ship-07") };
     on.store.reports().insert(&new).await.unwrap();
@@ -53,9 +55,10 @@ async fn each_who_asks_gets_an_answer_of_their_own(on: &TestStore) {
         assert_eq!(champion, (ship < SHIPS && ship != 9).then_some(1), "{ship}");
         assert_eq!(candidate, (ship == 7).then_some(2), "{ship}");
     }
-    let current = on.store.versions().current("ship-07", "candidate").await.unwrap().unwrap();
+    let current =
+        on.store.versions().current_version("ship-07", "candidate").await.unwrap().unwrap();
     assert_eq!((current.id, current.report), (second.id, Some(newest)));
-    assert_invalid(on.store.versions().current("a\0b", "champion").await, "ship");
+    assert_invalid(on.store.versions().current_version("a\0b", "champion").await, "ship");
 }
 
 /// A move that was acknowledged before somebody asks is in the answer.
@@ -68,7 +71,7 @@ async fn nobody_reads_an_alias_as_it_was_before_the_question(on: &TestStore) {
             let made = on
                 .store
                 .versions()
-                .create(&version(&name(ship)), &[champion(Expect::Any)])
+                .create(&version(&name(ship)), &[champion(ExpectedRevision::Any)])
                 .await
                 .unwrap();
             kept[ship].fetch_max(made.number, Ordering::SeqCst);

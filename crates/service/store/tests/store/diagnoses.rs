@@ -1,14 +1,14 @@
 use sistership_store::{
-    CommittedDiagnosis, Diagnosis, Expect, JobState, NewDiagnosed, NewReport, Page, PartDiagnosis,
-    Result,
+    CommittedDiagnosis, ExpectedRevision, JobState, NewDiagnosis, NewDiagnosisRow, NewReport,
+    PageRequest, PartDiagnosis, Result,
 };
 
 use crate::jobs::{claim, let_the_lease_run_out};
 use crate::support::*;
 
-fn diagnosis(version_id: &str, with_version: bool) -> Diagnosis {
+fn diagnosis(version_id: &str, with_version: bool) -> NewDiagnosis {
     let verdict = if with_version { "effects" } else { "complete" };
-    let found = NewDiagnosed {
+    let found = NewDiagnosisRow {
         version_id: version_id.into(),
         verdict: verdict.into(),
         effects: r#"["current"]"#.into(),
@@ -17,8 +17,8 @@ fn diagnosis(version_id: &str, with_version: bool) -> Diagnosis {
         drift: Some(r#"{"ratio":3.0}"#.into()),
     };
     let report = NewReport { kind: "diagnosis".into(), ..report("kcs") };
-    Diagnosis {
-        version: with_version.then(|| (version("kcs"), vec![champion(Expect::Any)])),
+    NewDiagnosis {
+        version: with_version.then(|| (version("kcs"), vec![champion(ExpectedRevision::Any)])),
         report,
         found,
         of_new: None,
@@ -30,7 +30,7 @@ async fn commit(
     on: &TestStore,
     job: &str,
     fence: i64,
-    diagnosis: &Diagnosis,
+    diagnosis: &NewDiagnosis,
 ) -> Result<CommittedDiagnosis> {
     let result = |version: Option<&sistership_store::VersionHead>, _: &_| {
         format!(r#"{{"version":{}}}"#, version.is_some())
@@ -60,12 +60,22 @@ async fn diagnoses_are_found_by_version(on: &TestStore) {
             (&kept.found.report_id, kept.found.made_id.is_some()),
             (&kept.report.id, with_version)
         );
-        let newest =
-            on.store.diagnoses().by_version(&diagnosed, &Page::first(1)).await.unwrap().items;
+        let newest = on
+            .store
+            .diagnoses()
+            .by_version(&diagnosed, &PageRequest::first_page(1))
+            .await
+            .unwrap()
+            .items;
         assert_eq!(newest, std::slice::from_ref(&kept.found));
         if let Some(made) = kept.version {
-            let of_made =
-                on.store.diagnoses().by_version(&made.id, &Page::first(9)).await.unwrap().items;
+            let of_made = on
+                .store
+                .diagnoses()
+                .by_version(&made.id, &PageRequest::first_page(9))
+                .await
+                .unwrap()
+                .items;
             assert_eq!(
                 of_made,
                 [kept.found],
@@ -74,7 +84,13 @@ async fn diagnoses_are_found_by_version(on: &TestStore) {
         }
     }
     assert_eq!(
-        on.store.diagnoses().by_version(&diagnosed, &Page::first(9)).await.unwrap().items.len(),
+        on.store
+            .diagnoses()
+            .by_version(&diagnosed, &PageRequest::first_page(9))
+            .await
+            .unwrap()
+            .items
+            .len(),
         2
     );
 }
@@ -87,16 +103,22 @@ async fn what_is_new_is_kept_with_the_whole(on: &TestStore) {
     let whole = diagnosis(&diagnosed, false);
     let part = PartDiagnosis {
         report: NewReport { kind: "diagnosis".into(), ..report("kcs") },
-        found: NewDiagnosed {
+        found: NewDiagnosisRow {
             verdict: "unexplained".into(),
             unexplained: r#"["b"]"#.into(),
             trials: r#"["b"]"#.into(),
             ..whole.found.clone()
         },
     };
-    let both = Diagnosis { of_new: Some(part), ..whole };
+    let both = NewDiagnosis { of_new: Some(part), ..whole };
     commit(on, &running.id, running.fence, &both).await.unwrap();
-    let kept = on.store.diagnoses().by_version(&diagnosed, &Page::first(9)).await.unwrap().items;
+    let kept = on
+        .store
+        .diagnoses()
+        .by_version(&diagnosed, &PageRequest::first_page(9))
+        .await
+        .unwrap()
+        .items;
     let said = |at: usize| (kept[at].verdict.as_str(), kept[at].unexplained.as_str());
     assert_eq!(
         (kept.len(), said(0), said(1)),
@@ -116,7 +138,7 @@ async fn a_fenced_worker_leaves_no_diagnosis_behind(on: &TestStore) {
     assert!(
         on.store
             .diagnoses()
-            .by_version(&diagnosed, &Page::first(9))
+            .by_version(&diagnosed, &PageRequest::first_page(9))
             .await
             .unwrap()
             .items

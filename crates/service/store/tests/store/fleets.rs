@@ -1,4 +1,6 @@
-use sistership_store::{AliasMove, Expect, Job, JobState, NewOutcome, Page, Result};
+use sistership_store::{
+    AliasMove, ExpectedRevision, Job, JobState, NewOutcome, PageRequest, Result,
+};
 
 use crate::jobs::{claim, let_the_lease_run_out};
 use crate::support::*;
@@ -10,7 +12,10 @@ async fn family(on: &TestStore, ships: &[&str]) -> Vec<String> {
     let foundation = versions(on, "foundation", 1).await.remove(0).id;
     on.store.families().create("sisters", "Sisters", &foundation).await.unwrap();
     let ships: Vec<String> = ships.iter().map(|&name| name.to_owned()).collect();
-    assert_eq!(on.store.families().add("sisters", &ships).await.unwrap(), ships.len() as u64);
+    assert_eq!(
+        on.store.families().add_members("sisters", &ships).await.unwrap(),
+        ships.len() as u64
+    );
     ships
 }
 
@@ -32,48 +37,56 @@ fn outcome(ship: &str, moves: Vec<AliasMove>) -> NewOutcome {
 }
 
 async fn commit(on: &TestStore, bulk: &str, job: &Job, outcomes: &[NewOutcome]) -> Result<Job> {
-    on.store.bulks().commit(bulk, (&job.id, job.fence), outcomes, "{}").await
+    on.store.bulks().commit_chunk(bulk, (&job.id, job.fence), outcomes, "{}").await
 }
 
 async fn families_have_members_and_teach(on: &TestStore) {
     family(on, &["a", "b", "c"]).await;
     let families = on.store.families();
-    assert_invalid(families.add("sisters", &["c".into(), "nobody".into()]).await, "ships");
-    assert_eq!(families.add("sisters", &["c".into()]).await.unwrap(), 0, "it is a member already");
+    assert_invalid(families.add_members("sisters", &["c".into(), "nobody".into()]).await, "ships");
+    assert_eq!(
+        families.add_members("sisters", &["c".into()]).await.unwrap(),
+        0,
+        "it is a member already"
+    );
     on.store.ships().delete("b", None).await.unwrap();
-    let members = families.members("sisters", &Page::first(2)).await.unwrap();
+    let members = families.list_members("sisters", &PageRequest::first_page(2)).await.unwrap();
     assert_eq!(
         members.items.iter().map(|m| m.ship.as_str()).collect::<Vec<_>>(),
         ["a", "c"],
         "a deleted ship is none"
     );
-    assert_eq!((families.count("sisters").await.unwrap(), members.items[0].champion), (2, None));
+    assert_eq!(
+        (families.count_members("sisters").await.unwrap(), members.items[0].champion),
+        (2, None)
+    );
     assert!(
-        families.remove("sisters", "a").await.unwrap()
-            && !families.remove("sisters", "a").await.unwrap()
+        families.remove_member("sisters", "a").await.unwrap()
+            && !families.remove_member("sisters", "a").await.unwrap()
     );
     assert_conflict(
         families.create("sisters", "Again", &versions(on, "other", 1).await[0].id).await,
         "already",
     );
-    assert_not_found(families.prior("sisters", None).await, "family prior");
+    assert_not_found(families.get_prior("sisters", None).await, "family prior");
     for revision in 1..=2 {
-        let prior = families.teach("sisters", &format!(r#"{{"n":{revision}}}"#)).await.unwrap();
+        let prior =
+            families.insert_prior("sisters", &format!(r#"{{"n":{revision}}}"#)).await.unwrap();
         assert_eq!(prior.revision, revision);
     }
-    assert_eq!(families.prior("sisters", None).await.unwrap().document, r#"{"n":2}"#);
-    assert_eq!(families.prior("sisters", Some(1)).await.unwrap().document, r#"{"n":1}"#);
-    assert_not_found(families.teach("nobody", "{}").await, "family");
+    assert_eq!(families.get_prior("sisters", None).await.unwrap().document, r#"{"n":2}"#);
+    assert_eq!(families.get_prior("sisters", Some(1)).await.unwrap().document, r#"{"n":1}"#);
+    assert_not_found(families.insert_prior("nobody", "{}").await, "family");
 }
 
 async fn statistics_are_kept_once(on: &TestStore) {
     let key = sistership_store::sha256_hex(b"rows");
     assert_eq!(on.store.statistics().get(&key).await.unwrap(), None);
     for document in [r#"{"first":1}"#, r#"{"second":2}"#] {
-        on.store.statistics().put(&[(key.clone(), document.to_owned())]).await.unwrap();
+        on.store.statistics().insert_all(&[(key.clone(), document.to_owned())]).await.unwrap();
     }
     assert_eq!(on.store.statistics().get(&key).await.unwrap().as_deref(), Some(r#"{"first":1}"#));
-    assert_invalid(on.store.statistics().put(&[("short".into(), "{}".into())]).await, "key");
+    assert_invalid(on.store.statistics().insert_all(&[("short".into(), "{}".into())]).await, "key");
 }
 
 async fn a_ship_has_one_outcome_whoever_comes_twice(on: &TestStore) {
@@ -82,14 +95,15 @@ async fn a_ship_has_one_outcome_whoever_comes_twice(on: &TestStore) {
     let old = claim(on, "old").await.unwrap();
     let_the_lease_run_out(on).await;
     let new = claim(on, "new").await.unwrap();
-    let done = [outcome("a", vec![]), outcome("b", vec![champion(Expect::Absent)])];
+    let done = [outcome("a", vec![]), outcome("b", vec![champion(ExpectedRevision::Absent)])];
     assert_conflict(commit(on, &id, &old, &done).await, "lost");
     assert!(
-        on.store.bulks().counts(&id).await.unwrap().is_empty(),
+        on.store.bulks().count_outcomes(&id).await.unwrap().is_empty(),
         "a fenced worker leaves nothing behind"
     );
     assert_eq!(commit(on, &id, &new, &done).await.unwrap().state, JobState::Succeeded);
-    let outcomes = on.store.bulks().outcomes(&id, None, &Page::first(9)).await.unwrap().items;
+    let outcomes =
+        on.store.bulks().list_outcomes(&id, None, &PageRequest::first_page(9)).await.unwrap().items;
     assert_eq!(
         outcomes.iter().map(|o| (o.ship.as_str(), o.version)).collect::<Vec<_>>(),
         [("a", Some(1)), ("b", Some(1))]
@@ -101,9 +115,9 @@ async fn a_chunk_is_kept_whole_or_not_at_all(on: &TestStore) {
     let ships = family(on, &["a", "b"]).await;
     let id = bulk(on, &[ships]).await;
     let job = claim(on, "w").await.unwrap();
-    let done = [outcome("a", vec![]), outcome("b", vec![champion(Expect::Revision(7))])];
+    let done = [outcome("a", vec![]), outcome("b", vec![champion(ExpectedRevision::Revision(7))])];
     assert_stale(commit(on, &id, &job, &done).await, None);
-    assert!(on.store.bulks().counts(&id).await.unwrap().is_empty());
+    assert!(on.store.bulks().count_outcomes(&id).await.unwrap().is_empty());
     assert_not_found(on.store.versions().latest("a").await, "model");
 }
 
@@ -118,17 +132,20 @@ async fn what_is_left_is_cancelled_and_goes_on(on: &TestStore) {
         counts.into_iter().map(|c| (c.state, c.jobs)).collect::<Vec<_>>()
     };
     let expected = [(JobState::Cancelled, 2), (JobState::Succeeded, 1)];
-    assert_eq!(states(on.store.bulks().chunks(&id).await.unwrap()), expected);
-    assert_eq!(on.store.bulks().retry(&id).await.unwrap(), 2);
+    assert_eq!(states(on.store.bulks().count_chunks(&id).await.unwrap()), expected);
+    assert_eq!(on.store.bulks().retry_chunks(&id).await.unwrap(), 2);
     for ship in ["b", "c"] {
         let job = claim(on, "w").await.unwrap();
         commit(on, &id, &job, &[outcome(ship, vec![])]).await.unwrap();
     }
-    assert_eq!(states(on.store.bulks().chunks(&id).await.unwrap()), [(JobState::Succeeded, 3)]);
-    let word = champion(Expect::Any);
-    on.store.bulks().promote(&id, "b", 1, &word).await.unwrap();
-    assert_conflict(on.store.bulks().promote(&id, "b", 1, &word).await, "no candidate");
-    let counts = on.store.bulks().counts(&id).await.unwrap();
+    assert_eq!(
+        states(on.store.bulks().count_chunks(&id).await.unwrap()),
+        [(JobState::Succeeded, 3)]
+    );
+    let word = champion(ExpectedRevision::Any);
+    on.store.bulks().promote_candidate(&id, "b", 1, &word).await.unwrap();
+    assert_conflict(on.store.bulks().promote_candidate(&id, "b", 1, &word).await, "no candidate");
+    let counts = on.store.bulks().count_outcomes(&id).await.unwrap();
     assert_eq!(
         counts.into_iter().map(|c| (c.outcome, c.ships)).collect::<Vec<_>>(),
         [("candidate".to_owned(), 2), ("champion".into(), 1)]

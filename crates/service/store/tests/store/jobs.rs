@@ -1,16 +1,16 @@
 use std::time::Duration;
 
-use sistership_store::{Claimed, Job, JobFilter, JobState, MAX_LOST_WORKERS, Page};
+use sistership_store::{Job, JobClaim, JobFilter, JobState, MAX_LOST_WORKERS, PageRequest};
 
 use crate::support::*;
 
 pub const LEASE: Duration = Duration::from_secs(30);
 
 pub async fn claim(on: &TestStore, worker: &str) -> Option<Job> {
-    match on.store.jobs().claim(worker, LEASE, true).await.unwrap() {
-        Claimed::Job(job) => Some(*job),
-        Claimed::Alone => panic!("a process that does nothing else may claim any job"),
-        Claimed::Nothing => None,
+    match on.store.jobs().claim_next(worker, LEASE, true).await.unwrap() {
+        JobClaim::Job(job) => Some(*job),
+        JobClaim::Alone => panic!("a process that does nothing else may claim any job"),
+        JobClaim::Nothing => None,
     }
 }
 
@@ -53,7 +53,7 @@ async fn a_lost_lease_fences_the_old_worker(on: &TestStore) {
     assert_conflict(jobs.heartbeat(&id, old.fence, 0.9, "", LEASE).await, "lost");
     assert_conflict(jobs.complete(&id, old.fence, "{}").await, "lost");
     assert_conflict(jobs.fail(&id, old.fence, "late").await, "lost");
-    assert_conflict(jobs.release(&id, old.fence).await, "lost");
+    assert_conflict(jobs.release_job(&id, old.fence).await, "lost");
     assert_eq!(jobs.get(&id).await.unwrap(), new);
 }
 
@@ -81,7 +81,7 @@ async fn a_job_during_which_a_process_ended_is_begun_alone(on: &TestStore) {
     let suspect = jobs.enqueue(&job("kcs")).await.unwrap().id;
     claim(on, "mortal").await.unwrap();
     let_the_lease_run_out(on).await;
-    assert_eq!(jobs.claim("busy", LEASE, false).await.unwrap(), Claimed::Alone);
+    assert_eq!(jobs.claim_next("busy", LEASE, false).await.unwrap(), JobClaim::Alone);
     assert_eq!(claim(on, "idle").await.unwrap().id, suspect);
 }
 
@@ -90,7 +90,7 @@ async fn only_the_end_of_a_process_counts(on: &TestStore) {
     let id = jobs.enqueue(&job("kcs")).await.unwrap().id;
     for _ in 0..5 {
         let fence = claim(on, "drained").await.unwrap().fence;
-        jobs.release(&id, fence).await.unwrap();
+        jobs.release_job(&id, fence).await.unwrap();
     }
     for _ in 0..5 {
         let late = claim(on, "late").await.unwrap();
@@ -99,10 +99,10 @@ async fn only_the_end_of_a_process_counts(on: &TestStore) {
         let_the_lease_run_out(on).await;
         let fence = claim(on, "other").await.unwrap().fence;
         assert_eq!(jobs.get(&id).await.unwrap().lost_workers, 1);
-        jobs.lives(&id, late.fence).await.unwrap();
+        jobs.mark_alive(&id, late.fence).await.unwrap();
         assert_eq!(jobs.get(&id).await.unwrap().lost_workers, 0);
-        jobs.lives(&id, fence).await.unwrap();
-        jobs.release(&id, fence).await.unwrap();
+        jobs.mark_alive(&id, fence).await.unwrap();
+        jobs.release_job(&id, fence).await.unwrap();
     }
     assert_eq!(claim(on, "last").await.unwrap().lost_workers, 0);
 }
@@ -116,7 +116,7 @@ async fn a_job_is_cancelled(on: &TestStore) {
     let fence = claim(on, "a").await.unwrap().fence;
     assert_eq!(jobs.request_cancel(&running).await.unwrap().state, JobState::Running);
     assert!(jobs.heartbeat(&running, fence, 0.5, "", LEASE).await.unwrap());
-    let cancelled = jobs.cancelled(&running, fence).await.unwrap();
+    let cancelled = jobs.end_cancelled(&running, fence).await.unwrap();
     assert_eq!((cancelled.state, cancelled.progress), (JobState::Cancelled, 0.5));
     assert_conflict(jobs.request_cancel(&running).await, "cancelled");
     assert_not_found(jobs.request_cancel("none").await, "job");
@@ -151,7 +151,7 @@ async fn a_failed_job_is_tried_again(on: &TestStore) {
 async fn a_leaving_worker_gives_its_job_back(on: &TestStore) {
     let id = on.store.jobs().enqueue(&job("kcs")).await.unwrap().id;
     let fence = claim(on, "a").await.unwrap().fence;
-    assert_eq!(on.store.jobs().release(&id, fence).await.unwrap().state, JobState::Queued);
+    assert_eq!(on.store.jobs().release_job(&id, fence).await.unwrap().state, JobState::Queued);
     let again = claim(on, "b").await.unwrap();
     assert_eq!((again.attempt, again.fence), (1, 2));
 }
@@ -162,13 +162,27 @@ async fn jobs_are_listed(on: &TestStore) {
     }
     let oldest = claim(on, "a").await.unwrap();
     let filter = JobFilter { ship: Some("kcs".into()), state: None };
-    let first = on.store.jobs().list(&filter, &Page::first(2)).await.unwrap();
-    let second = on.store.jobs().list(&filter, &Page::after(first.next.unwrap(), 2)).await.unwrap();
+    let first = on.store.jobs().list(&filter, &PageRequest::first_page(2)).await.unwrap();
+    let second = on
+        .store
+        .jobs()
+        .list(&filter, &PageRequest::after_key(first.next.unwrap(), 2))
+        .await
+        .unwrap();
     assert_eq!((first.items.len(), second.items, second.next), (2, vec![oldest.clone()], None));
     let running = JobFilter { ship: None, state: Some(JobState::Running) };
-    assert_eq!(on.store.jobs().list(&running, &Page::first(9)).await.unwrap().items, [oldest]);
     assert_eq!(
-        on.store.jobs().list(&JobFilter::default(), &Page::first(9)).await.unwrap().items.len(),
+        on.store.jobs().list(&running, &PageRequest::first_page(9)).await.unwrap().items,
+        [oldest]
+    );
+    assert_eq!(
+        on.store
+            .jobs()
+            .list(&JobFilter::default(), &PageRequest::first_page(9))
+            .await
+            .unwrap()
+            .items
+            .len(),
         4
     );
 }

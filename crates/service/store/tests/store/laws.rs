@@ -1,4 +1,4 @@
-use sistership_store::{Page, sha256_hex};
+use sistership_store::{PageRequest, sha256_hex};
 
 use crate::support::*;
 
@@ -16,12 +16,12 @@ async fn laws_are_listed_byte_by_byte(on: &TestStore) {
     for name in ["b", "a", "Z", "a-2", "é"] {
         on.store.laws().insert(name, name).await.unwrap();
     }
-    let (mut names, mut page) = (Vec::new(), Page::first(2));
+    let (mut names, mut page) = (Vec::new(), PageRequest::first_page(2));
     loop {
         let list = on.store.laws().list(&page).await.unwrap();
         names.extend(list.items.into_iter().map(|law| law.name));
         let Some(next) = list.next else { break };
-        page = Page::after(next, 2);
+        page = PageRequest::after_key(next, 2);
     }
     assert_eq!(names, ["Z", "a", "a-2", "b", "é"]);
 }

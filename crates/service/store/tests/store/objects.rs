@@ -3,13 +3,13 @@ use std::path::Path;
 use bytes::Bytes;
 use futures::TryStreamExt as _;
 use sistership_store::testing::TestS3;
-use sistership_store::{ObjectName, Objects, ObjectsError, StoreError, sha256_hex};
+use sistership_store::{ObjectName, ObjectStorage, ObjectsError, StoreError, sha256_hex};
 
 use crate::support::*;
 
 const SAMPLES: Bytes = Bytes::from_static(b"PAR1 samples PAR1");
 
-async fn put_and_get(objects: &Objects) -> String {
+async fn put_and_get(objects: &ObjectStorage) -> String {
     let key = objects.put(SAMPLES).await.unwrap();
     assert_eq!(key, sha256_hex(&SAMPLES));
     assert_eq!(objects.put(SAMPLES).await.unwrap(), key);
@@ -23,11 +23,11 @@ async fn put_and_get(objects: &Objects) -> String {
 
 #[tokio::test]
 async fn objects_in_memory() {
-    put_and_get(&Objects::memory()).await;
+    put_and_get(&ObjectStorage::in_memory()).await;
 }
 
 /// An object whose bytes another program has changed.
-async fn damaged_and_healed(objects: &Objects, root: &Path) {
+async fn damaged_and_healed(objects: &ObjectStorage, root: &Path) {
     let key = put_and_get(objects).await;
     let file = root.join("objects").join(&key[..2]).join(&key[2..]);
     std::fs::write(&file, b"PAR1 damaged PAR1").unwrap();
@@ -44,17 +44,20 @@ async fn damaged_and_healed(objects: &Objects, root: &Path) {
 async fn a_damaged_object_is_found_out_and_healed() {
     let folder = tempfile::tempdir().unwrap();
     let root = folder.path().join("not/yet/there");
-    damaged_and_healed(&Objects::local(&root).unwrap(), &root).await;
-    assert_eq!(Objects::local(&root).unwrap().get(&sha256_hex(&SAMPLES)).await.unwrap(), SAMPLES);
+    damaged_and_healed(&ObjectStorage::open_folder(&root).unwrap(), &root).await;
+    assert_eq!(
+        ObjectStorage::open_folder(&root).unwrap().get(&sha256_hex(&SAMPLES)).await.unwrap(),
+        SAMPLES
+    );
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn objects_in_a_bucket() {
     let s3 = TestS3::start().await;
-    let objects = s3.objects("fleet/a");
-    assert_not_found(objects.health().await, "object");
-    objects.mark().await.unwrap();
-    objects.health().await.unwrap();
+    let objects = s3.open_objects("fleet/a");
+    assert_not_found(objects.check_health().await, "object");
+    objects.write_marker().await.unwrap();
+    objects.check_health().await.unwrap();
     damaged_and_healed(&objects, &s3.folder.path().join("samples/fleet/a")).await;
     many(&objects).await;
     let others = objects.put(Bytes::from_static(b"others")).await.unwrap();
@@ -65,8 +68,8 @@ async fn objects_in_a_bucket() {
         .map(|(key, bytes)| (ObjectName::Key(key), bytes));
     assert_eq!(listed, expected);
     // Another prefix of the bucket is another store.
-    assert_not_found(s3.objects("fleet/b").get(&sha256_hex(&SAMPLES)).await, "object");
-    assert_eq!(objects.staged().await.unwrap(), []);
+    assert_not_found(s3.open_objects("fleet/b").get(&sha256_hex(&SAMPLES)).await, "object");
+    assert_eq!(objects.list_staged().await.unwrap(), []);
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -81,36 +84,36 @@ async fn a_bucket_that_does_not_let_one_in_is_an_error_and_no_missing_object() {
         stranger.exists(&sha256_hex(&SAMPLES)).await,
         Err(StoreError::Objects(ObjectsError::Store(_)))
     ));
-    assert!(stranger.health().await.is_err());
+    assert!(stranger.check_health().await.is_err());
 }
 
 /// As a process leaves them that is killed in the middle of a put.
 #[tokio::test]
 async fn puts_that_never_ended_are_seen() {
     let folder = tempfile::tempdir().unwrap();
-    let objects = Objects::local(folder.path()).unwrap();
-    assert_eq!(objects.staged().await.unwrap(), []);
+    let objects = ObjectStorage::open_folder(folder.path()).unwrap();
+    assert_eq!(objects.list_staged().await.unwrap(), []);
     let key = objects.put(SAMPLES).await.unwrap();
     let place = format!("objects/{}/{}#1", &key[..2], &key[2..]);
     std::fs::write(folder.path().join(&place), b"PAR1").unwrap();
-    let staged = objects.staged().await.unwrap();
+    let staged = objects.list_staged().await.unwrap();
     assert_eq!(
         staged.iter().map(|staged| (staged.path.as_str(), staged.bytes)).collect::<Vec<_>>(),
         [(place.as_str(), 4)]
     );
     objects.remove_staged(&staged[0]).await.unwrap();
     objects.remove_staged(&staged[0]).await.unwrap();
-    assert_eq!(objects.staged().await.unwrap(), []);
+    assert_eq!(objects.list_staged().await.unwrap(), []);
     assert_eq!(objects.get(&key).await.unwrap(), SAMPLES);
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn many_put_the_same_bytes_at_once() {
     let folder = tempfile::tempdir().unwrap();
-    many(&Objects::local(folder.path()).unwrap()).await;
+    many(&ObjectStorage::open_folder(folder.path()).unwrap()).await;
 }
 
-async fn many(objects: &Objects) {
+async fn many(objects: &ObjectStorage) {
     let keys = futures::future::try_join_all((0..20).map(|_| objects.put(SAMPLES))).await.unwrap();
     assert!(keys.iter().all(|key| *key == keys[0]));
     assert_eq!(objects.get(&keys[0]).await.unwrap(), SAMPLES);
@@ -119,7 +122,7 @@ async fn many(objects: &Objects) {
 #[tokio::test]
 async fn a_key_is_a_hash_and_no_path() {
     for key in ["", "../../etc/passwd", &"g".repeat(64), &"A".repeat(64)] {
-        assert_invalid(Objects::memory().get(key).await, "key");
-        assert_invalid(Objects::memory().exists(key).await, "key");
+        assert_invalid(ObjectStorage::in_memory().get(key).await, "key");
+        assert_invalid(ObjectStorage::in_memory().exists(key).await, "key");
     }
 }

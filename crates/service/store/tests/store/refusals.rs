@@ -1,7 +1,8 @@
 use std::time::Duration;
 
 use sistership_store::{
-    JobFilter, MAX_LIMIT, MAX_TEXT_BYTES, NewJob, NewReport, NewShip, NewTrial, NewVersion, Page,
+    JobFilter, MAX_LIMIT, MAX_TEXT_BYTES, NewJob, NewReport, NewShip, NewTrial, NewVersion,
+    PageRequest,
 };
 
 use crate::support::*;
@@ -15,12 +16,12 @@ async fn nul_is_refused_wherever_it_comes(on: &TestStore) {
         store.ships().create(&NewShip { title: "\0".into(), ..ship("kcs") }).await,
         "title",
     );
-    assert_invalid(store.ships().list(Some("\0"), &Page::first(1)).await, "category");
-    assert_invalid(store.ships().list(None, &Page::after("\0", 1)).await, "after");
+    assert_invalid(store.ships().list(Some("\0"), &PageRequest::first_page(1)).await, "category");
+    assert_invalid(store.ships().list(None, &PageRequest::after_key("\0", 1)).await, "after");
     assert_invalid(store.versions().get("\0", 1).await, "model");
     assert_invalid(store.jobs().get("\0").await, "id");
     let filter = JobFilter { ship: Some("\0".into()), state: None };
-    assert_invalid(store.jobs().list(&filter, &Page::first(1)).await, "ship");
+    assert_invalid(store.jobs().list(&filter, &PageRequest::first_page(1)).await, "ship");
     assert_invalid(
         store.reports().insert(&NewReport { html: "\0".into(), ..report("kcs") }).await,
         "html",
@@ -64,7 +65,7 @@ async fn what_is_no_json_or_hash_is_refused(on: &TestStore) {
         on.store.trials().insert(&NewTrial { sha256: "ABC".into(), ..trial("kcs", "turn") }).await,
         "sha256",
     );
-    assert_invalid(on.store.idempotency().begin("s", "k", "").await, "request_sha256");
+    assert_invalid(on.store.idempotency().begin_request("s", "k", "").await, "request_sha256");
 }
 
 async fn what_is_too_long_is_refused(on: &TestStore) {
@@ -80,9 +81,11 @@ async fn what_is_too_long_is_refused(on: &TestStore) {
 
 async fn a_page_has_a_size(on: &TestStore) {
     for limit in [0, -1, MAX_LIMIT + 1] {
-        assert_invalid(on.store.laws().list(&Page::first(limit)).await, "limit");
+        assert_invalid(on.store.laws().list(&PageRequest::first_page(limit)).await, "limit");
     }
-    assert!(on.store.laws().list(&Page::first(MAX_LIMIT)).await.unwrap().items.is_empty());
+    assert!(
+        on.store.laws().list(&PageRequest::first_page(MAX_LIMIT)).await.unwrap().items.is_empty()
+    );
 }
 
 on_both_databases!(

@@ -1,4 +1,4 @@
-use sistership_store::{NewReport, Page};
+use sistership_store::{NewReport, PageRequest};
 
 use crate::support::*;
 
@@ -8,10 +8,14 @@ async fn reports_are_found_by_version(on: &TestStore) {
     let first = on.store.reports().insert(&about).await.unwrap();
     let second = on.store.reports().insert(&about).await.unwrap();
     let other = on.store.reports().insert(&report("kcs")).await.unwrap();
-    let list = on.store.reports().by_version(&version, &Page::first(1)).await.unwrap();
+    let list = on.store.reports().by_version(&version, &PageRequest::first_page(1)).await.unwrap();
     assert_eq!(list.items, [second]);
-    let list =
-        on.store.reports().by_version(&version, &Page::after(list.next.unwrap(), 1)).await.unwrap();
+    let list = on
+        .store
+        .reports()
+        .by_version(&version, &PageRequest::after_key(list.next.unwrap(), 1))
+        .await
+        .unwrap();
     assert_eq!((list.items, list.next), (vec![first], None));
     let found = on.store.reports().get(&other.id).await.unwrap();
     assert_eq!(

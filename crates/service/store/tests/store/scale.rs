@@ -8,7 +8,7 @@
 use std::time::{Duration, Instant};
 
 use futures::future::join_all;
-use sistership_store::{FactRange, JobFilter, JobState, Page, ShipSearch};
+use sistership_store::{FactRange, JobFilter, JobState, PageRequest, ShipSearch};
 
 use crate::support::*;
 
@@ -34,7 +34,9 @@ async fn unpacked(on: &TestStore) {
     if !on.database.url.starts_with("sqlite") {
         for table in ["ships", "versions"] {
             on.database
-                .damage(&format!("ALTER TABLE {table} ALTER document SET STORAGE EXTERNAL"))
+                .execute_unchecked(&format!(
+                    "ALTER TABLE {table} ALTER document SET STORAGE EXTERNAL"
+                ))
                 .await;
         }
     }
@@ -72,7 +74,7 @@ async fn fill(on: &TestStore, ships: usize) {
             'x', 1, 1, NULL, NULL, 0, 0, 0, 0 FROM ships".into(),
         "ANALYZE".into(),
     ] {
-        on.database.damage(&sql).await;
+        on.database.execute_unchecked(&sql).await;
     }
 }
 
@@ -93,9 +95,9 @@ async fn times(on: &TestStore, ships: usize) -> Vec<(&'static str, Duration)> {
     let range = |fact: &str, min: f64| FactRange { fact: fact.into(), min, max: 1e9 };
     let by = |ranges| ShipSearch { ranges, ..ShipSearch::default() };
     let category = ShipSearch { category: Some("category-7".into()), ..ShipSearch::default() };
-    let page = |name: &str| Page { after: Some((None, name.to_owned())), limit: 100 };
-    let find = async |search: &ShipSearch, page: Page<_>| {
-        store.ships().search(search, &page).await.unwrap()
+    let page = |name: &str| PageRequest { after: Some((None, name.to_owned())), limit: 100 };
+    let find = async |search: &ShipSearch, page: PageRequest<_>| {
+        store.ships().search_ships(search, &page).await.unwrap()
     };
     let failed = JobFilter { state: Some(JobState::Failed), ..JobFilter::default() };
     let of_one = JobFilter { ship: Some(middle.clone()), ..JobFilter::default() };
@@ -113,14 +115,13 @@ async fn times(on: &TestStore, ships: usize) -> Vec<(&'static str, Duration)> {
         ..ShipSearch::default()
     };
     let last = store.versions().get(&middle, 10).await.unwrap().head.id;
-    let many =
-        async || {
-            let names = (1..=64).map(|i| format!("ship-{}", 1_000_000 + i * ships / 64));
-            join_all(names.map(|name| async move {
-                store.versions().current(&name, "champion").await.unwrap()
-            }))
-            .await
-        };
+    let many = async || {
+        let names = (1..=64).map(|i| format!("ship-{}", 1_000_000 + i * ships / 64));
+        join_all(names.map(|name| async move {
+            store.versions().current_version(&name, "champion").await.unwrap()
+        }))
+        .await
+    };
     vec![
         (
             "ships by name, from the middle",
@@ -150,40 +151,57 @@ async fn times(on: &TestStore, ships: usize) -> Vec<(&'static str, Duration)> {
         ),
         (
             "vectors of a category",
-            median(async || store.ships().vectors(&category).await.unwrap()).await,
+            median(async || store.ships().similarity_vectors(&category).await.unwrap()).await,
         ),
         (
             "champion",
-            median(async || store.versions().current(&middle, "champion").await.unwrap().unwrap())
-                .await,
+            median(async || {
+                store.versions().current_version(&middle, "champion").await.unwrap().unwrap()
+            })
+            .await,
         ),
         ("64 champions at once", median(many).await),
         ("a version by id", median(async || store.versions().by_id(&last).await.unwrap()).await),
         (
             "versions made from a version",
-            median(async || store.versions().children(&last, &Page::first(100)).await.unwrap())
-                .await,
+            median(async || {
+                store.versions().list_children(&last, &PageRequest::first_page(100)).await.unwrap()
+            })
+            .await,
         ),
         (
             "versions of a model",
-            median(async || store.versions().list(&middle, &Page::first(100)).await.unwrap()).await,
+            median(async || {
+                store.versions().list(&middle, &PageRequest::first_page(100)).await.unwrap()
+            })
+            .await,
         ),
         (
             "jobs",
             median(async || {
-                store.jobs().list(&JobFilter::default(), &Page::first(100)).await.unwrap()
+                store
+                    .jobs()
+                    .list(&JobFilter::default(), &PageRequest::first_page(100))
+                    .await
+                    .unwrap()
             })
             .await,
         ),
         (
             "jobs in a state",
-            median(async || store.jobs().list(&failed, &Page::first(100)).await.unwrap()).await,
+            median(async || {
+                store.jobs().list(&failed, &PageRequest::first_page(100)).await.unwrap()
+            })
+            .await,
         ),
         (
             "jobs of a ship",
-            median(async || store.jobs().list(&of_one, &Page::first(100)).await.unwrap()).await,
+            median(async || {
+                store.jobs().list(&of_one, &PageRequest::first_page(100)).await.unwrap()
+            })
+            .await,
         ),
-        ("counts of jobs", median(async || store.jobs().counts().await.unwrap()).await),
+        ("counts of jobs", median(async || store.jobs().count_by_state().await.unwrap()).await),
     ]
 }
 
@@ -212,13 +230,14 @@ async fn scale(few: &TestStore, many: &TestStore) {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 #[ignore = "takes minutes and gigabytes; see the head of the file"]
 async fn scale_on_sqlite() {
-    scale(&TestDatabase::sqlite().open().await, &TestDatabase::sqlite().open().await).await;
+    scale(&TestDatabase::new_sqlite().open().await, &TestDatabase::new_sqlite().open().await).await;
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 #[ignore = "takes minutes and gigabytes; see the head of the file"]
 async fn scale_on_postgres() {
-    let (Some(few), Some(many)) = (TestDatabase::postgres().await, TestDatabase::postgres().await)
+    let (Some(few), Some(many)) =
+        (TestDatabase::new_postgres().await, TestDatabase::new_postgres().await)
     else {
         return;
     };

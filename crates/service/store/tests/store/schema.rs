@@ -1,14 +1,14 @@
 use std::sync::Arc;
 
 use futures::future::join_all;
-use sistership_store::{Expect, SequentialIds, Store, SystemClock};
+use sistership_store::{ExpectedRevision, SequentialIds, Store, SystemClock};
 use sqlx::{AssertSqlSafe, PgPool, SqlitePool};
 
 use crate::support::*;
 
 async fn every_statement_prepares(on: &TestStore) {
     assert!(on.store.prepare_every_statement().await.unwrap() > 40);
-    on.store.health().await.unwrap();
+    on.store.check_health().await.unwrap();
 }
 
 async fn no_statement_reads_a_whole_table(on: &TestStore) {
@@ -20,15 +20,15 @@ async fn opening_twice_keeps_what_is_there(on: &TestStore) {
     let again = Store::connect(&on.database.url, Arc::new(SystemClock)).await.unwrap();
     assert_eq!(again.ships().get("kcs").await.unwrap(), on.store.ships().get("kcs").await.unwrap());
     again.close().await;
-    assert!(again.health().await.is_err());
+    assert!(again.check_health().await.is_err());
 }
 
 async fn insert_only_holds_below_the_store_too(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
     crate::diagnoses::one(on).await;
     on.store.laws().insert("abkowitz", "").await.unwrap();
-    on.store.effects().keep("kind: effect").await.unwrap();
-    on.store.versions().create(&version("kcs"), &[champion(Expect::Any)]).await.unwrap();
+    on.store.effect_libraries().insert_absent("kind: effect").await.unwrap();
+    on.store.versions().create(&version("kcs"), &[champion(ExpectedRevision::Any)]).await.unwrap();
     for table in [
         "laws",
         "effect_libraries",
@@ -84,14 +84,14 @@ async fn open_at_once(database: TestDatabase) {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn many_open_a_new_sqlite_file_at_once() {
-    open_at_once(TestDatabase::sqlite()).await;
+    open_at_once(TestDatabase::new_sqlite()).await;
 }
 
 /// Without the wait for the write-ahead log, all of them come to the migrations together.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn many_open_an_empty_sqlite_file_at_once() {
     for _ in 0..5 {
-        let database = TestDatabase::sqlite();
+        let database = TestDatabase::new_sqlite();
         execute(&format!("{}?mode=rwc", database.url), "PRAGMA journal_mode = WAL".into())
             .await
             .unwrap();
@@ -101,7 +101,7 @@ async fn many_open_an_empty_sqlite_file_at_once() {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn many_open_a_new_postgres_database_at_once() {
-    let Some(database) = TestDatabase::postgres().await else { return };
+    let Some(database) = TestDatabase::new_postgres().await else { return };
     open_at_once(database).await;
 }
 

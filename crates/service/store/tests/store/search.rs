@@ -1,5 +1,6 @@
 use sistership_store::{
-    Actor, Expect, FactRange, FoundShip, List, NewShip, Page, ShipFacts, ShipKey, ShipSearch,
+    Actor, ExpectedRevision, FactRange, FoundShip, ListPage, NewShip, PageRequest, ShipFacts,
+    ShipKey, ShipSearch,
 };
 
 use crate::support::*;
@@ -16,7 +17,7 @@ async fn fleet(on: &TestStore, count: usize) {
             .await
             .unwrap();
         if number % 4 == 0 {
-            on.store.ships().tag(&name, "own-fleet").await.unwrap();
+            on.store.ships().add_tag(&name, "own-fleet").await.unwrap();
         }
     }
     index(on).await;
@@ -24,8 +25,8 @@ async fn fleet(on: &TestStore, count: usize) {
 
 /// Does for every ship that waits what the server does: its length is ten times its number.
 async fn index(on: &TestStore) -> usize {
-    let waiting = on.store.search_index().waiting("", 1000).await.unwrap();
-    let facts = |waiting: &sistership_store::Waiting| {
+    let waiting = on.store.search_index().list_stale("", 1000).await.unwrap();
+    let facts = |waiting: &sistership_store::StaleShip| {
         let number: f64 = waiting.ship.trim_start_matches("s-").parse().unwrap();
         let facts = vec![("lpp_m".to_owned(), 10.0 * number), ("beam_m".to_owned(), 20.0 - number)];
         ShipFacts {
@@ -35,7 +36,11 @@ async fn index(on: &TestStore) -> usize {
             vectors: format!("[{number}]"),
         }
     };
-    on.store.search_index().write(&waiting.iter().map(facts).collect::<Vec<_>>()).await.unwrap();
+    on.store
+        .search_index()
+        .write_facts(&waiting.iter().map(facts).collect::<Vec<_>>())
+        .await
+        .unwrap();
     waiting.len()
 }
 
@@ -43,18 +48,18 @@ fn range(fact: &str, min: f64, max: f64) -> FactRange {
     FactRange { fact: fact.into(), min, max }
 }
 
-fn names(list: &List<FoundShip, ShipKey>) -> Vec<&str> {
+fn names(list: &ListPage<FoundShip, ShipKey>) -> Vec<&str> {
     list.items.iter().map(|ship| ship.name.as_str()).collect()
 }
 
 async fn every(on: &TestStore, search: &ShipSearch, limit: i64) -> Vec<String> {
-    let (mut all, mut page) = (Vec::new(), Page::first(limit));
+    let (mut all, mut page) = (Vec::new(), PageRequest::first_page(limit));
     loop {
-        let list = on.store.ships().search(search, &page).await.unwrap();
+        let list = on.store.ships().search_ships(search, &page).await.unwrap();
         assert!(list.items.len() <= usize::try_from(limit).unwrap());
         all.extend(names(&list).into_iter().map(str::to_owned));
         let Some(next) = list.next else { return all };
-        page = Page { after: Some(next), limit };
+        page = PageRequest { after: Some(next), limit };
     }
 }
 
@@ -100,15 +105,22 @@ async fn ships_are_found_by_each_condition_and_all_together(on: &TestStore) {
     let vectors = on
         .store
         .ships()
-        .vectors(&ShipSearch { category: tanker(), tag: own(), ..ShipSearch::default() })
+        .similarity_vectors(&ShipSearch { category: tanker(), tag: own(), ..ShipSearch::default() })
         .await
         .unwrap();
     let vectors: Vec<_> =
         vectors.iter().map(|ship| (ship.head.name.as_str(), ship.vectors.as_str())).collect();
     assert_eq!(vectors, [("s-00", "[0]"), ("s-12", "[12]")]);
     let names = ["s-12", "nobody", "s-00"].map(str::to_owned);
-    let mut named: Vec<_> =
-        on.store.ships().named(&names).await.unwrap().into_iter().map(|ship| ship.name).collect();
+    let mut named: Vec<_> = on
+        .store
+        .ships()
+        .find_by_names(&names)
+        .await
+        .unwrap()
+        .into_iter()
+        .map(|ship| ship.name)
+        .collect();
     named.sort_unstable();
     assert_eq!(named, ["s-00", "s-12"]);
     assert_eq!(on.store.ships().vectors_state("nothing").await.unwrap().ships, 0);
@@ -127,7 +139,7 @@ async fn many(on: &TestStore) {
         "INSERT INTO ship_tags SELECT name, 'own-fleet' FROM ships WHERE created_us % 100 = 0"
             .into(),
     ] {
-        on.database.damage(&sql).await;
+        on.database.execute_unchecked(&sql).await;
     }
 }
 
@@ -160,14 +172,19 @@ async fn a_page_goes_on_where_the_last_one_ended_whatever_is_added(on: &TestStor
         (ShipSearch::default(), "s-00 s-01 s-02", ["s-0.1", "s-3.1"], "s-03 s-04 s-05 s-3.1"),
         (all, "s-00 s-0.1 s-01", ["s-0.2", "s-3.2"], "s-02 s-03 s-3.1 s-3.2 s-04 s-05"),
     ] {
-        let first = on.store.ships().search(&search, &Page::first(3)).await.unwrap();
+        let first =
+            on.store.ships().search_ships(&search, &PageRequest::first_page(3)).await.unwrap();
         assert_eq!(names(&first).join(" "), ends);
         for name in new {
             on.store.ships().create(&ship(name)).await.unwrap();
         }
         index(on).await;
-        let second =
-            on.store.ships().search(&search, &Page { after: first.next, limit: 9 }).await.unwrap();
+        let second = on
+            .store
+            .ships()
+            .search_ships(&search, &PageRequest { after: first.next, limit: 9 })
+            .await
+            .unwrap();
         assert_eq!(names(&second).join(" "), expected);
     }
 }
@@ -176,15 +193,19 @@ async fn what_changes_is_written_anew(on: &TestStore) {
     fleet(on, 2).await;
     assert_eq!(index(on).await, 0);
     on.store.ships().update(&ship("s-00"), 1).await.unwrap();
-    on.store.versions().create(&version("s-01"), &[champion(Expect::Any)]).await.unwrap();
-    on.store.versions().create(&version("no-ship"), &[champion(Expect::Any)]).await.unwrap();
-    let waiting = on.store.search_index().waiting("", 10).await.unwrap();
+    on.store.versions().create(&version("s-01"), &[champion(ExpectedRevision::Any)]).await.unwrap();
+    on.store
+        .versions()
+        .create(&version("no-ship"), &[champion(ExpectedRevision::Any)])
+        .await
+        .unwrap();
+    let waiting = on.store.search_index().list_stale("", 10).await.unwrap();
     assert_eq!(waiting.iter().map(|ship| ship.ship.as_str()).collect::<Vec<_>>(), ["s-00", "s-01"]);
     // Changed again before the facts of the first change are written: they are not, and it waits
     // on.
     on.store.ships().update(&ship("s-00"), 2).await.unwrap();
     let [old, same] = &waiting[..] else { panic!() };
-    let facts = |waiting: &sistership_store::Waiting, value| {
+    let facts = |waiting: &sistership_store::StaleShip, value| {
         let facts = vec![("lpp_m".to_owned(), value)];
         ShipFacts {
             waiting: waiting.clone(),
@@ -193,11 +214,11 @@ async fn what_changes_is_written_anew(on: &TestStore) {
             vectors: "[]".into(),
         }
     };
-    on.store.search_index().write(&[facts(old, 7.0), facts(same, 8.0)]).await.unwrap();
+    on.store.search_index().write_facts(&[facts(old, 7.0), facts(same, 8.0)]).await.unwrap();
     let search = ShipSearch { ranges: vec![range("lpp_m", 5.0, 9.0)], ..ShipSearch::default() };
-    let found = on.store.ships().search(&search, &Page::first(9)).await.unwrap();
+    let found = on.store.ships().search_ships(&search, &PageRequest::first_page(9)).await.unwrap();
     assert_eq!((names(&found), found.items[0].value), (vec!["s-01"], Some(8.0)));
-    assert_eq!(on.store.search_index().waiting("", 10).await.unwrap().len(), 1);
+    assert_eq!(on.store.search_index().list_stale("", 10).await.unwrap().len(), 1);
 }
 
 async fn trials_that_come_and_go_are_news_of_their_ship(on: &TestStore) {
@@ -215,54 +236,62 @@ async fn trials_that_come_and_go_are_news_of_their_ship(on: &TestStore) {
 async fn notes_have_an_author_and_stay(on: &TestStore) {
     let ships = on.store.ships();
     ships.create(&ship("kcs")).await.unwrap();
-    ships.tag("kcs", "own").await.unwrap();
+    ships.add_tag("kcs", "own").await.unwrap();
     let ann = Actor::new("ann", "192.0.2.1");
-    ann.acting(async { ships.note("kcs", "hull cleaned in dock").await }).await.unwrap();
-    ships.note("kcs", "second\nline").await.unwrap();
-    let newest = ships.notes("kcs", &Page::first(1)).await.unwrap();
+    ann.run_scoped(async { ships.add_note("kcs", "hull cleaned in dock").await }).await.unwrap();
+    ships.add_note("kcs", "second\nline").await.unwrap();
+    let newest = ships.list_notes("kcs", &PageRequest::first_page(1)).await.unwrap();
     assert_eq!(newest.items[0].text, "second\nline");
-    let older = ships.notes("kcs", &Page::after(newest.next.unwrap(), 1)).await.unwrap();
+    let older =
+        ships.list_notes("kcs", &PageRequest::after_key(newest.next.unwrap(), 1)).await.unwrap();
     let note = &older.items[0];
     assert_eq!((note.actor.as_str(), note.text.as_str()), ("ann", "hull cleaned in dock"));
     assert_eq!(older.next, None);
-    assert_invalid(ships.note("kcs", " \n").await, "text");
-    assert_invalid(ships.note("kcs", "a\0b").await, "text");
+    assert_invalid(ships.add_note("kcs", " \n").await, "text");
+    assert_invalid(ships.add_note("kcs", "a\0b").await, "text");
     let long = "x".repeat(sistership_store::MAX_NOTE_CHARS + 1);
-    assert_invalid(ships.note("kcs", &long).await, "text");
-    assert_not_found(ships.note("pcc", "a").await, "ship");
+    assert_invalid(ships.add_note("kcs", &long).await, "text");
+    assert_not_found(ships.add_note("pcc", "a").await, "ship");
 }
 
 async fn tags_are_put_on_and_taken_off(on: &TestStore) {
     let ships = on.store.ships();
     ships.create(&ship("kcs")).await.unwrap();
     for tag in ["b", "a", "b"] {
-        ships.tag("kcs", tag).await.unwrap();
+        ships.add_tag("kcs", tag).await.unwrap();
     }
-    assert_eq!(ships.tags("kcs").await.unwrap(), ["a", "b"]);
-    ships.untag("kcs", "a").await.unwrap();
-    assert_not_found(ships.untag("kcs", "a").await, "tag");
-    assert_not_found(ships.tag("pcc", "a").await, "ship");
-    assert_invalid(ships.tag("kcs", "two words").await, "tag");
+    assert_eq!(ships.list_tags("kcs").await.unwrap(), ["a", "b"]);
+    ships.remove_tag("kcs", "a").await.unwrap();
+    assert_not_found(ships.remove_tag("kcs", "a").await, "tag");
+    assert_not_found(ships.add_tag("pcc", "a").await, "ship");
+    assert_invalid(ships.add_tag("kcs", "two words").await, "tag");
     for number in 1..sistership_store::MAX_TAGS {
-        ships.tag("kcs", &format!("t-{number}")).await.unwrap();
+        ships.add_tag("kcs", &format!("t-{number}")).await.unwrap();
     }
-    assert_conflict(ships.tag("kcs", "one-more").await, "100 tags already");
-    ships.tag("kcs", "b").await.unwrap();
+    assert_conflict(ships.add_tag("kcs", "one-more").await, "100 tags already");
+    ships.add_tag("kcs", "b").await.unwrap();
 }
 
 async fn a_search_that_cannot_be_is_refused(on: &TestStore) {
     let ships = on.store.ships();
     let search = |ranges| ShipSearch { ranges, ..ShipSearch::default() };
     assert_invalid(
-        ships.search(&search(vec![range("lpp_m", f64::NAN, 1.0)]), &Page::first(1)).await,
+        ships
+            .search_ships(&search(vec![range("lpp_m", f64::NAN, 1.0)]), &PageRequest::first_page(1))
+            .await,
         "min",
     );
     assert_invalid(
-        ships.search(&search(vec![range("lpp_m", 0.0, 1.0); 5]), &Page::first(1)).await,
+        ships
+            .search_ships(&search(vec![range("lpp_m", 0.0, 1.0); 5]), &PageRequest::first_page(1))
+            .await,
         "ranges",
     );
-    assert_invalid(ships.search(&search(Vec::new()), &Page::first(1001)).await, "limit");
-    assert_invalid(ships.vectors(&search(Vec::new())).await, "category");
+    assert_invalid(
+        ships.search_ships(&search(Vec::new()), &PageRequest::first_page(1001)).await,
+        "limit",
+    );
+    assert_invalid(ships.similarity_vectors(&search(Vec::new())).await, "category");
 }
 
 on_both_databases!(

@@ -75,7 +75,7 @@ async fn behind_proxy(database: &TestDatabase) -> (Proxy, Store) {
 /// second.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_store_gives_up_connections_that_go_silent() {
-    let Some(database) = TestDatabase::postgres().await else { return };
+    let Some(database) = TestDatabase::new_postgres().await else { return };
     let (proxy, store) = behind_proxy(&database).await;
     let names = ["kcs", "kvlcc2", "sr108"];
     store.ships().create(&ship(names[0])).await.unwrap();
@@ -86,13 +86,13 @@ async fn a_store_gives_up_connections_that_go_silent() {
         futures::future::join_all(asks).await;
         proxy.silence();
         let start = Instant::now();
-        assert!(store.health().await.is_err(), "round {round}");
+        assert!(store.check_health().await.is_err(), "round {round}");
         assert!(start.elapsed() < Duration::from_secs(1), "{:?}", start.elapsed());
         while store.ships().create(&ship(name)).await.is_err() {
             assert!(start.elapsed() < Duration::from_secs(15), "round {round}");
         }
         assert!(store.ships().get(name).await.is_ok());
-        assert!(store.health().await.is_ok());
+        assert!(store.check_health().await.is_ok());
         println!("recovered after {:?}", start.elapsed());
     }
 }

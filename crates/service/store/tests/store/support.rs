@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 
 use sistership_store::{
-    AliasMove, Expect, NewJob, NewReport, NewShip, NewTrial, NewVersion, Result, StoreError,
-    VersionHead, sha256_hex,
+    AliasMove, ExpectedRevision, NewJob, NewReport, NewShip, NewTrial, NewVersion, Result,
+    StoreError, VersionHead, sha256_hex,
 };
 
 pub use sistership_store::testing::{TestDatabase, TestStore};
@@ -75,7 +75,7 @@ pub fn job(ship: &str) -> NewJob {
     }
 }
 
-pub fn champion(expect: Expect) -> AliasMove {
+pub fn champion(expect: ExpectedRevision) -> AliasMove {
     AliasMove { alias: "champion".into(), expect, reason: "better".into(), actor: "ann".into() }
 }
 

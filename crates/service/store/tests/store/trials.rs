@@ -1,4 +1,4 @@
-use sistership_store::{NewTrial, Objects, Page};
+use sistership_store::{NewTrial, ObjectStorage, PageRequest};
 
 use crate::support::*;
 
@@ -13,7 +13,7 @@ async fn the_same_samples_are_one_trial(on: &TestStore) {
     assert_eq!(first.row.duration_s, 599.5);
     let other = on.store.trials().insert(&trial("pcc", "zigzag")).await.unwrap();
     assert!(other.new && other.row.id != first.row.id);
-    assert_eq!(on.store.trials().find("kcs", &first.row.sha256).await.unwrap(), first.row);
+    assert_eq!(on.store.trials().find_by_hash("kcs", &first.row.sha256).await.unwrap(), first.row);
 }
 
 async fn a_trial_needs_its_ship(on: &TestStore) {
@@ -27,7 +27,9 @@ async fn several_trials_are_put_in_all_or_none(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
     let batch = [trial("kcs", "one"), trial("nobody", "two")];
     assert_not_found(on.store.trials().insert_all(&batch).await, "ship");
-    assert!(on.store.trials().list("kcs", &Page::first(10)).await.unwrap().items.is_empty());
+    assert!(
+        on.store.trials().list("kcs", &PageRequest::first_page(10)).await.unwrap().items.is_empty()
+    );
     let inserted = on
         .store
         .trials()
@@ -39,20 +41,20 @@ async fn several_trials_are_put_in_all_or_none(on: &TestStore) {
 
 async fn a_job_follows_trials_or_both_are_undone(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
-    let objects = Objects::memory();
+    let objects = ObjectStorage::in_memory();
     let one = [trial("kcs", "one")];
     assert_not_found(
         on.store.trials().insert_all_and_enqueue(&one, &objects, |_| None).await,
         "object",
     );
     assert!(
-        on.store.trials().list("kcs", &Page::first(10)).await.unwrap().items.is_empty(),
+        on.store.trials().list("kcs", &PageRequest::first_page(10)).await.unwrap().items.is_empty(),
         "no trial without samples"
     );
     for samples in ["one", "two"] {
         objects.put(samples.into()).await.unwrap();
     }
-    let asked = |inserted: &[sistership_store::Inserted<_>]| {
+    let asked = |inserted: &[sistership_store::InsertOutcome<_>]| {
         inserted.iter().any(|one| one.new).then(|| job("kcs"))
     };
     let (_, queued) =
@@ -66,7 +68,10 @@ async fn a_job_follows_trials_or_both_are_undone(on: &TestStore) {
         on.store.trials().insert_all_and_enqueue(&[trial("kcs", "two")], &objects, broken).await,
         "request",
     );
-    assert_eq!(on.store.trials().list("kcs", &Page::first(10)).await.unwrap().items.len(), 1);
+    assert_eq!(
+        on.store.trials().list("kcs", &PageRequest::first_page(10)).await.unwrap().items.len(),
+        1
+    );
 }
 
 async fn a_deleted_trial_comes_back(on: &TestStore) {
@@ -75,9 +80,9 @@ async fn a_deleted_trial_comes_back(on: &TestStore) {
     let made = trials.insert(&trial("kcs", "turn")).await.unwrap().row;
     assert!(trials.delete(&made.id).await.unwrap().deleted_us.is_some());
     assert_not_found(trials.get(&made.id).await, "trial");
-    assert_not_found(trials.find("kcs", &made.sha256).await, "trial");
+    assert_not_found(trials.find_by_hash("kcs", &made.sha256).await, "trial");
     assert_not_found(trials.delete(&made.id).await, "trial");
-    assert!(trials.list("kcs", &Page::first(10)).await.unwrap().items.is_empty());
+    assert!(trials.list("kcs", &PageRequest::first_page(10)).await.unwrap().items.is_empty());
     assert_eq!(trials.undelete(&made.id).await.unwrap(), made);
     trials.delete(&made.id).await.unwrap();
     let again = trials.insert(&trial("kcs", "turn")).await.unwrap();
@@ -90,8 +95,13 @@ async fn trials_are_listed_in_the_order_of_upload(on: &TestStore) {
     for n in 0..5 {
         on.store.trials().insert(&trial("kcs", &n.to_string())).await.unwrap();
     }
-    let first = on.store.trials().list("kcs", &Page::first(3)).await.unwrap();
-    let second = on.store.trials().list("kcs", &Page::after(first.next.unwrap(), 3)).await.unwrap();
+    let first = on.store.trials().list("kcs", &PageRequest::first_page(3)).await.unwrap();
+    let second = on
+        .store
+        .trials()
+        .list("kcs", &PageRequest::after_key(first.next.unwrap(), 3))
+        .await
+        .unwrap();
     let names: Vec<_> =
         first.items.iter().chain(&second.items).map(|trial| trial.name.as_str()).collect();
     assert_eq!(names, ["0.csv", "1.csv", "2.csv", "3.csv", "4.csv"]);

@@ -1,10 +1,10 @@
-use sistership_store::{Expect, NewVersion, Page, sha256_hex};
+use sistership_store::{ExpectedRevision, NewVersion, PageRequest, sha256_hex};
 
 use crate::support::*;
 
 async fn a_version_is_found_again(on: &TestStore) {
     let store = on.store.versions();
-    let head = store.create(&version("kcs"), &[champion(Expect::Absent)]).await.unwrap();
+    let head = store.create(&version("kcs"), &[champion(ExpectedRevision::Absent)]).await.unwrap();
     assert_eq!(
         (head.number, head.sha256.as_str()),
         (1, sha256_hex(version("kcs").document.as_bytes()).as_str())
@@ -22,9 +22,13 @@ async fn a_version_is_found_again(on: &TestStore) {
 async fn each_model_counts_for_itself_and_newest_first(on: &TestStore) {
     versions(on, "kcs", 5).await;
     versions(on, "pcc", 1).await;
-    let first = on.store.versions().list("kcs", &Page::first(3)).await.unwrap();
-    let second =
-        on.store.versions().list("kcs", &Page::after(first.next.unwrap(), 3)).await.unwrap();
+    let first = on.store.versions().list("kcs", &PageRequest::first_page(3)).await.unwrap();
+    let second = on
+        .store
+        .versions()
+        .list("kcs", &PageRequest::after_key(first.next.unwrap(), 3))
+        .await
+        .unwrap();
     let numbers: Vec<_> =
         first.items.iter().chain(&second.items).map(|version| version.number).collect();
     assert_eq!((numbers, second.next), (vec![5, 4, 3, 2, 1], None));
@@ -37,7 +41,13 @@ async fn children_name_their_parent(on: &TestStore) {
         let child = NewVersion { parent: Some(parent.clone()), ..version(model) };
         on.store.versions().create(&child, &[]).await.unwrap();
     }
-    let children = on.store.versions().children(&parent, &Page::first(10)).await.unwrap().items;
+    let children = on
+        .store
+        .versions()
+        .list_children(&parent, &PageRequest::first_page(10))
+        .await
+        .unwrap()
+        .items;
     let models: Vec<_> =
         children.iter().map(|child| (child.model.as_str(), child.number)).collect();
     assert_eq!(models, [("kvlcc2", 2), ("esso-tanker", 1)]);
@@ -47,8 +57,11 @@ async fn children_name_their_parent(on: &TestStore) {
 
 async fn a_refused_alias_takes_no_number(on: &TestStore) {
     versions(on, "kcs", 1).await;
-    let refused =
-        on.store.versions().create(&version("kcs"), &[champion(Expect::Revision(7))]).await;
+    let refused = on
+        .store
+        .versions()
+        .create(&version("kcs"), &[champion(ExpectedRevision::Revision(7))])
+        .await;
     assert_stale(refused, None);
     assert_eq!(versions(on, "kcs", 1).await[0].number, 2);
 }

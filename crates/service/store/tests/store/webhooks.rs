@@ -1,6 +1,6 @@
 //! Webhooks: what they are told is written with what it tells of, and taken by one at a time.
 
-use sistership_store::{DIAGNOSIS_FAILED, DRIFT, Expect, NewWebhook, Page};
+use sistership_store::{DIAGNOSIS_FAILED, DRIFT, ExpectedRevision, NewWebhook, PageRequest};
 
 use crate::support::*;
 
@@ -17,7 +17,8 @@ fn webhook(events: &[&str], ship: Option<&str>) -> NewWebhook {
 
 /// Events of a webhook's deliveries, the first first.
 async fn told(on: &TestStore, id: &str) -> Vec<String> {
-    let told = on.store.webhooks().deliveries(id, &Page::first(100)).await.unwrap();
+    let told =
+        on.store.webhooks().list_deliveries(id, &PageRequest::first_page(100)).await.unwrap();
     told.items.into_iter().rev().map(|delivery| delivery.event).collect()
 }
 
@@ -28,11 +29,16 @@ async fn a_move_is_told_with_its_transaction(on: &TestStore) {
     let all = webhooks.create(&webhook(&["champion.moved"], None)).await.unwrap();
     let own = webhooks.create(&webhook(&["champion.moved"], Some("kvlcc2"))).await.unwrap();
     let deaf = webhooks.create(&webhook(&[DRIFT], None)).await.unwrap();
-    on.store.versions().create(&version("kcs"), &[champion(Expect::Absent)]).await.unwrap();
+    on.store
+        .versions()
+        .create(&version("kcs"), &[champion(ExpectedRevision::Absent)])
+        .await
+        .unwrap();
     assert_eq!(told(on, &all.id).await, ["champion.moved"]);
     assert!(told(on, &own.id).await.is_empty() && told(on, &deaf.id).await.is_empty());
     // A move that is refused is told to nobody.
-    let refused = on.store.aliases().move_to("kcs", 1, &champion(Expect::Revision(7))).await;
+    let refused =
+        on.store.aliases().move_to("kcs", 1, &champion(ExpectedRevision::Revision(7))).await;
     assert!(refused.is_err());
     assert_eq!(told(on, &all.id).await.len(), 1);
 }
@@ -41,19 +47,23 @@ async fn a_delivery_is_taken_by_one_until_its_time_is_over(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
     let webhooks = on.store.webhooks();
     webhooks.create(&webhook(&["champion.moved"], None)).await.unwrap();
-    on.store.versions().create(&version("kcs"), &[champion(Expect::Absent)]).await.unwrap();
+    on.store
+        .versions()
+        .create(&version("kcs"), &[champion(ExpectedRevision::Absent)])
+        .await
+        .unwrap();
     let until = on.store.now_us() + 60_000_000;
-    let (taken, of) = webhooks.take(until).await.unwrap().unwrap();
+    let (taken, of) = webhooks.take_due(until).await.unwrap().unwrap();
     assert_eq!((taken.attempts, of.secret.as_str()), (1, "secret"));
-    assert_eq!(webhooks.take(until).await.unwrap(), None, "another has it");
-    webhooks.failed(&taken.id, Some(on.store.now_us()), "answered 500").await.unwrap();
-    let (again, _) = webhooks.take(until).await.unwrap().unwrap();
+    assert_eq!(webhooks.take_due(until).await.unwrap(), None, "another has it");
+    webhooks.record_failure(&taken.id, Some(on.store.now_us()), "answered 500").await.unwrap();
+    let (again, _) = webhooks.take_due(until).await.unwrap().unwrap();
     assert_eq!((again.id.as_str(), again.attempts), (taken.id.as_str(), 2));
-    webhooks.arrived(&again.id, "204").await.unwrap();
+    webhooks.record_arrival(&again.id, "204").await.unwrap();
     // What comes too late of an earlier attempt does not send it again.
-    webhooks.failed(&again.id, Some(on.store.now_us()), "no answer in time").await.unwrap();
-    assert_eq!(webhooks.take(until).await.unwrap(), None);
-    assert_not_found(webhooks.again(&of.id, &again.id).await, "delivery under way");
+    webhooks.record_failure(&again.id, Some(on.store.now_us()), "no answer in time").await.unwrap();
+    assert_eq!(webhooks.take_due(until).await.unwrap(), None);
+    assert_not_found(webhooks.retry_delivery(&of.id, &again.id).await, "delivery under way");
 }
 
 async fn what_has_ended_is_told_nothing(on: &TestStore) {
@@ -61,14 +71,18 @@ async fn what_has_ended_is_told_nothing(on: &TestStore) {
     let webhooks = on.store.webhooks();
     let made =
         webhooks.create(&webhook(&["champion.moved", DIAGNOSIS_FAILED], None)).await.unwrap();
-    on.store.versions().create(&version("kcs"), &[champion(Expect::Absent)]).await.unwrap();
-    webhooks.end(&made.id).await.unwrap();
-    assert_conflict(webhooks.end(&made.id).await, "ended");
-    assert_eq!(webhooks.take(i64::MAX).await.unwrap(), None);
-    let moved = on.store.aliases().move_to("kcs", 1, &champion(Expect::Any)).await;
+    on.store
+        .versions()
+        .create(&version("kcs"), &[champion(ExpectedRevision::Absent)])
+        .await
+        .unwrap();
+    webhooks.end_webhook(&made.id).await.unwrap();
+    assert_conflict(webhooks.end_webhook(&made.id).await, "ended");
+    assert_eq!(webhooks.take_due(i64::MAX).await.unwrap(), None);
+    let moved = on.store.aliases().move_to("kcs", 1, &champion(ExpectedRevision::Any)).await;
     moved.unwrap();
     assert_eq!(told(on, &made.id).await.len(), 1);
-    assert_eq!(webhooks.events(&made.id).await.unwrap(), ["champion.moved", DIAGNOSIS_FAILED]);
+    assert_eq!(webhooks.list_events(&made.id).await.unwrap(), ["champion.moved", DIAGNOSIS_FAILED]);
     assert_invalid(webhooks.create(&webhook(&[], None)).await, "events");
     assert_invalid(webhooks.create(&webhook(&["sunrise"], None)).await, "events");
     assert_invalid(webhooks.create(&webhook(&[DRIFT, DRIFT], None)).await, "events");

@@ -16,25 +16,25 @@ use sistership_jobs::archive::Archive;
 const FRESH: Duration = Duration::from_secs(60);
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
-struct Kind {
+struct JobLabels {
     kind: String,
     state: &'static str,
 }
 
 /// Number of objects, and their size in bytes.
-type Size = (i64, i64);
+type StoreSize = (i64, i64);
 
 /// Metrics of the archive, with a cached size of the object store.
 #[derive(Debug, Default)]
-pub(super) struct Measured(Mutex<Option<(Instant, Size)>>);
+pub(super) struct ArchiveMetrics(Mutex<Option<(Instant, StoreSize)>>);
 
-impl Measured {
+impl ArchiveMetrics {
     /// Returns a registry with the present values.
-    pub(super) async fn registry(&self, archive: &Archive) -> Result<Registry> {
-        let counts = archive.store.jobs().counts().await?;
-        let (objects, bytes) = self.size(archive).await?;
+    pub(super) async fn current_registry(&self, archive: &Archive) -> Result<Registry> {
+        let counts = archive.store.jobs().count_by_state().await?;
+        let (objects, bytes) = self.store_size(archive).await?;
         let mut registry = Registry::with_prefix("sistership");
-        registry.register("jobs", "Jobs by kind and state", jobs(&counts));
+        registry.register("jobs", "Jobs by kind and state", job_gauges(&counts));
         let age = Gauge::<f64, std::sync::atomic::AtomicU64>::default();
         age.set(queue_age_s(&counts, archive.store.now_us()));
         registry.register(
@@ -53,13 +53,13 @@ impl Measured {
         Ok(registry)
     }
 
-    async fn size(&self, archive: &Archive) -> Result<Size> {
+    async fn store_size(&self, archive: &Archive) -> Result<StoreSize> {
         // The lock is held while measuring, so that concurrent scrapes list the objects once.
         let mut known = self.0.lock().await;
         if let Some((_, size)) = known.filter(|(when, _)| when.elapsed() < FRESH) {
             return Ok(size);
         }
-        let count = |(objects, bytes): Size, head: sistership_store::ObjectHead| async move {
+        let count = |(objects, bytes): StoreSize, head: sistership_store::ObjectHead| async move {
             Ok((objects + 1, bytes + i64::try_from(head.bytes).unwrap_or(i64::MAX)))
         };
         // A failed listing leaves the cached size unchanged.
@@ -69,10 +69,10 @@ impl Measured {
     }
 }
 
-fn jobs(counts: &[JobCount]) -> Family<Kind, Gauge> {
-    let jobs = Family::<Kind, Gauge>::default();
+fn job_gauges(counts: &[JobCount]) -> Family<JobLabels, Gauge> {
+    let jobs = Family::<JobLabels, Gauge>::default();
     for count in counts {
-        jobs.get_or_create(&Kind { kind: count.kind.clone(), state: count.state.as_str() })
+        jobs.get_or_create(&JobLabels { kind: count.kind.clone(), state: count.state.as_str() })
             .set(count.jobs);
     }
     jobs

@@ -14,7 +14,7 @@ use prometheus_client::metrics::histogram::Histogram;
 use prometheus_client::registry::Registry;
 use sistership_store::Result;
 
-use self::measured::Measured;
+use self::measured::ArchiveMetrics;
 use sistership_jobs::archive::Archive;
 
 /// Media type of the metrics.
@@ -24,27 +24,27 @@ const SECONDS: [f64; 13] =
     [0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 1.0, 2.5, 10.0, 60.0, 600.0];
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
-struct Answered {
+struct AnswerLabels {
     method: &'static str,
     route: String,
     status: u16,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash, EncodeLabelSet)]
-struct Route {
+struct RouteLabels {
     method: &'static str,
     route: String,
 }
 
 /// Metrics of the server.
-pub struct Metrics {
+pub struct ServerMetrics {
     registry: Registry,
-    requests: Family<Answered, Counter>,
-    seconds: Family<Route, Histogram>,
-    measured: Measured,
+    requests: Family<AnswerLabels, Counter>,
+    seconds: Family<RouteLabels, Histogram>,
+    measured: ArchiveMetrics,
 }
 
-impl Default for Metrics {
+impl Default for ServerMetrics {
     fn default() -> Self {
         let mut registry = Registry::with_prefix("sistership");
         let requests = Family::default();
@@ -53,43 +53,49 @@ impl Default for Metrics {
             "Requests answered, by route and status",
             requests.clone(),
         );
-        let seconds = Family::new_with_constructor(histogram as fn() -> Histogram);
+        let seconds = Family::new_with_constructor(duration_histogram as fn() -> Histogram);
         registry.register(
             "http_request_duration_seconds",
             "Time until a request was answered",
             seconds.clone(),
         );
-        Self { registry, requests, seconds, measured: Measured::default() }
+        Self { registry, requests, seconds, measured: ArchiveMetrics::default() }
     }
 }
 
-impl fmt::Debug for Metrics {
+impl fmt::Debug for ServerMetrics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Metrics").finish_non_exhaustive()
     }
 }
 
-fn histogram() -> Histogram {
+fn duration_histogram() -> Histogram {
     Histogram::new(SECONDS)
 }
 
-impl Metrics {
+impl ServerMetrics {
     /// Counts an answer. `route` is the path pattern of the router, so that ids do not create new
     /// labels.
-    pub fn answered(&self, method: &Method, route: &str, status: StatusCode, elapsed: Duration) {
-        let method = named(method);
+    pub fn count_answer(
+        &self,
+        method: &Method,
+        route: &str,
+        status: StatusCode,
+        elapsed: Duration,
+    ) {
+        let method = method_label(method);
         // The status is a label of the counter only; with it the histogram would have too many
         // series.
-        let labels = Answered { method, route: route.to_owned(), status: status.as_u16() };
+        let labels = AnswerLabels { method, route: route.to_owned(), status: status.as_u16() };
         self.requests.get_or_create(&labels).inc();
         self.seconds
-            .get_or_create(&Route { method, route: labels.route })
+            .get_or_create(&RouteLabels { method, route: labels.route })
             .observe(elapsed.as_secs_f64());
     }
 
     /// Returns all metrics as text, including those read from the archive.
     pub async fn scrape(&self, archive: &Archive) -> Result<String> {
-        let now = self.measured.registry(archive).await?;
+        let now = self.measured.current_registry(archive).await?;
         let mut text = String::new();
         // Writing to a string does not fail.
         let _ = encode_registry(&mut text, &self.registry);
@@ -100,7 +106,7 @@ impl Metrics {
 }
 
 /// Returns the label of a method; unknown methods share one, so that a caller cannot create labels.
-fn named(method: &Method) -> &'static str {
+fn method_label(method: &Method) -> &'static str {
     match *method {
         Method::GET => "GET",
         Method::HEAD => "HEAD",
@@ -118,11 +124,16 @@ mod tests {
 
     #[test]
     fn answers_are_counted_by_route_and_status() {
-        let metrics = Metrics::default();
+        let metrics = ServerMetrics::default();
         for status in [StatusCode::OK, StatusCode::OK, StatusCode::NOT_FOUND] {
-            metrics.answered(&Method::GET, "/v1/ships/{ship}", status, Duration::from_millis(3));
+            metrics.count_answer(
+                &Method::GET,
+                "/v1/ships/{ship}",
+                status,
+                Duration::from_millis(3),
+            );
         }
-        metrics.answered(
+        metrics.count_answer(
             &Method::from_bytes(b"BREW").unwrap(),
             "none",
             StatusCode::NOT_FOUND,

@@ -12,10 +12,10 @@ use sistership_store::StoreError;
 use sistership_trials::Refusal;
 
 use super::{Fault, Problem};
-use sistership_jobs::budget::Shortage;
+use sistership_jobs::budget::MemoryShortage;
 use sistership_jobs::error::DeriveError;
 use sistership_jobs::fleet::OrderError;
-use sistership_jobs::predictions::PredictError;
+use sistership_jobs::predictions::PredictionError;
 
 impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
@@ -74,13 +74,13 @@ impl From<Vec<Refusal>> for Problem {
             names.join(", ")
         );
         let errors = refusals.iter().flat_map(|refusal| {
-            refusal.findings.iter().map(|finding| fault(&refusal.file, finding))
+            refusal.findings.iter().map(|finding| finding_fault(&refusal.file, finding))
         });
         Self { errors: errors.collect(), ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, detail) }
     }
 }
 
-fn fault(file: &str, finding: &Finding) -> Fault {
+fn finding_fault(file: &str, finding: &Finding) -> Fault {
     Fault {
         field: Some(file.to_owned()),
         row: finding.row,
@@ -121,28 +121,28 @@ impl From<PageError> for Problem {
     }
 }
 
-impl From<PredictError> for Problem {
-    fn from(error: PredictError) -> Self {
+impl From<PredictionError> for Problem {
+    fn from(error: PredictionError) -> Self {
         match error {
-            PredictError::Field { field, message } => Self::invalid(&field, message),
-            PredictError::Memory(shortage) => shortage.into(),
-            PredictError::NoSession(_) => Self::not_found(error.to_string()),
-            PredictError::ManySessions { .. } => {
+            PredictionError::Field { field, message } => Self::invalid(&field, message),
+            PredictionError::Memory(shortage) => shortage.into(),
+            PredictionError::NoSession(_) => Self::not_found(error.to_string()),
+            PredictionError::ManySessions { .. } => {
                 Self::new(StatusCode::TOO_MANY_REQUESTS, error.to_string())
             }
-            PredictError::SessionBusy => Self::new(StatusCode::CONFLICT, error.to_string()),
-            PredictError::Answer(error) => Self::internal(error),
+            PredictionError::SessionBusy => Self::new(StatusCode::CONFLICT, error.to_string()),
+            PredictionError::Answer(error) => Self::internal(error),
         }
     }
 }
 
-impl From<Shortage> for Problem {
-    fn from(shortage: Shortage) -> Self {
+impl From<MemoryShortage> for Problem {
+    fn from(shortage: MemoryShortage) -> Self {
         match &shortage {
-            Shortage::Never { .. } => {
+            MemoryShortage::Never { .. } => {
                 Self::new(StatusCode::PAYLOAD_TOO_LARGE, format!("{shortage}; send less at a time"))
             }
-            Shortage::Busy { .. } => Self::new(
+            MemoryShortage::Busy { .. } => Self::new(
                 StatusCode::TOO_MANY_REQUESTS,
                 format!("{shortage}; try again in some seconds, or with less"),
             ),
@@ -165,13 +165,14 @@ impl From<QueryRejection> for Problem {
         // The prefix of the library is removed; the rest names the parameter.
         let text = rejection.body_text();
         let message = text.strip_prefix("Failed to deserialize query string: ").unwrap_or(&text);
-        Self::bad_request(format!("query: {message}")).with(Fault::at(parameter(message), message))
+        Self::bad_request(format!("query: {message}"))
+            .with_fault(Fault::at_field(parameter_name(message), message))
     }
 }
 
 /// Returns the parameter that a message is about: `limit: invalid digit`, or "unknown field `limt`,
 /// expected ...".
-fn parameter(message: &str) -> &str {
+fn parameter_name(message: &str) -> &str {
     let quoted = message.split('`').nth(1);
     let before = message.split_once(": ").map(|(name, _)| name).filter(|name| !name.contains(' '));
     before.or(quoted).unwrap_or("query")
@@ -189,7 +190,7 @@ impl From<PathRejection> for Problem {
         match failed.kind() {
             ErrorKind::DeserializeError { key, value, message } => {
                 Self::not_found(format!("{key}: there is no `{value}`: it {message}"))
-                    .with(Fault::at(key, message))
+                    .with_fault(Fault::at_field(key, message))
             }
             other => Self::not_found(format!("there is nothing under this path: {other}")),
         }
@@ -239,25 +240,31 @@ mod tests {
 
     #[test]
     fn the_wrong_parameter_is_named() {
-        assert_eq!(parameter("limit: invalid digit found in string"), "limit");
-        assert_eq!(parameter("unknown field `limt`, expected one of `limit`, `after`"), "limt");
-        assert_eq!(parameter("missing field `ship`"), "ship");
-        assert_eq!(parameter("something else"), "query");
+        assert_eq!(parameter_name("limit: invalid digit found in string"), "limit");
+        assert_eq!(
+            parameter_name("unknown field `limt`, expected one of `limit`, `after`"),
+            "limt"
+        );
+        assert_eq!(parameter_name("missing field `ship`"), "ship");
+        assert_eq!(parameter_name("something else"), "query");
     }
 
     #[test]
     fn what_fits_later_is_told_from_what_never_fits() {
         let setting = "--request-memory-mb";
-        assert_eq!(Problem::from(Shortage::Never { needed: 2, bytes: 1, setting }).status, 413);
         assert_eq!(
-            Problem::from(Shortage::Busy { needed: 2, free: 1, bytes: 3, setting }).status,
+            Problem::from(MemoryShortage::Never { needed: 2, bytes: 1, setting }).status,
+            413
+        );
+        assert_eq!(
+            Problem::from(MemoryShortage::Busy { needed: 2, free: 1, bytes: 3, setting }).status,
             429
         );
     }
 
     #[test]
     fn a_full_disk_is_no_failure_of_the_server() {
-        let problem = Problem::from(StoreError::no_room());
+        let problem = Problem::from(StoreError::out_of_space());
         assert_eq!((problem.status, problem.kind), (507, "urn:sistership:problem:no-room"));
         assert!(problem.detail.contains("no room"), "{}", problem.detail);
     }

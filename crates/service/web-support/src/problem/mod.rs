@@ -119,7 +119,7 @@ impl Problem {
         let problem = Self::new(StatusCode::UNPROCESSABLE_ENTITY, detail);
         faults
             .into_iter()
-            .fold(problem, |all, (field, message)| all.with(Fault::at(field, message)))
+            .fold(problem, |all, (field, message)| all.with_fault(Fault::at_field(field, message)))
     }
 
     /// Creates the problem of an internal failure; the reason is logged, not answered.
@@ -141,13 +141,13 @@ impl Problem {
 
     /// Adds a fault.
     #[must_use]
-    pub fn with(mut self, fault: Fault) -> Self {
+    pub fn with_fault(mut self, fault: Fault) -> Self {
         self.errors.push(fault);
         self
     }
 
     /// Renders the problem as an HTML page.
-    pub fn page(&self) -> Option<String> {
+    pub fn to_page(&self) -> Option<String> {
         let place = |fault: &Fault| {
             let row = fault.row.map(|row| format!("row {row}"));
             let parts = [fault.field.clone(), row, fault.column.clone()];
@@ -155,7 +155,7 @@ impl Problem {
         };
         let faults: Vec<_> = self.errors.iter().map(place).collect();
         let instance = self.instance.as_deref().unwrap_or_default();
-        sistership_pages::problem(self.title, &self.detail, &faults, instance).ok()
+        sistership_pages::problem_page(self.title, &self.detail, &faults, instance).ok()
     }
 
     /// HTTP status.
@@ -166,7 +166,7 @@ impl Problem {
 
 impl Fault {
     /// Creates a fault of a field.
-    pub fn at(field: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn at_field(field: impl Into<String>, message: impl Into<String>) -> Self {
         Self { field: Some(field.into()), message: message.into(), ..Self::default() }
     }
 }

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use sistership_trials::{ManifestFile, Mapping, SensorFile, Source};
+use sistership_trials::{ManifestFile, Mapping, SensorFile, TrialFile};
 
 /// One trial of an upload.
-pub struct Arrived {
+pub struct UploadedTrial {
     /// Manifest of this trial alone.
     pub manifest: ManifestFile,
     /// Name.
@@ -18,12 +18,12 @@ pub struct Arrived {
     pub sensors: Vec<(SensorFile, PathBuf)>,
 }
 
-impl Arrived {
+impl UploadedTrial {
     /// Opens the files of the trial.
     ///
     /// # Errors
     /// Returns an error if one of them cannot be opened.
-    pub fn open(&self) -> std::io::Result<Source<'static>> {
-        Source::open_trial(&self.name, &self.path, &self.mapping, &self.sensors)
+    pub fn open(&self) -> std::io::Result<TrialFile<'static>> {
+        TrialFile::open_trial(&self.name, &self.path, &self.mapping, &self.sensors)
     }
 }

@@ -7,47 +7,47 @@ use sistership_model::manifest::ManifestTrial;
 use sistership_trials::{ManifestFile, read_manifest_file};
 
 use super::place::UploadPlace;
-use super::received::{Upload, canonical};
-use crate::payload::read_yaml;
+use super::received::{TrialUpload, canonical_manifest};
+use crate::payload::reserve_yaml_memory;
 use crate::problem::{Fault, Problem, Result};
-use crate::spool::{Spooled, spool};
+use crate::spool::{SpooledFile, spool_stream};
 use sistership_jobs::budget;
 
 /// Received parts of a form.
 #[derive(Default)]
-struct Parts {
+struct FormParts {
     manifest: Option<String>,
     ship: Option<String>,
-    files: Vec<Part>,
+    files: Vec<FormPart>,
 }
 
-struct Part {
+struct FormPart {
     field: String,
     name: String,
-    file: Spooled,
+    file: SpooledFile,
 }
 
-pub(super) async fn receive(request: Request, place: &UploadPlace) -> Result<Upload> {
+pub(super) async fn receive_form(request: Request, place: &UploadPlace) -> Result<TrialUpload> {
     let form = Multipart::from_request(request, &()).await;
     let mut form = form.map_err(|error| {
         Problem::bad_request(format!("the form cannot be read: {}", error.body_text()))
     })?;
-    let mut parts = Parts::default();
+    let mut parts = FormParts::default();
     while let Some(field) = form.next_field().await? {
-        parts.take(field, place).await?;
+        parts.take_field(field, place).await?;
     }
     // Either a manifest that names the ship, or the name of the ship and files with canonical
     // columns.
     match (parts.manifest.take(), parts.ship.take()) {
         (Some(manifest), None) => {
-            let manifest = read(&manifest).await?;
+            let manifest = parse_manifest(&manifest).await?;
             if manifest.manifest.ship.is_empty() {
                 let message = "the manifest names no ship; add `ship:`";
                 return Err(Problem::invalid("manifest", message));
             }
-            parts.listed(manifest)
+            parts.match_manifest(manifest)
         }
-        (None, Some(ship)) => parts.canonical(ship),
+        (None, Some(ship)) => parts.into_canonical(ship),
         (Some(_), Some(_)) => {
             Err(Problem::invalid("ship", "the manifest names the ship; leave the part `ship` out"))
         }
@@ -58,32 +58,35 @@ pub(super) async fn receive(request: Request, place: &UploadPlace) -> Result<Upl
     }
 }
 
-async fn read(manifest: &str) -> Result<ManifestFile> {
-    read_yaml(manifest.len()).await?;
+async fn parse_manifest(manifest: &str) -> Result<ManifestFile> {
+    reserve_yaml_memory(manifest.len()).await?;
     Ok(read_manifest_file("manifest", manifest)?)
 }
 
-impl Upload {
+impl TrialUpload {
     /// Creates an upload from files by name and the manifest that lists them.
     ///
     /// # Errors
     /// Returns an error if a file is missing, or is not listed.
-    pub fn listed(manifest: ManifestFile, files: Vec<(String, Spooled)>) -> Result<Self> {
-        let part = |(name, file): (String, Spooled)| Part { field: name.clone(), name, file };
+    pub fn from_listed(manifest: ManifestFile, files: Vec<(String, SpooledFile)>) -> Result<Self> {
+        let part =
+            |(name, file): (String, SpooledFile)| FormPart { field: name.clone(), name, file };
         let files = files.into_iter().map(part).collect();
-        Parts { files, ..Parts::default() }.listed(manifest)
+        FormParts { files, ..FormParts::default() }.match_manifest(manifest)
     }
 }
 
-impl Parts {
-    async fn take(&mut self, field: Field<'_>, place: &UploadPlace) -> Result<()> {
+impl FormParts {
+    async fn take_field(&mut self, field: Field<'_>, place: &UploadPlace) -> Result<()> {
         let name = field.name().unwrap_or_default().to_owned();
         match (name.as_str(), field.file_name().map(str::to_owned)) {
-            ("manifest", _) => set(&mut self.manifest, "manifest", text(field, place).await?),
-            ("ship", None) => {
-                set(&mut self.ship, "ship", text(field, place).await?.trim().to_owned())
+            ("manifest", _) => {
+                set_once(&mut self.manifest, "manifest", read_text(field, place).await?)
             }
-            (_, Some(file_name)) => self.file(name, file_name, field, place).await,
+            ("ship", None) => {
+                set_once(&mut self.ship, "ship", read_text(field, place).await?.trim().to_owned())
+            }
+            (_, Some(file_name)) => self.take_file(name, file_name, field, place).await,
             (other, None) => Err(Problem::invalid(
                 other,
                 "is not known here: parts are `manifest`, `ship`, and files with a filename",
@@ -91,7 +94,7 @@ impl Parts {
         }
     }
 
-    async fn file(
+    async fn take_file(
         &mut self,
         field: String,
         name: String,
@@ -105,19 +108,19 @@ impl Parts {
                 format!("an upload has at most {most} files; send several uploads"),
             ));
         }
-        self.files.push(Part { field, name, file: spool(&place.spool, content).await? });
+        self.files.push(FormPart { field, name, file: spool_stream(&place.spool, content).await? });
         Ok(())
     }
 
     /// Matches the files with the manifest; each listed file must be present, and no other.
-    fn listed(mut self, manifest: ManifestFile) -> Result<Upload> {
+    fn match_manifest(mut self, manifest: ManifestFile) -> Result<TrialUpload> {
         let (mut files, mut names, mut places) = (Vec::new(), Vec::new(), Vec::new());
         // Several trials may share a file; the index refers to `files` of the upload.
         let mut place = |parts: &mut Self, field: String, name: &str| -> Result<usize> {
             if let Some(known) = names.iter().position(|known| known == name) {
                 return Ok(known);
             }
-            let found = parts.find(name).ok_or_else(|| parts.missing(field, name))?;
+            let found = parts.find_file(name).ok_or_else(|| parts.missing_file(field, name))?;
             files.push(parts.files.swap_remove(found).file);
             names.push(name.to_owned());
             Ok(files.len() - 1)
@@ -135,13 +138,13 @@ impl Parts {
                 &extra.name,
                 "is not listed under `trials` of the manifest; list it or leave it out",
             )),
-            None => Ok(Upload { manifest, diagnose: true, files, places }),
+            None => Ok(TrialUpload { manifest, diagnose: true, files, places }),
         }
     }
 
     /// Finds a file by its whole path, else by its name alone if it is unique: many programs send
     /// no more than the name.
-    fn find(&self, path: &str) -> Option<usize> {
+    fn find_file(&self, path: &str) -> Option<usize> {
         let exact = self.files.iter().position(|part| part.name == path || part.field == path);
         let base = |path: &str| path.rsplit('/').next().map(str::to_owned);
         let mut alike = self
@@ -153,7 +156,7 @@ impl Parts {
         exact.or_else(|| alike.next().filter(|_| alike.next().is_none()))
     }
 
-    fn missing(&self, field: String, path: &str) -> Problem {
+    fn missing_file(&self, field: String, path: &str) -> Problem {
         let sent: Vec<&str> = self.files.iter().map(|part| part.name.as_str()).collect();
         let sent = if sent.is_empty() {
             "none is left".to_owned()
@@ -162,20 +165,24 @@ impl Parts {
         };
         let message = format!("the manifest lists `{path}`, but no part has that filename; {sent}");
         Problem::new(StatusCode::UNPROCESSABLE_ENTITY, message.clone())
-            .with(Fault::at(field, message))
+            .with_fault(Fault::at_field(field, message))
     }
 
-    fn canonical(self, ship: String) -> Result<Upload> {
+    fn into_canonical(self, ship: String) -> Result<TrialUpload> {
         if self.files.is_empty() {
             return Err(Problem::invalid("file", "send at least one part with a filename"));
         }
-        let trial = |part: &Part| ManifestTrial::of(part.name.clone());
-        let manifest = canonical(ship, self.files.iter().map(trial).collect())?;
-        Ok(Upload::of(manifest, true, self.files.into_iter().map(|part| part.file).collect()))
+        let trial = |part: &FormPart| ManifestTrial::from_file_name(part.name.clone());
+        let manifest = canonical_manifest(ship, self.files.iter().map(trial).collect())?;
+        Ok(TrialUpload::from_files(
+            manifest,
+            true,
+            self.files.into_iter().map(|part| part.file).collect(),
+        ))
     }
 }
 
-fn set(place: &mut Option<String>, name: &str, text: String) -> Result<()> {
+fn set_once(place: &mut Option<String>, name: &str, text: String) -> Result<()> {
     match place.replace(text) {
         Some(_) => Err(Problem::invalid(name, "is sent twice")),
         None => Ok(()),
@@ -183,11 +190,11 @@ fn set(place: &mut Option<String>, name: &str, text: String) -> Result<()> {
 }
 
 /// Reads a part that is a short text.
-async fn text(mut field: Field<'_>, place: &UploadPlace) -> Result<String> {
+async fn read_text(mut field: Field<'_>, place: &UploadPlace) -> Result<String> {
     let mut bytes = Vec::new();
     while let Some(chunk) = field.chunk().await? {
         // Twice the size, because the buffer grows by doubling.
-        budget::take(2 * chunk.len() as u64).await?;
+        budget::reserve_for_request(2 * chunk.len() as u64).await?;
         bytes.extend_from_slice(&chunk);
         if bytes.len() > place.yaml_bytes {
             return Err(Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "the manifest is too large"));

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::spool::Spool;
+use crate::spool::SpoolFolder;
 
 /// Storage of uploads until they have been read, and their limits.
 #[derive(Debug, Clone)]
 pub struct UploadPlace {
     /// Spool of the files.
-    pub spool: Arc<Spool>,
+    pub spool: Arc<SpoolFolder>,
     /// Maximum number of files of one upload.
     pub files: usize,
     /// Maximum size of the manifest, bytes.

@@ -9,10 +9,10 @@ use sistership_model::manifest::ManifestTrial;
 use utoipa::IntoParams;
 
 use super::place::UploadPlace;
-use super::received::{Upload, canonical};
+use super::received::{TrialUpload, canonical_manifest};
 use crate::field::{FileName, Name, Positive, Remark};
 use crate::problem::{Problem, Result};
-use crate::spool::spool;
+use crate::spool::spool_stream;
 
 /// Default name of a trial.
 const UNNAMED: &str = "trial";
@@ -39,22 +39,22 @@ pub struct RawQuery {
     pub diagnose: Option<bool>,
 }
 
-pub(super) async fn receive(mut request: Request, place: &UploadPlace) -> Result<Upload> {
+pub(super) async fn receive_file(mut request: Request, place: &UploadPlace) -> Result<TrialUpload> {
     let Query(query) = request.extract_parts::<Query<RawQuery>>().await?;
     let RawQuery { ship, name, manoeuvre, depth_m, diagnose } = query;
     let file = name.map_or_else(|| UNNAMED.to_owned(), FileName::into_string);
     let (manoeuvre, depth_m) = (manoeuvre.map(Remark::into_string), depth_m.map(Positive::get));
-    let manifest = canonical(
+    let manifest = canonical_manifest(
         ship.into_string(),
-        vec![ManifestTrial { manoeuvre, depth_m, ..ManifestTrial::of(file) }],
+        vec![ManifestTrial { manoeuvre, depth_m, ..ManifestTrial::from_file_name(file) }],
     )?;
-    let stream = request.with_limited_body().into_body().into_data_stream().map_err(interrupted);
-    let files = vec![spool(&place.spool, stream).await?];
-    Ok(Upload::of(manifest, diagnose.unwrap_or(true), files))
+    let stream = request.with_limited_body().into_body().into_data_stream().map_err(body_problem);
+    let files = vec![spool_stream(&place.spool, stream).await?];
+    Ok(TrialUpload::from_files(manifest, diagnose.unwrap_or(true), files))
 }
 
 /// Returns the problem of a body that is too large or broke off.
-fn interrupted(error: axum::Error) -> Problem {
+fn body_problem(error: axum::Error) -> Problem {
     let text = error.to_string();
     match text.contains("length limit") {
         true => Problem::new(

@@ -3,28 +3,28 @@
 use sistership_model::manifest::{Manifest, ManifestTrial, TrialConventions, TrialsKind};
 use sistership_trials::ManifestFile;
 
-use super::arrived::Arrived;
+use super::arrived::UploadedTrial;
 use crate::problem::{Problem, Result};
-use crate::spool::Spooled;
+use crate::spool::SpooledFile;
 
 /// Maximum length of the name of a file, bytes.
 const NAME_BYTES: usize = 200;
 
 /// A received upload: a manifest and the files that it lists.
 #[derive(Debug)]
-pub struct Upload {
+pub struct TrialUpload {
     /// Manifest of the files.
     pub manifest: ManifestFile,
     /// True if the ship's champion is to be diagnosed on the trials.
     pub diagnose: bool,
-    pub(super) files: Vec<Spooled>,
+    pub(super) files: Vec<SpooledFile>,
     /// Index of the file of each trial in `files`, and of the files of its sensors.
     pub(super) places: Vec<(usize, Vec<usize>)>,
 }
 
-impl Upload {
+impl TrialUpload {
     /// Creates an upload of files each of which is a trial, in the order of the manifest.
-    pub(super) fn of(manifest: Manifest, diagnose: bool, files: Vec<Spooled>) -> Self {
+    pub(super) fn from_files(manifest: Manifest, diagnose: bool, files: Vec<SpooledFile>) -> Self {
         // One file for each trial, and no sensors.
         let places = (0..files.len()).map(|file| (file, Vec::new())).collect();
         Self { manifest: manifest.into(), diagnose, files, places }
@@ -36,14 +36,14 @@ impl Upload {
     }
 
     /// Iterates over the trials; their files exist as long as the upload.
-    pub fn trials(&self) -> impl Iterator<Item = Arrived> {
+    pub fn trials(&self) -> impl Iterator<Item = UploadedTrial> {
         let path = |file: usize| self.files[file].path.to_path_buf();
         let manifest = &self.manifest;
         let each = manifest.manifest.trials.iter().zip(&manifest.sensors).zip(&self.places);
-        each.enumerate().map(move |(index, ((entry, sensors), (file, others)))| Arrived {
-            manifest: manifest.only(index),
-            name: entry.label(),
-            mapping: manifest.mapping(entry),
+        each.enumerate().map(move |(index, ((entry, sensors), (file, others)))| UploadedTrial {
+            manifest: manifest.only_trial(index),
+            name: entry.trial_label(),
+            mapping: manifest.trial_mapping(entry),
             path: path(*file),
             sensors: sensors.iter().cloned().zip(others.iter().map(|&other| path(other))).collect(),
         })
@@ -62,7 +62,7 @@ impl Upload {
 }
 
 /// Returns the manifest of files with canonical columns.
-pub(super) fn canonical(ship: String, trials: Vec<ManifestTrial>) -> Result<Manifest> {
+pub(super) fn canonical_manifest(ship: String, trials: Vec<ManifestTrial>) -> Result<Manifest> {
     for trial in &trials {
         let name = &trial.file;
         if name.is_empty() || name.len() > NAME_BYTES || name.chars().any(char::is_control) {

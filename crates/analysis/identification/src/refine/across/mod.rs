@@ -18,37 +18,37 @@ use sistership_model::{Model, Vessel};
 use super::envelope::OperatingEnvelope;
 use super::outcome::RefineError;
 pub(super) use plane_source::PlaneSource;
-use sistership_priors::transfer::{Approach, blank_of, transfer};
+use sistership_priors::transfer::{TrialApproach, blank_from_source, transfer_model};
 pub use source_envelopes::SourceEnvelopes;
 pub(super) use source_regression::SourceRegression;
 
 /// Returns a source transferred to a ship by its own law; unchanged if it is a model of that ship.
-pub(super) fn carried_over(
+pub(super) fn transfer_source(
     (source, own): (&Model, &Law),
     target: &Vessel,
-    approach: Option<Approach>,
+    approach: Option<TrialApproach>,
 ) -> Model {
     if source.ship == target.name() {
         return source.clone();
     }
-    transfer(source, own, target, approach)
+    transfer_model(source, own, target, approach)
 }
 
 /// Returns a model of the fitted law without coefficients, and the envelope of a source that is
 /// transferred to the target by its own law.
-pub(super) fn begun(
+pub(super) fn blank_with_envelope(
     (source, own): (&Model, &Law),
     law: &Law,
     target: &Vessel,
-    approach: Option<Approach>,
+    approach: Option<TrialApproach>,
     (trials, known): (&[&Trial], &SourceEnvelopes),
 ) -> Result<(Model, Arc<OperatingEnvelope>), RefineError> {
-    let carried = carried_over((source, own), target, approach);
-    let envelope = known.of((source, own), || {
+    let carried = transfer_source((source, own), target, approach);
+    let envelope = known.source_envelope((source, own), || {
         let envelope = OperatingEnvelope::new(&carried, own, trials)?;
         Ok(OperatingEnvelope { source: source.name.clone(), ..envelope })
     })?;
-    let mut model = blank_of(law, target, &carried, approach)?;
+    let mut model = blank_from_source(law, target, &carried, approach)?;
     // Approach and steering gear are properties of the ship, whatever the law.
     (model.speed_m_s, model.revolutions_rps) = (carried.speed_m_s, carried.revolutions_rps);
     model.steering = carried.steering;
@@ -61,21 +61,25 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use sistership_model::Zoo;
 
-    use crate::refine::{Method, Refinement, Request, Settings, refine};
-    use crate::testing::trials;
+    use crate::refine::{EstimationMethod, Refinement, RefinementSettings, RefinementSpec, refine};
+    use crate::testing::simulated_trials;
 
     /// The Mariner, which does not roll, as the source of a container ship that does.
     fn by_the_mariner(hydrostatic_roll: bool) -> Refinement {
-        by("mariner", Settings { hydrostatic_roll, ..Settings::default() })
+        by("mariner", RefinementSettings { hydrostatic_roll, ..RefinementSettings::default() })
     }
 
-    fn by(source: &str, settings: Settings) -> Refinement {
-        let zoo = Zoo::embedded().unwrap();
-        let [truth, source] = ["sr108", source].map(|name| zoo.model(name).unwrap());
+    fn by(source: &str, settings: RefinementSettings) -> Refinement {
+        let zoo = Zoo::load_embedded().unwrap();
+        let [truth, source] = ["sr108", source].map(|name| zoo.find_model(name).unwrap());
         let law = |name: &str| zoo.law(name).unwrap();
-        let trials = trials(&truth, law(&truth.law), 0.001);
-        let settings = Settings { method: Method::Weak, strengths: vec![1e-3, 1e-4], ..settings };
-        let request = Request {
+        let trials = simulated_trials(&truth, law(&truth.law), 0.001);
+        let settings = RefinementSettings {
+            method: EstimationMethod::Weak,
+            strengths: vec![1e-3, 1e-4],
+            ..settings
+        };
+        let request = RefinementSpec {
             target: zoo.vessel("sr108").unwrap(),
             source: &source,
             source_law: Some(law(&source.law)),
@@ -96,9 +100,10 @@ mod tests {
 
     #[test]
     fn a_source_of_the_plane_turns_the_ship_and_hydrostatics_roll_it() {
-        let alone = by("kcs", Settings::default()).transferred;
+        let alone = by("kcs", RefinementSettings::default()).transferred;
         assert!(alone.coefficients.is_empty(), "surge, sway and yaw are not asked");
-        let made = by("kcs", Settings { plane_source: true, ..Settings::default() });
+        let made =
+            by("kcs", RefinementSettings { plane_source: true, ..RefinementSettings::default() });
         let begun = &made.transferred;
         assert!(begun.coefficient("Y_v") < 0.0 && begun.coefficient("N_delta") != 0.0);
         assert!(begun.coefficient("K_heel") < 0.0 && !begun.coefficients.contains_key("K_v"));
@@ -110,8 +115,8 @@ mod tests {
 
     #[test]
     fn what_the_plane_does_not_say_is_held_where_it_is() {
-        let weak = Settings { plane_source: true, ..Settings::default() };
-        let strong = Settings { roll_strength: Some(1e12), ..weak.clone() };
+        let weak = RefinementSettings { plane_source: true, ..RefinementSettings::default() };
+        let strong = RefinementSettings { roll_strength: Some(1e12), ..weak.clone() };
         let moved = |settings| {
             let made = by("kcs", settings);
             let rolls = made.model.coefficients.keys().filter(|name| name.starts_with("K_"));

@@ -13,10 +13,10 @@ use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::Trial;
-use sistership_numerics::{Moments, merged};
-use sistership_priors::rolling::hydrostatics;
+use sistership_numerics::{RegressionMoments, merge_trials};
+use sistership_priors::rolling::hydrostatic_coefficients;
 
-use super::super::blocks::{Block, Blocks};
+use super::super::blocks::{RegressionBlock, RegressionBlocks};
 use super::super::envelope::OperatingEnvelope;
 use super::super::family::terms_without_heel;
 use super::super::outcome::RefineError;
@@ -36,7 +36,7 @@ impl PlaneSource {
     ///
     /// # Errors
     /// Returns an error if the law has an input that the trials do not record.
-    pub fn begin(
+    pub fn from_upright(
         upright: Arc<OperatingEnvelope>,
         model: &mut Model,
         law: &Law,
@@ -46,10 +46,10 @@ impl PlaneSource {
             let zero = |name| (name, Quantity::new(0.0, "term added"));
             model.coefficients.extend(terms_without_heel(law).into_iter().map(zero));
         }
-        let blocks = Blocks::new(model, law)?;
-        SourceRegression::of_plane(&upright, &blocks, model)?.fill(&blocks, model);
+        let blocks = RegressionBlocks::new(model, law)?;
+        SourceRegression::new_upright(&upright, &blocks, model)?.set_coefficients(&blocks, model);
         // Only now: the regression must not assign upright accelerations to terms of heel.
-        model.coefficients.extend(hydrostatics(model, law).into_iter().flatten());
+        model.coefficients.extend(hydrostatic_coefficients(model, law).into_iter().flatten());
         let sailed = OperatingEnvelope::new(model, law, trials).ok();
         Ok(Self { upright, sailed })
     }
@@ -58,47 +58,59 @@ impl PlaneSource {
     ///
     /// # Errors
     /// Returns an error if the law has an input that the trials do not record.
-    pub fn hold(
+    pub fn apply_to(
         &self,
-        blocks: &mut Blocks,
+        blocks: &mut RegressionBlocks,
         model: &mut Model,
-        trials: &[Moments],
+        trials: &[RegressionMoments],
     ) -> Result<(), RefineError> {
-        let upright = SourceRegression::of_plane(&self.upright, blocks, model)?;
-        upright.fill(blocks, model);
-        upright.hold(blocks, trials);
-        let said = upright.together();
+        let upright = SourceRegression::new_upright(&self.upright, blocks, model)?;
+        upright.set_coefficients(blocks, model);
+        upright.set_precision(blocks, trials);
+        let said = upright.merged_moments();
         let sailed = match &self.sailed {
-            Some(sailed) => merged(&sailed.moments(blocks)?, |_| true).unwrap_or_default(),
+            Some(sailed) => {
+                merge_trials(&sailed.group_moments(blocks)?, |_| true).unwrap_or_default()
+            }
             None => trials.to_vec(),
         };
         let of_blocks = blocks.blocks.iter_mut().zip(&said).zip(&sailed).zip(trials);
         for (((block, said), sailed), trials) in of_blocks {
-            block.precision = Some(unsaid_by_size(block, said, &block.sizes(sailed, trials)));
+            block.precision =
+                Some(precision_with_sizes(block, said, &block.regressor_sizes(sailed, trials)));
         }
         Ok(())
     }
 
     /// Description for reports.
-    pub fn words(&self, blocks: &Blocks, model: &Model, law: &Law) -> Option<String> {
-        let upright = SourceRegression::of_plane(&self.upright, blocks, model).ok()?;
+    pub fn describe_source(
+        &self,
+        blocks: &RegressionBlocks,
+        model: &Model,
+        law: &Law,
+    ) -> Option<String> {
+        let upright = SourceRegression::new_upright(&self.upright, blocks, model).ok()?;
         Some(format!(
             "{}; that is of a ship that stays upright, and terms of the heel are held at \
              zero by their size in the manoeuvres that the prior sails",
-            upright.words(blocks, &law.name)
+            upright.describe_source(blocks, &law.name)
         ))
     }
 }
 
 /// The precision of a regression, in which terms without information from the source are measured
 /// each by its size.
-fn unsaid_by_size(block: &Block, said: &Moments, sizes: &DVector<f64>) -> DMatrix<f64> {
+fn precision_with_sizes(
+    block: &RegressionBlock,
+    said: &RegressionMoments,
+    sizes: &DVector<f64>,
+) -> DMatrix<f64> {
     let Some(mut precision) = block.precision.clone() else {
         return DMatrix::from_diagonal(sizes);
     };
     let squares = said.raw_products().diagonal();
     // A regressor that is zero at every upright state is one of the heel.
-    for place in (0..block.regressors()).filter(|place| squares[*place] == 0.0) {
+    for place in (0..block.regressor_count()).filter(|place| squares[*place] == 0.0) {
         precision.row_mut(place).fill(0.0);
         precision.column_mut(place).fill(0.0);
         precision[(place, place)] = sizes[place];

@@ -13,13 +13,13 @@ use crate::refine::outcome::RefineError;
 /// the same trials of the same ship, and may be shared only among those.
 #[derive(Debug, Default)]
 pub struct SourceEnvelopes {
-    envelopes: Kept<OperatingEnvelope>,
+    envelopes: SharedCache<OperatingEnvelope>,
     /// Accelerations of the ships of a population at the states of a source's envelope.
-    populations: Kept<Vec<MemberRates>>,
+    populations: SharedCache<Vec<MemberRates>>,
 }
 
 /// Values by the names of a source and its law.
-type Kept<T> = Mutex<BTreeMap<(String, String), Arc<T>>>;
+type SharedCache<T> = Mutex<BTreeMap<(String, String), Arc<T>>>;
 
 impl SourceEnvelopes {
     /// Returns the envelope of a source, computed on first use. Concurrent first uses all compute
@@ -27,12 +27,12 @@ impl SourceEnvelopes {
     ///
     /// # Errors
     /// Returns the error of `ask`.
-    pub(super) fn of(
+    pub(super) fn source_envelope(
         &self,
         (source, law): (&Model, &Law),
         ask: impl FnOnce() -> Result<OperatingEnvelope, RefineError>,
     ) -> Result<Arc<OperatingEnvelope>, RefineError> {
-        kept(&self.envelopes, (source.name.clone(), law.name.clone()), ask)
+        get_or_compute(&self.envelopes, (source.name.clone(), law.name.clone()), ask)
     }
 
     /// Returns the accelerations of a population at the states of a source's envelope, computed on
@@ -40,19 +40,19 @@ impl SourceEnvelopes {
     ///
     /// # Errors
     /// Returns the error of `ask`.
-    pub(in super::super) fn population(
+    pub(in super::super) fn population_rates(
         &self,
         envelope: &OperatingEnvelope,
         ask: impl FnOnce() -> Result<Vec<MemberRates>, RefineError>,
     ) -> Result<Arc<Vec<MemberRates>>, RefineError> {
-        kept(&self.populations, (envelope.source.clone(), envelope.law.clone()), ask)
+        get_or_compute(&self.populations, (envelope.source.clone(), envelope.law.clone()), ask)
     }
 }
 
 /// The cached value of a key, or that of `ask`, which is then cached. The lock is not held while
 /// `ask` runs.
-fn kept<T>(
-    known: &Kept<T>,
+fn get_or_compute<T>(
+    known: &SharedCache<T>,
     key: (String, String),
     ask: impl FnOnce() -> Result<T, RefineError>,
 ) -> Result<Arc<T>, RefineError> {
@@ -74,16 +74,18 @@ mod tests {
 
     #[test]
     fn a_source_is_asked_once() {
-        let zoo = Zoo::embedded().unwrap();
-        let model = zoo.model("mariner").unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let model = zoo.find_model("mariner").unwrap();
         let law = zoo.law(&model.law).unwrap();
         let known = SourceEnvelopes::default();
         let refused = || Err(RefineError::Data("nowhere".to_owned()));
-        assert!(known.of((&model, law), refused).is_err());
-        let first = known.of((&model, law), || OperatingEnvelope::new(&model, law, &[])).unwrap();
-        let again = known.of((&model, law), refused).unwrap();
+        assert!(known.source_envelope((&model, law), refused).is_err());
+        let first = known
+            .source_envelope((&model, law), || OperatingEnvelope::new(&model, law, &[]))
+            .unwrap();
+        let again = known.source_envelope((&model, law), refused).unwrap();
         assert!(Arc::ptr_eq(&first, &again));
         let other = Model { name: "another".to_owned(), ..model.clone() };
-        assert!(known.of((&other, law), refused).is_err());
+        assert!(known.source_envelope((&other, law), refused).is_err());
     }
 }

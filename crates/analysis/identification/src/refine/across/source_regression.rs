@@ -6,18 +6,18 @@ use sistership_model::Model;
 use sistership_model::coefficient::Axis;
 use sistership_model::quantity::Quantity;
 
-use super::super::blocks::{Block, Blocks};
+use super::super::blocks::{RegressionBlock, RegressionBlocks};
 use super::super::envelope::OperatingEnvelope;
 use super::super::outcome::RefineError;
-use super::super::ridge::{Choices, Fold, fit};
+use super::super::ridge::{RegressionFold, RidgeChoices, fit_regressions};
 use super::super::thresholds::SOURCE;
-use sistership_numerics::{Moments, RidgeChoice, merged};
+use sistership_numerics::{RegressionMoments, RidgeChoice, merge_trials};
 
 /// Statistics of a source's accelerations for the regressions of a law.
 pub(in super::super) struct SourceRegression<'a> {
     envelope: &'a OperatingEnvelope,
     /// Statistics by group and regression.
-    moments: Vec<Vec<Moments>>,
+    moments: Vec<Vec<RegressionMoments>>,
     /// Strength of the ridge about zero.
     ridge: f64,
     zero: Model,
@@ -34,10 +34,10 @@ impl<'a> SourceRegression<'a> {
     /// Returns an error if the law has an input that the trials do not record.
     pub fn new(
         envelope: &'a OperatingEnvelope,
-        blocks: &Blocks,
+        blocks: &RegressionBlocks,
         model: &Model,
     ) -> Result<Self, RefineError> {
-        Self::made(envelope, blocks, model, false)
+        Self::with_best_ridge(envelope, blocks, model, false)
     }
 
     /// As [`SourceRegression::new`], for a source that does not roll and determines sway and yaw of
@@ -45,22 +45,22 @@ impl<'a> SourceRegression<'a> {
     ///
     /// # Errors
     /// As [`SourceRegression::new`].
-    pub fn of_plane(
+    pub fn new_upright(
         envelope: &'a OperatingEnvelope,
-        blocks: &Blocks,
+        blocks: &RegressionBlocks,
         model: &Model,
     ) -> Result<Self, RefineError> {
-        Self::made(envelope, blocks, model, true)
+        Self::with_best_ridge(envelope, blocks, model, true)
     }
 
     /// The regressions, with the best of the ridges that are tried.
-    fn made(
+    fn with_best_ridge(
         envelope: &'a OperatingEnvelope,
-        blocks: &Blocks,
+        blocks: &RegressionBlocks,
         model: &Model,
         plane: bool,
     ) -> Result<Self, RefineError> {
-        let moments = envelope.moments(blocks)?;
+        let moments = envelope.group_moments(blocks)?;
         // The ridge is about zero, whatever the model's present values are.
         let mut zero = model.clone();
         zero.coefficients.values_mut().for_each(|quantity| quantity.value = 0.0);
@@ -74,30 +74,30 @@ impl<'a> SourceRegression<'a> {
     ///
     /// # Errors
     /// As [`SourceRegression::new`].
-    pub fn of<'b>(
+    pub fn for_envelope<'b>(
         &self,
         envelope: &'b OperatingEnvelope,
-        blocks: &Blocks,
+        blocks: &RegressionBlocks,
     ) -> Result<SourceRegression<'b>, RefineError> {
-        let (moments, zero) = (envelope.moments(blocks)?, self.zero.clone());
+        let (moments, zero) = (envelope.group_moments(blocks)?, self.zero.clone());
         Ok(SourceRegression { envelope, moments, zero, ..*self })
     }
 
     /// The strength of the ridge by which held-out groups are predicted best.
-    fn best_ridge(&self, blocks: &Blocks) -> f64 {
+    fn best_ridge(&self, blocks: &RegressionBlocks) -> f64 {
         // Groups (trials and manoeuvres) are held out together, not samples, which depend on each
         // other.
         let count = self.moments.len().min(SOURCE.folds);
-        let folds: Vec<Fold<'_>> = (0..count)
+        let folds: Vec<RegressionFold<'_>> = (0..count)
             .filter_map(|fold| {
-                let training = merged(&self.moments, |group| group % count != fold)?;
-                let left_out = merged(&self.moments, |group| group % count == fold)?;
-                Some(Fold::new(blocks, &self.zero, &training, &left_out))
+                let training = merge_trials(&self.moments, |group| group % count != fold)?;
+                let left_out = merge_trials(&self.moments, |group| group % count == fold)?;
+                Some(RegressionFold::new(blocks, &self.zero, &training, &left_out))
             })
             .collect();
-        let is_said = |axis: &Axis| !self.plane || self.says(*axis);
-        let of_fold = |fold: &Fold<'_>, ridge: f64| -> f64 {
-            let shares = fold.shares(ridge).into_iter();
+        let is_said = |axis: &Axis| !self.plane || self.covers_axis(*axis);
+        let of_fold = |fold: &RegressionFold<'_>, ridge: f64| -> f64 {
+            let shares = fold.error_shares(ridge).into_iter();
             shares.filter(|(axis, _)| is_said(axis)).map(|(_, share)| share).sum()
         };
         // Sum over folds and axes of the unexplained share of the mean square.
@@ -111,15 +111,20 @@ impl<'a> SourceRegression<'a> {
 
     /// Sets a model's coefficients, with standard errors, to those of the regression; axes that the
     /// source does not cover stay as they are.
-    pub fn fill(&self, blocks: &Blocks, model: &mut Model) {
+    pub fn set_coefficients(&self, blocks: &RegressionBlocks, model: &mut Model) {
         // All groups at once: the coefficients use every state.
-        let fitted = fit(blocks, &self.together(), &self.zero, &self.choices(blocks));
+        let fitted = fit_regressions(
+            blocks,
+            &self.merged_moments(),
+            &self.zero,
+            &self.ridge_choices(blocks),
+        );
         let known = blocks
             .blocks
             .iter()
-            .filter(|block| self.knows(block))
+            .filter(|block| self.covers_block(block))
             .flat_map(|block| block.axes.iter().zip(&block.names))
-            .filter(|(axis, _)| self.says(**axis))
+            .filter(|(axis, _)| self.covers_axis(**axis))
             .flat_map(|(_, names)| names);
         for name in known {
             let Some(fitted) = fitted.coefficients.get(name) else { continue };
@@ -135,31 +140,32 @@ impl<'a> SourceRegression<'a> {
     /// Gives the regressions of a law the precision that the source determines. Regressions that it
     /// does not cover keep none, so that their prior is measured by the deviations of their
     /// regressors.
-    pub fn hold(&self, blocks: &mut Blocks, trials: &[Moments]) {
-        let all = self.together();
+    pub fn set_precision(&self, blocks: &mut RegressionBlocks, trials: &[RegressionMoments]) {
+        let all = self.merged_moments();
         for ((block, source), trials) in blocks.blocks.iter_mut().zip(&all).zip(trials) {
-            block.precision = self.knows(block).then(|| earned(block, source, trials));
+            block.precision =
+                self.covers_block(block).then(|| source_precision(block, source, trials));
         }
     }
 
     /// The statistics of all groups together, one set for each regression.
-    pub fn together(&self) -> Vec<Moments> {
-        merged(&self.moments, |_| true).unwrap_or_default()
+    pub fn merged_moments(&self) -> Vec<RegressionMoments> {
+        merge_trials(&self.moments, |_| true).unwrap_or_default()
     }
 
     /// Strength of its ridge.
-    pub fn ridge(&self) -> f64 {
+    pub fn ridge_strength(&self) -> f64 {
         self.ridge
     }
 
     /// Description for reports.
-    pub fn words(&self, blocks: &Blocks, law: &str) -> String {
+    pub fn describe_source(&self, blocks: &RegressionBlocks, law: &str) -> String {
         let samples: usize = self.envelope.groups.iter().map(|group| group.samples.len()).sum();
-        let all = self.together();
-        let shares = Fold::new(blocks, &self.zero, &all, &all).shares(self.ridge);
+        let all = self.merged_moments();
+        let shares = RegressionFold::new(blocks, &self.zero, &all, &all).error_shares(self.ridge);
         let left = shares
             .iter()
-            .filter(|(axis, _)| self.says(*axis))
+            .filter(|(axis, _)| self.covers_axis(*axis))
             .map(|(axis, share)| format!("{:.1} % ({axis})", 100.0 * share))
             .collect::<Vec<_>>()
             .join(", ");
@@ -179,18 +185,18 @@ impl<'a> SourceRegression<'a> {
 
     /// Returns true if the source covers a regression: all of its axes, or any of them for a source
     /// of the plane.
-    fn knows(&self, block: &Block) -> bool {
-        let says = |axis: &Axis| self.says(*axis);
+    fn covers_block(&self, block: &RegressionBlock) -> bool {
+        let says = |axis: &Axis| self.covers_axis(*axis);
         if self.plane { block.axes.iter().any(says) } else { block.axes.iter().all(says) }
     }
 
     /// Returns true if the source covers an axis.
-    fn says(&self, axis: Axis) -> bool {
+    fn covers_axis(&self, axis: Axis) -> bool {
         self.envelope.roll || axis != Axis::K
     }
 
     /// Choices of its ridge for every target.
-    fn choices(&self, blocks: &Blocks) -> Choices {
+    fn ridge_choices(&self, blocks: &RegressionBlocks) -> RidgeChoices {
         blocks
             .blocks
             .iter()
@@ -201,12 +207,17 @@ impl<'a> SourceRegression<'a> {
 
 /// The precision that a source determines: the products of the regressors at every state, and a
 /// share (`ignorance`) of the precision that would determine each coefficient alone.
-fn earned(block: &Block, source: &Moments, trials: &Moments) -> DMatrix<f64> {
-    let p = block.regressors();
+fn source_precision(
+    block: &RegressionBlock,
+    source: &RegressionMoments,
+    trials: &RegressionMoments,
+) -> DMatrix<f64> {
+    let p = block.regressor_count();
     let mut precision = source.raw_products().view((0, 0), (p, p)).into_owned();
     for j in 0..p {
-        precision[(j, j)] +=
-            SOURCE.ignorance * block.shrinkage[j] * source.variance(j).max(trials.variance(j));
+        precision[(j, j)] += SOURCE.ignorance
+            * block.shrinkage[j]
+            * source.regressor_variance(j).max(trials.regressor_variance(j));
     }
     precision
 }

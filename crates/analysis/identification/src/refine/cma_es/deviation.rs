@@ -5,8 +5,8 @@ use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::Method;
 use sistership_simulation::candidates::{CandidateRun, CandidateSystem};
-use sistership_simulation::state::{RECORDED, StateVector};
-use sistership_simulation::tape::Lanes;
+use sistership_simulation::state::{RECORDED_CHANNELS, StateVector};
+use sistership_simulation::tape::LaneValues;
 
 use super::thresholds::OBJECTIVE;
 
@@ -15,7 +15,7 @@ const LANES: usize = 16;
 /// Combinations of extreme states and controls, with the limits of their accelerations.
 #[derive(Debug)]
 pub(super) struct DeviationPenalty {
-    blocks: Vec<(Vec<StateVector>, Vec<Lanes<LANES>>)>,
+    blocks: Vec<(Vec<StateVector>, Vec<LaneValues<LANES>>)>,
     limits: [f64; 3],
     steps: usize,
     step_s: f64,
@@ -33,18 +33,18 @@ impl DeviationPenalty {
         window_s: f64,
     ) -> Self {
         let starts = combinations(
-            &RECORDED[..3]
+            &RECORDED_CHANNELS[..3]
                 .iter()
-                .map(|&(c, _)| three(trials, c, OBJECTIVE.beyond))
+                .map(|&(c, _)| extreme_values(trials, c, OBJECTIVE.beyond))
                 .collect::<Vec<_>>(),
         );
         let controls: Vec<Vec<f64>> =
-            system.input_names().iter().map(|name| settings(name, law, trials)).collect();
+            system.input_names().iter().map(|name| input_values(name, law, trials)).collect();
         let controls: Vec<Vec<f64>> =
-            combinations(&controls).iter().map(|inputs| system.prepared(inputs)).collect();
+            combinations(&controls).iter().map(|inputs| system.prepare_inputs(inputs)).collect();
         let pairs: Vec<(StateVector, &Vec<f64>)> = starts
             .iter()
-            .flat_map(|start| controls.iter().map(|inputs| (state(start), inputs)))
+            .flat_map(|start| controls.iter().map(|inputs| (velocity_state(start), inputs)))
             .collect();
         // A short chunk repeats its last combination; the sum below leaves the repetitions out.
         let blocks = pairs.chunks(LANES).map(|chunk| {
@@ -56,24 +56,29 @@ impl DeviationPenalty {
             (starts, (0..width).map(lane).collect())
         });
         let blocks = blocks.collect();
-        let limits =
-            [Channel::U, Channel::V, Channel::R].map(|channel| limit(trials, channel, window_s));
+        let limits = [Channel::U, Channel::V, Channel::R]
+            .map(|channel| acceleration_limit(trials, channel, window_s));
         let steps = (window_s / step_s).round().max(1.0) as usize;
         Self { blocks, limits, steps, step_s, count: pairs.len() as f64 }
     }
 
     /// Returns the mean penalty over the combinations, Eq. 29 divided by their number: 0 if none
     /// exceeds the limits, about 1 if all do at once.
-    pub fn penalty(&self, system: &CandidateSystem, method: Method, coefficients: &[f64]) -> f64 {
+    pub fn mean_penalty(
+        &self,
+        system: &CandidateSystem,
+        method: Method,
+        coefficients: &[f64],
+    ) -> f64 {
         let mut run = CandidateRun::<LANES>::new(system);
-        let one = |(starts, inputs): &(Vec<StateVector>, Vec<Lanes<LANES>>)| {
-            (0..LANES).for_each(|lane| run.start(lane, &starts[lane.min(starts.len() - 1)]));
+        let one = |(starts, inputs): &(Vec<StateVector>, Vec<LaneValues<LANES>>)| {
+            (0..LANES).for_each(|lane| run.start_lane(lane, &starts[lane.min(starts.len() - 1)]));
             // First step at which a lane exceeds a limit; `steps` if it never does.
             let mut over = [self.steps; LANES];
             for step in 0..self.steps {
-                run.step(method, self.step_s, [inputs, inputs, inputs], coefficients);
+                run.advance_step(method, self.step_s, [inputs, inputs, inputs], coefficients);
                 for (row, limit) in self.limits.iter().enumerate() {
-                    for (over, rate) in over.iter_mut().zip(run.rate(row)) {
+                    for (over, rate) in over.iter_mut().zip(run.rate_lanes(row)) {
                         // A value that is not a number fails the comparison and so exceeds any
                         // limit.
                         let within = rate.abs() <= *limit;
@@ -96,7 +101,7 @@ impl DeviationPenalty {
 
 /// Low, middle (0 if that is between them) and high value of a channel; a single zero if no trial
 /// has it.
-fn three(trials: &[&Trial], channel: Channel, margin: f64) -> Vec<f64> {
+fn extreme_values(trials: &[&Trial], channel: Channel, margin: f64) -> Vec<f64> {
     let values = trials.iter().filter_map(|trial| trial.channel(channel)).flatten();
     let (low, high) = values
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
@@ -111,11 +116,11 @@ fn three(trials: &[&Trial], channel: Channel, margin: f64) -> Vec<f64> {
 
 /// Values of an input: its default where it has one, the extremes of the trials for a control
 /// without a default, otherwise 0.
-fn settings(name: &str, law: &Law, trials: &[&Trial]) -> Vec<f64> {
+fn input_values(name: &str, law: &Law, trials: &[&Trial]) -> Vec<f64> {
     let default = law.inputs.get(name).and_then(|input| input.default);
     match (default, input_channel(name)) {
         (Some(default), _) => vec![default],
-        (None, Some(channel)) => three(trials, channel, 0.0),
+        (None, Some(channel)) => extreme_values(trials, channel, 0.0),
         (None, None) => vec![0.0],
     }
 }
@@ -144,15 +149,15 @@ fn combinations(choices: &[Vec<f64>]) -> Vec<Vec<f64>> {
 }
 
 /// A state with these velocities.
-fn state(velocities: &[f64]) -> StateVector {
+fn velocity_state(velocities: &[f64]) -> StateVector {
     let mut state = StateVector::zeros();
-    RECORDED.iter().zip(velocities).for_each(|(&(_, place), value)| state[place] = *value);
+    RECORDED_CHANNELS.iter().zip(velocities).for_each(|(&(_, place), value)| state[place] = *value);
     state
 }
 
 /// The 99.7th percentile of absolute accelerations, as means over a window: Eq. 33. Infinite
 /// without data.
-fn limit(trials: &[&Trial], channel: Channel, window_s: f64) -> f64 {
+fn acceleration_limit(trials: &[&Trial], channel: Channel, window_s: f64) -> f64 {
     let mut sizes = Vec::new();
     for trial in trials {
         let (Some(column), stride) =

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
-use super::super::{Method, Refinement, Request, Settings, refine};
+use super::super::{EstimationMethod, Refinement, RefinementSettings, RefinementSpec, refine};
 use super::*;
-use crate::testing::{mariner, trials, with};
+use crate::testing::{mariner_model, simulated_trials, with_scaled_coefficients};
 use sistership_assessment::uncertainty::Sampling;
 use sistership_model::{Trial, Zoo};
 
@@ -13,14 +13,14 @@ const KEPT: [&str; 10] =
     ["X_u", "X_uu", "X_vv", "X_deltadelta", "Y_v", "Y_r", "Y_delta", "N_v", "N_r", "N_delta"];
 
 fn refined(evaluations: usize) -> Refinement {
-    let (mut source, law) = mariner();
+    let (mut source, law) = mariner_model();
     source.coefficients.retain(|name, _| KEPT.contains(&name.as_str()));
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     let target = zoo.vessel("mariner").unwrap();
     let factor = |name: &str| {
         CHANGED.iter().find(|(changed, _)| *changed == name).map_or(1.0, |(_, factor)| *factor)
     };
-    let sailed = trials(&with(&source, factor), &law, 0.0);
+    let sailed = simulated_trials(&with_scaled_coefficients(&source, factor), &law, 0.0);
     let trials: Vec<&Trial> = sailed.iter().collect();
     let search = CmaEs {
         evaluations,
@@ -30,17 +30,17 @@ fn refined(evaluations: usize) -> Refinement {
         ..CmaEs::default()
     };
     let search = CmaEs { integration: sistership_simulation::Method::Rk4, ..search };
-    let settings = Settings {
-        method: Method::CmaEs,
+    let settings = RefinementSettings {
+        method: EstimationMethod::CmaEs,
         cma_es: Some(search),
         folds: 2,
         step_s: Some(2.0),
         residual_s: Some(4.0),
         bands: Sampling { samples: 0, ..Sampling::default() },
-        ..Settings::default()
+        ..RefinementSettings::default()
     };
     refine(
-        &Request {
+        &RefinementSpec {
             target,
             source: &source,
             source_law: None,

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::rows::{RowSequence, SequencedRows};
 use super::thresholds::POSTERIOR;
-use sistership_numerics::{Metric, Moments, RidgeChoice};
+use sistership_numerics::{PriorMetric, RegressionMoments, RidgeChoice};
 
 /// The ridge of one target of one regression.
 pub(super) struct RidgeEquation<'a> {
@@ -12,7 +12,7 @@ pub(super) struct RidgeEquation<'a> {
     pub target: usize,
     pub choice: RidgeChoice,
     /// Metric that standardises its coefficients.
-    pub metric: &'a Metric,
+    pub metric: &'a PriorMetric,
     /// `C`, standardised.
     pub products: &'a DMatrix<f64>,
     /// `F'y/n`, standardised.
@@ -32,20 +32,20 @@ impl<'a> RidgeEquation<'a> {
     /// Creates the equation; `None` if its normal equations are not positive definite.
     pub fn new(
         (block, target): (usize, usize),
-        moments: &Moments,
-        (metric, products): &'a (Metric, DMatrix<f64>),
+        moments: &RegressionMoments,
+        (metric, products): &'a (PriorMetric, DMatrix<f64>),
         source: &[f64],
         choice: RidgeChoice,
     ) -> Option<Self> {
         let inverse = |lambda: f64| {
             let mut sum = products.clone();
-            (0..metric.size()).for_each(|j| {
-                sum[(j, j)] += if metric.is_still(j) { 1.0 } else { lambda.max(1e-12) }
+            (0..metric.coefficient_count()).for_each(|j| {
+                sum[(j, j)] += if metric.is_fixed(j) { 1.0 } else { lambda.max(1e-12) }
             });
             Some(sum.cholesky()?.inverse())
         };
         let data = metric.products_with_target(moments, target);
-        let source = metric.root() * DVector::from_column_slice(source);
+        let source = metric.root_matrix() * DVector::from_column_slice(source);
         let lambda = choice.lambda.min(POSTERIOR.residual_strength);
         let free = inverse(lambda)?;
         let solution = &free * (&data + &source * lambda);
@@ -56,8 +56,8 @@ impl<'a> RidgeEquation<'a> {
 
     /// Residuals of the target by sequence, for the solution without influence of the source: the
     /// source's error would otherwise count as noise.
-    pub fn residuals(&self, rows: &SequencedRows) -> Vec<DVector<f64>> {
-        let coefficients = self.metric.back() * &self.free.1;
+    pub fn free_residuals(&self, rows: &SequencedRows) -> Vec<DVector<f64>> {
+        let coefficients = self.metric.inverse_root() * &self.free.1;
         let of = |sequence: &RowSequence| {
             sequence.target(self.target) - &sequence.regressors * &coefficients
         };
@@ -65,8 +65,8 @@ impl<'a> RidgeEquation<'a> {
     }
 
     /// Number of its coefficients.
-    pub fn size(&self) -> usize {
-        self.metric.size()
+    pub fn coefficient_count(&self) -> usize {
+        self.metric.coefficient_count()
     }
 }
 
@@ -74,7 +74,7 @@ impl RidgeEquation<'_> {
     /// Factor by which the residuals' variance exceeds its estimate, since the coefficients have
     /// taken up a part of it: with the hat matrix `A` and correlations `R`, the expected sum of
     /// squares is `tr (I - A) R (I - A)` times the variance.
-    pub fn taken_up(&self, scatter: &DMatrix<f64>, variance: f64, count: f64) -> f64 {
+    pub fn variance_correction(&self, scatter: &DMatrix<f64>, variance: f64, count: f64) -> f64 {
         let unit = scatter * (count / variance.max(f64::MIN_POSITIVE));
         let moved = &self.free.0 * unit;
         let left =

@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::super::blocks::Blocks;
-use super::super::rows::Table;
+use super::super::blocks::RegressionBlocks;
+use super::super::rows::RegressionTable;
 
 /// Consecutive rows of one regression.
 pub(in super::super) struct RowSequence {
@@ -26,26 +26,26 @@ pub(in super::super) struct SequencedRows {
 
 /// Creates sequences from tables, by sequence and regression. Each `merged` consecutive rows are
 /// replaced by their mean; `centred` subtracts the mean of all rows from each column.
-pub(in super::super) fn rows(
-    blocks: &Blocks,
-    tables: &[Vec<Table>],
+pub(in super::super) fn sequence_rows(
+    blocks: &RegressionBlocks,
+    tables: &[Vec<RegressionTable>],
     merged: usize,
     centred: bool,
 ) -> SequencedRows {
     let of_block = |b: usize| {
-        let p = blocks.blocks[b].regressors();
+        let p = blocks.blocks[b].regressor_count();
         let offsets = if centred {
-            means(tables, b)
+            column_means(tables, b)
         } else {
             vec![0.0; tables.first().map_or(0, |t| t[b].len())]
         };
-        tables.iter().map(|tables| sequence(&tables[b], p, merged.max(1), &offsets)).collect()
+        tables.iter().map(|tables| row_sequence(&tables[b], p, merged.max(1), &offsets)).collect()
     };
     SequencedRows { blocks: (0..blocks.blocks.len()).map(of_block).collect() }
 }
 
 /// Means of a regression's columns over all sequences.
-fn means(tables: &[Vec<Table>], block: usize) -> Vec<f64> {
+fn column_means(tables: &[Vec<RegressionTable>], block: usize) -> Vec<f64> {
     let columns = tables.first().map_or(0, |tables| tables[block].len());
     let mean = |column: usize| {
         let all = || tables.iter().flat_map(|tables| tables[block][column].iter());
@@ -55,7 +55,12 @@ fn means(tables: &[Vec<Table>], block: usize) -> Vec<f64> {
 }
 
 /// The rows of one table; a rest of fewer than `merged` rows is dropped.
-fn sequence(table: &Table, regressors: usize, merged: usize, offsets: &[f64]) -> RowSequence {
+fn row_sequence(
+    table: &RegressionTable,
+    regressors: usize,
+    merged: usize,
+    offsets: &[f64],
+) -> RowSequence {
     let count = table.first().map_or(0, |column| column.len() / merged);
     let entry = |row: usize, column: usize| {
         let values = &table[column][row * merged..(row + 1) * merged];
@@ -79,20 +84,20 @@ impl SequencedRows {
 
     /// Returns `sum_kl F_k G_l' kernel(|k - l|) / n^2` of the regressors of two regressions over
     /// rows of the same sequence.
-    pub fn weighed(&self, one: usize, other: usize, kernel: &[f64]) -> DMatrix<f64> {
+    pub fn weighted_products(&self, one: usize, other: usize, kernel: &[f64]) -> DMatrix<f64> {
         let (first, second) = (&self.blocks[one], &self.blocks[other]);
         let columns =
             |sequences: &[RowSequence]| sequences.first().map_or(0, |s| s.regressors.ncols());
         let mut sum = DMatrix::zeros(columns(first), columns(second));
         for (left, right) in first.iter().zip(second) {
-            sum.gemm_tr(1.0, &left.regressors, &smoothed(&right.regressors, kernel), 1.0);
+            sum.gemm_tr(1.0, &left.regressors, &apply_kernel(&right.regressors, kernel), 1.0);
         }
         sum / self.count().max(1.0).powi(2)
     }
 }
 
 /// Columns convolved with a symmetric kernel, truncated at the ends.
-fn smoothed(columns: &DMatrix<f64>, kernel: &[f64]) -> DMatrix<f64> {
+fn apply_kernel(columns: &DMatrix<f64>, kernel: &[f64]) -> DMatrix<f64> {
     let count = columns.nrows();
     let mut result = columns * kernel.first().copied().unwrap_or(0.0);
     for (column, mut sums) in columns.column_iter().zip(result.column_iter_mut()) {

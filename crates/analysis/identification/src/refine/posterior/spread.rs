@@ -14,7 +14,10 @@ use super::thresholds::POSTERIOR;
 /// parts, with the prior `1/(1 + x^2)` for deviations in their unit (Gelman 2006, Bayesian Analysis
 /// 1, 515-533). Means of the variances themselves would be dominated by the largest deviations that
 /// cannot be excluded. `None` if a covariance is not positive definite.
-pub(super) fn spread(equation: &RidgeEquation<'_>, scatter: &DMatrix<f64>) -> Option<DVector<f64>> {
+pub(super) fn source_variances(
+    equation: &RidgeEquation<'_>,
+    scatter: &DMatrix<f64>,
+) -> Option<DVector<f64>> {
     let (own, unit) = (equation.source.component_mul(&equation.source), equation.square);
     let variances =
         |relative: f64, common: f64| (&own * relative.powi(2)).add_scalar(common.powi(2) * unit);
@@ -75,7 +78,7 @@ impl SpreadLikelihood {
         let mut response = vectors.transpose();
         response.row_iter_mut().zip(&kept).for_each(|(mut row, &k)| row *= basis.eigenvalues[k]);
         let mut scatter = vectors.tr_mul(scatter) * &vectors;
-        let spread = weighed(&response, variances);
+        let spread = weighted_gram(&response, variances);
         for k in 0..kept.len() {
             let size = 1.0 / (spread[(k, k)] + scatter[(k, k)]).max(1e-300).sqrt();
             surprise[k] *= size;
@@ -89,7 +92,7 @@ impl SpreadLikelihood {
     /// Logarithm of the likelihood of variances, but for a constant; `None` if the covariance is
     /// not positive definite.
     fn log_likelihood(&self, variances: &DVector<f64>) -> Option<f64> {
-        let mut covariance = &self.scatter + weighed(&self.response, variances);
+        let mut covariance = &self.scatter + weighted_gram(&self.response, variances);
         covariance
             .iter_mut()
             .step_by(self.surprise.len() + 1)
@@ -101,7 +104,7 @@ impl SpreadLikelihood {
 }
 
 /// The product `A diag(w) A'`.
-fn weighed(matrix: &DMatrix<f64>, weights: &DVector<f64>) -> DMatrix<f64> {
+fn weighted_gram(matrix: &DMatrix<f64>, weights: &DVector<f64>) -> DMatrix<f64> {
     let mut scaled = matrix.clone();
     scaled.column_iter_mut().zip(weights.iter()).for_each(|(mut column, weight)| column *= *weight);
     scaled * matrix.transpose()

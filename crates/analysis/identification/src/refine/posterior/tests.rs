@@ -1,15 +1,15 @@
 #![allow(clippy::unwrap_used)]
-use super::super::rows::Table;
+use super::super::rows::RegressionTable;
 use super::*;
 use sistership_model::Zoo;
 use sistership_model::coefficient::Axis;
 
 /// One axis, its forces regressed on two terms.
-fn blocks() -> (Blocks, Model) {
-    let zoo = Zoo::embedded().unwrap();
-    let mut model = zoo.model("mariner").unwrap();
+fn blocks() -> (RegressionBlocks, Model) {
+    let zoo = Zoo::load_embedded().unwrap();
+    let mut model = zoo.find_model("mariner").unwrap();
     model.coefficients.retain(|name, _| ["X_u", "X_vv"].contains(&name.as_str()));
-    let mut blocks = Blocks::new(&model, zoo.law("abkowitz").unwrap()).unwrap();
+    let mut blocks = RegressionBlocks::new(&model, zoo.law("abkowitz").unwrap()).unwrap();
     blocks.blocks.retain(|block| block.axes == [Axis::X]);
     (blocks, model)
 }
@@ -37,13 +37,19 @@ fn fitted(seed: u32, memory: f64) -> [(f64, f64); 2] {
     let (a, b) = (noise(600, 0.9, 3 * seed + 1), noise(600, 0.9, 3 * seed + 2));
     let disturbed = noise(600, memory, 3 * seed + 3);
     let y = (0..600).map(|k| 2.0 * a[k] - 0.5 * b[k] + 0.5 * disturbed[k]).collect();
-    let tables: Vec<Vec<Table>> = vec![vec![vec![a, b, y]]];
-    let moments = vec![Moments::about_zero(&tables[0][0], 2, 1.0)];
+    let tables: Vec<Vec<RegressionTable>> = vec![vec![vec![a, b, y]]];
+    let moments = vec![RegressionMoments::about_zero(&tables[0][0], 2, 1.0)];
     let choices = vec![vec![RidgeChoice { lambda: 1e-9, alpha: 0.0 }]];
-    let errors =
-        errors(&blocks, &moments, &rows(&blocks, &tables, 1, false), &model, &choices).unwrap();
-    let fit =
-        super::super::ridge::fit(&blocks, &moments, &model, &choices).with_errors(Some(errors));
+    let errors = posterior_errors(
+        &blocks,
+        &moments,
+        &sequence_rows(&blocks, &tables, 1, false),
+        &model,
+        &choices,
+    )
+    .unwrap();
+    let fit = super::super::ridge::fit_regressions(&blocks, &moments, &model, &choices)
+        .with_errors(Some(errors));
     ["X_u", "X_vv"]
         .map(|name| (fit.coefficients[name].value, fit.coefficients[name].standard_error))
 }
@@ -76,14 +82,20 @@ fn a_strong_prior_does_not_make_a_wrong_source_sure() {
         .zip(noise(600, 0.0, 3))
         .map(|((a, b), e)| 2.0 * a - 0.5 * b + 0.1 * e)
         .collect();
-    let tables: Vec<Vec<Table>> = vec![vec![vec![a, b, y]]];
-    let moments = vec![Moments::about_zero(&tables[0][0], 2, 1.0)];
+    let tables: Vec<Vec<RegressionTable>> = vec![vec![vec![a, b, y]]];
+    let moments = vec![RegressionMoments::about_zero(&tables[0][0], 2, 1.0)];
     let mut error = |source: f64| {
         model.coefficients.get_mut("X_u").unwrap().value = source;
         model.coefficients.get_mut("X_vv").unwrap().value = -0.5;
         let choices = vec![vec![RidgeChoice { lambda: 1e6, alpha: 0.0 }]];
-        let errors =
-            errors(&blocks, &moments, &rows(&blocks, &tables, 1, false), &model, &choices).unwrap();
+        let errors = posterior_errors(
+            &blocks,
+            &moments,
+            &sequence_rows(&blocks, &tables, 1, false),
+            &model,
+            &choices,
+        )
+        .unwrap();
         errors.covariance[(0, 0)].sqrt()
     };
     let (wrong, right) = (error(1.0), error(2.0));
@@ -103,7 +115,7 @@ fn a_posterior_keeps_the_covariance() {
         cross: none,
     };
     let (_, model) = blocks();
-    let root = errors.posterior(&model).unwrap().root().unwrap();
+    let root = errors.to_posterior(&model).unwrap().covariance_root().unwrap();
     let root = DMatrix::from_fn(2, 2, |i, j| root[i].get(j).copied().unwrap_or(0.0));
     assert!((&root * root.transpose() - covariance).amax() < 1e-6);
     assert!(model.posterior.is_none());

@@ -3,15 +3,15 @@
 //! outwards.
 
 use super::candidate::CandidateFit;
-use super::equations::Equations;
+use super::equations::EquationForm;
 use super::estimator::Estimator;
 use super::outcome::RefineError;
-use super::problem::Problem;
+use super::problem::RefinementProblem;
 use super::progress::{PartProgress, Progress};
-use super::ridge::{Fold, tune};
-use super::ridge_candidates::{each_variant, ridge_candidate};
-use super::settings::Settings;
-use super::variant::Variant;
+use super::ridge::{RegressionFold, tune_choices};
+use super::ridge_candidates::{for_each_variant, ridge_candidate};
+use super::settings::RefinementSettings;
+use super::variant::TermVariant;
 use sistership_model::law::Law;
 
 /// `T_d`: time over which accelerations are differenced, in units of the time in which the ship
@@ -20,36 +20,37 @@ use sistership_model::law::Law;
 const DIFFERENCE: f64 = 0.1;
 
 /// The published estimator.
-pub(super) struct Published;
+pub(super) struct PublishedEstimator;
 
-impl Estimator for Published {
-    fn resolve(&self, settings: &mut Settings, _: &Law, length_s: Option<f64>) {
+impl Estimator for PublishedEstimator {
+    fn resolve_settings(&self, settings: &mut RefinementSettings, _: &Law, length_s: Option<f64>) {
         settings.difference_s = settings.difference_s.or(length_s.map(|s| DIFFERENCE * s));
     }
 
-    fn equations(&self, settings: &Settings) -> Equations {
-        Equations::Differences(settings.difference_s)
+    fn equation_form(&self, settings: &RefinementSettings) -> EquationForm {
+        EquationForm::Differences(settings.difference_s)
     }
 
-    fn candidates(
+    fn add_candidates(
         &self,
-        problem: &Problem<'_>,
-        variants: &[Variant],
+        problem: &RefinementProblem<'_>,
+        variants: &[TermVariant],
         candidates: &mut Vec<CandidateFit>,
         progress: Progress<'_>,
     ) -> Result<(), RefineError> {
-        let mut ranges = |at: (usize, &Variant), folds: &[Fold<'_>], told: PartProgress<'_>| {
-            by_range(problem, at, folds, told, candidates)
-        };
-        each_variant(problem, variants, progress, &mut ranges)
+        let mut ranges =
+            |at: (usize, &TermVariant), folds: &[RegressionFold<'_>], told: PartProgress<'_>| {
+                by_range(problem, at, folds, told, candidates)
+            };
+        for_each_variant(problem, variants, progress, &mut ranges)
     }
 }
 
 /// Adds one candidate for each range; a single trial allows the first range only.
 fn by_range(
-    problem: &Problem<'_>,
-    at: (usize, &Variant),
-    folds: &[Fold<'_>],
+    problem: &RefinementProblem<'_>,
+    at: (usize, &TermVariant),
+    folds: &[RegressionFold<'_>],
     told: PartProgress<'_>,
     candidates: &mut Vec<CandidateFit>,
 ) -> Result<(), RefineError> {
@@ -58,7 +59,7 @@ fn by_range(
     for (index, range) in ranges.iter().take(allowed).enumerate() {
         let what = format!("lambda from {:.0e}: simulating manoeuvres left out", range.lambda_min);
         told(index as f64 / allowed as f64, &what)?;
-        let choices = tune(folds, range, problem.settings.lambda_count)?;
+        let choices = tune_choices(folds, range, problem.settings.lambda_count)?;
         let name = ((index + 1).to_string(), range.lambda_min);
         candidates.push(ridge_candidate(problem, name, at, choices, folds)?);
     }

@@ -7,30 +7,30 @@ use rayon::prelude::*;
 use sistership_model::Model;
 use sistership_simulation::sensitivity::SensitiveSystem;
 
-use super::super::candidate::{CandidateFit, best};
+use super::super::candidate::{CandidateFit, best_candidate};
 use super::super::outcome::RefineError;
-use super::super::problem::Problem;
-use super::super::progress::{Iterate, Progress, step};
-use super::super::ridge::{Choices, Fold};
+use super::super::problem::RefinementProblem;
+use super::super::progress::{FitIterate, Progress, report_progress};
+use super::super::ridge::{RegressionFold, RidgeChoices};
 use super::super::simulated::simulate_training;
-use super::super::variant::Variant;
+use super::super::variant::TermVariant;
 use super::fit::TrajectoryFit;
-use super::normal::{NormalEquations, SegmentPass, SegmentSums};
+use super::normal::{NormalEquations, SegmentSimulation, SegmentSums};
 use super::prior::WeakFormPrior;
-use super::segments::{ComparisonPlan, SegmentLengths, compared, cut};
+use super::segments::{ComparisonPlan, SegmentLengths, compared_states, divide_into_segments};
 use super::solve::PenalisedEquations;
 use super::thresholds::TRAJECTORY;
-use sistership_numerics::{Moments, merged};
-use sistership_priors::transfer::ready;
+use sistership_numerics::{RegressionMoments, merge_trials};
+use sistership_priors::transfer::prepare_ship;
 
 /// The fit of one variant by the trajectory form.
 struct TrajectoryDescent<'a> {
-    problem: &'a Problem<'a>,
-    variant: &'a Variant,
+    problem: &'a RefinementProblem<'a>,
+    variant: &'a TermVariant,
     /// Place of the variant among all.
     index: usize,
-    choices: &'a Choices,
-    passing: SegmentPass<'a>,
+    choices: &'a RidgeChoices,
+    passing: SegmentSimulation<'a>,
     names: Vec<String>,
 }
 
@@ -45,39 +45,42 @@ struct Linearisation {
 ///
 /// # Errors
 /// Returns an error if a trial lacks a channel, or if it was cancelled.
-pub(super) fn from_weak_form(
-    problem: &Problem<'_>,
-    variants: &[Variant],
+pub(super) fn add_from_weak_form(
+    problem: &RefinementProblem<'_>,
+    variants: &[TermVariant],
     candidates: &mut Vec<CandidateFit>,
     progress: Progress<'_>,
 ) -> Result<(), RefineError> {
-    let first = || candidates.iter().position(|candidate| candidate.solution.ridge().is_some());
-    let Some(start) = best(candidates).or_else(first).map(|start| &candidates[start]) else {
+    let first =
+        || candidates.iter().position(|candidate| candidate.solution.ridge_choices().is_some());
+    let Some(start) = best_candidate(candidates).or_else(first).map(|start| &candidates[start])
+    else {
         return Ok(());
     };
-    let Some((index, choices)) = start.solution.ridge() else { return Ok(()) };
+    let Some((index, choices)) = start.solution.ridge_choices() else { return Ok(()) };
     let (index, choices, error) = (index, choices.clone(), start.option.error);
     let variant = &variants[index];
-    step(progress, 0.6, "trajectories from the weak form")?;
-    let cutting = cutting(problem);
+    report_progress(progress, 0.6, "trajectories from the weak form")?;
+    let cutting = segment_lengths(problem);
     let model = variant.model_at(&weak_form(variant, &choices, &|_| true)?.1);
     let system = SensitiveSystem::new(&model, problem.law)?;
     // Residuals fall on whole steps.
     let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;
     // Channels without a deviation over the trials, or without a state in the system, are not
     // compared.
-    let compared = compared(system.states(), &problem.deviations);
+    let compared = compared_states(system.state_places(), &problem.deviations);
     let plan = ComparisonPlan { compared, stride, step_s: cutting.step_s };
-    let segments = cut(&problem.training, problem.law, system.input_names(), cutting, &plan)?;
+    let segments =
+        divide_into_segments(&problem.training, problem.law, system.input_names(), cutting, &plan)?;
     if segments.is_empty() {
         return Ok(());
     }
     // The ship is needed for its physical range only.
-    let ship = ready(&model, problem.law, &problem.training)?;
+    let ship = prepare_ship(&model, problem.law, &problem.training)?;
     // Without thresholds at first, which are set from the residuals of the first simulations.
     let thresholds = vec![f64::INFINITY; plan.compared.len()];
     let trials = problem.training.len();
-    let passing = SegmentPass {
+    let passing = SegmentSimulation {
         segments: &segments,
         plan: &plan,
         envelope: *ship.envelope(),
@@ -86,11 +89,11 @@ pub(super) fn from_weak_form(
     };
     let names = system.names().to_vec();
     TrajectoryDescent { problem, variant, index, choices: &choices, passing, names }
-        .candidates(error, candidates, progress)
+        .add_candidates(error, candidates, progress)
 }
 
 /// Lengths by which trials are divided into segments, rounded to whole sampling intervals.
-fn cutting(problem: &Problem<'_>) -> SegmentLengths {
+fn segment_lengths(problem: &RefinementProblem<'_>) -> SegmentLengths {
     let given = &problem.settings;
     let interval = problem.interval_s();
     let step_s = interval * (given.step_s.unwrap_or(interval) / interval).round().max(1.0);
@@ -104,49 +107,49 @@ fn cutting(problem: &Problem<'_>) -> SegmentLengths {
 
 /// The statistics of some trials, and the weak form's coefficients on them.
 fn weak_form(
-    variant: &Variant,
-    choices: &Choices,
+    variant: &TermVariant,
+    choices: &RidgeChoices,
     keep: &dyn Fn(usize) -> bool,
-) -> Result<(Vec<Moments>, BTreeMap<String, f64>), RefineError> {
-    let moments = merged(&variant.moments, keep)
+) -> Result<(Vec<RegressionMoments>, BTreeMap<String, f64>), RefineError> {
+    let moments = merge_trials(&variant.moments, keep)
         .ok_or_else(|| RefineError::Data("a fold has no sample".into()))?;
-    let solved = Fold::new(&variant.blocks, &variant.model, &moments, &[]).solve(choices);
+    let solved = RegressionFold::new(&variant.blocks, &variant.model, &moments, &[]).solve(choices);
     Ok((moments, solved.into_iter().map(|(name, fitted)| (name, fitted.value)).collect()))
 }
 
 impl TrajectoryDescent<'_> {
     /// Adds a candidate for each pull; `weak` is the error of the weak form from which they start.
-    fn candidates(
+    fn add_candidates(
         mut self,
         weak: Option<f64>,
         candidates: &mut Vec<CandidateFit>,
         progress: Progress<'_>,
     ) -> Result<(), RefineError> {
-        let prior = self.prior(&|_| true)?;
+        let prior = self.weak_form_prior(&|_| true)?;
         // Thresholds are fixed at the weak form, so that the cost of the residuals is the same
         // function for every pull.
-        self.passing.thresholds = self.thresholds(&prior.weak)?;
+        self.passing.thresholds = self.huber_thresholds(&prior.weak)?;
         // Each fold has the prior of its own training trials, without its held-out ones.
         let priors: Vec<WeakFormPrior> = (0..self.problem.fold_count())
             .into_par_iter()
-            .map(|fold| self.prior(&|t| self.problem.is_fitted(t, fold)))
+            .map(|fold| self.weak_form_prior(&|t| self.problem.is_fitted(t, fold)))
             .collect::<Result<_, _>>()?;
         // Each pull starts at the result of the stronger one before it.
-        let mut reached = self.reached(prior.weak.clone())?;
+        let mut reached = self.linearise_at(prior.weak.clone())?;
         let mut errors = vec![weak.unwrap_or(f64::INFINITY)];
         for pull in TRAJECTORY.pulls {
             let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
-            step(progress, 0.7, &label)?;
+            report_progress(progress, 0.7, &label)?;
             reached = self.descend(&prior, pull, reached)?;
-            step(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
+            report_progress(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
             let models: Vec<Model> = priors
                 .par_iter()
                 .enumerate()
-                .map(|(fold, prior)| self.left_out(fold, prior, pull, &reached))
+                .map(|(fold, prior)| self.fold_model(fold, prior, pull, &reached))
                 .collect();
             let simulated =
                 simulate_training(self.problem, &models, &|trial| self.problem.fold_of(trial))?;
-            let fit = self.fit(&prior, pull, &reached);
+            let fit = self.trajectory_fit(&prior, pull, &reached);
             let candidate = CandidateFit::new(
                 self.problem,
                 (label, Some(pull)),
@@ -165,19 +168,19 @@ impl TrajectoryDescent<'_> {
     }
 
     /// Huber's thresholds from the residuals of every few blocks of segments.
-    fn thresholds(&self, at: &DVector<f64>) -> Result<Vec<f64>, RefineError> {
-        let model = self.variant.model_at(&self.values(at));
+    fn huber_thresholds(&self, at: &DVector<f64>) -> Result<Vec<f64>, RefineError> {
+        let model = self.variant.model_at(&self.named_values(at));
         let system = SensitiveSystem::new(&model, self.problem.law)?;
         Ok(self
             .passing
-            .sizes(&system, TRAJECTORY.median_stride)
+            .residual_sizes(&system, TRAJECTORY.median_stride)
             .into_iter()
-            .map(threshold)
+            .map(huber_threshold)
             .collect())
     }
 
     /// The prior by the weak form on some trials.
-    fn prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<WeakFormPrior, RefineError> {
+    fn weak_form_prior(&self, keep: &dyn Fn(usize) -> bool) -> Result<WeakFormPrior, RefineError> {
         let (moments, values) = weak_form(self.variant, self.choices, keep)?;
         // Coefficient of the weak form, and of the source.
         let values = |name: &str| {
@@ -195,20 +198,20 @@ impl TrajectoryDescent<'_> {
     }
 
     /// Coefficients by name.
-    fn values(&self, at: &DVector<f64>) -> BTreeMap<String, f64> {
+    fn named_values(&self, at: &DVector<f64>) -> BTreeMap<String, f64> {
         self.names.iter().cloned().zip(at.iter().copied()).collect()
     }
 
     /// Simulates all segments with coefficients.
-    fn pass(&self, at: &DVector<f64>) -> Result<SegmentSums, RefineError> {
-        let model = self.variant.model_at(&self.values(at));
+    fn run_segments(&self, at: &DVector<f64>) -> Result<SegmentSums, RefineError> {
+        let model = self.variant.model_at(&self.named_values(at));
         let system = SensitiveSystem::new(&model, self.problem.law)?;
-        Ok(self.passing.pass(&system))
+        Ok(self.passing.simulate_segments(&system))
     }
 
     /// The linearisation at coefficients.
-    fn reached(&self, at: DVector<f64>) -> Result<Linearisation, RefineError> {
-        Ok(Linearisation { pass: self.pass(&at)?, at })
+    fn linearise_at(&self, at: DVector<f64>) -> Result<Linearisation, RefineError> {
+        Ok(Linearisation { pass: self.run_segments(&at)?, at })
     }
 
     /// Descends from coefficients to the least cost nearby.
@@ -220,20 +223,26 @@ impl TrajectoryDescent<'_> {
     ) -> Result<Linearisation, RefineError> {
         let mut damping = TRAJECTORY.damping;
         // The cost of the prior is part of the comparison of steps, not of the segments' sums.
-        let mut held = PenalisedEquations::new(&total(&here.pass, |_| true), prior, pull, &here.at);
+        let mut held =
+            PenalisedEquations::new(&sum_trials(&here.pass, |_| true), prior, pull, &here.at);
         for _ in 0..TRAJECTORY.steps {
-            let model = || self.variant.model_at(&self.values(&here.at));
-            self.problem.show(&Iterate { evaluations: 0, objective: held.cost, model: &model });
+            let model = || self.variant.model_at(&self.named_values(&here.at));
+            self.problem.notify_observer(&FitIterate {
+                evaluations: 0,
+                objective: held.cost,
+                model: &model,
+            });
             // A step that promises less than the least gain ends the descent, as does one without a
             // solution.
-            let Some(step) =
-                held.step(damping).filter(|step| held.foretold(step) > TRAJECTORY.least_gain)
+            let Some(step) = held
+                .damped_step(damping)
+                .filter(|step| held.predicted_gain(step) > TRAJECTORY.least_gain)
             else {
                 break;
             };
-            let there = self.reached(&here.at + step)?;
+            let there = self.linearise_at(&here.at + step)?;
             let next =
-                PenalisedEquations::new(&total(&there.pass, |_| true), prior, pull, &there.at);
+                PenalisedEquations::new(&sum_trials(&there.pass, |_| true), prior, pull, &there.at);
             if next.cost.is_finite() && next.cost < held.cost {
                 let gained = 1.0 - next.cost / held.cost;
                 (here, held) = (there, next);
@@ -255,7 +264,7 @@ impl TrajectoryDescent<'_> {
 
     /// The model of a fold: one Gauss-Newton step from the fit on all trials, with the fold's
     /// training trials and their weak form.
-    fn left_out(
+    fn fold_model(
         &self,
         fold: usize,
         prior: &WeakFormPrior,
@@ -263,22 +272,22 @@ impl TrajectoryDescent<'_> {
         reached: &Linearisation,
     ) -> Model {
         // The sums by trial are kept, so that no further simulation is needed.
-        let normal = total(&reached.pass, |trial| self.problem.is_fitted(trial, fold));
+        let normal = sum_trials(&reached.pass, |trial| self.problem.is_fitted(trial, fold));
         let held = PenalisedEquations::new(&normal, prior, pull, &reached.at);
         let at = held
-            .step(TRAJECTORY.fold_damping)
+            .damped_step(TRAJECTORY.fold_damping)
             .map_or_else(|| reached.at.clone(), |step| &reached.at + step);
-        self.variant.model_at(&self.values(&at))
+        self.variant.model_at(&self.named_values(&at))
     }
 
     /// The fit at coefficients, with the data of its errors.
-    fn fit(
+    fn trajectory_fit(
         &self,
         prior: &WeakFormPrior,
         pull: f64,
         Linearisation { at, pass }: &Linearisation,
     ) -> TrajectoryFit {
-        let normal = total(pass, |_| true);
+        let normal = sum_trials(pass, |_| true);
         TrajectoryFit {
             variant: self.index,
             choices: self.choices.clone(),
@@ -306,7 +315,7 @@ fn is_past_best(errors: &[f64]) -> bool {
 }
 
 /// Normal equations of some trials together.
-fn total(pass: &SegmentSums, keep: impl Fn(usize) -> bool) -> NormalEquations {
+fn sum_trials(pass: &SegmentSums, keep: impl Fn(usize) -> bool) -> NormalEquations {
     let mut all =
         NormalEquations::zeros(pass.trials.first().map_or(0, |normal| normal.gradient.len()));
     pass.trials
@@ -319,7 +328,7 @@ fn total(pass: &SegmentSums, keep: impl Fn(usize) -> bool) -> NormalEquations {
 
 /// Huber's threshold from absolute residuals, by their median as a robust standard deviation;
 /// infinite without residuals.
-fn threshold(mut sizes: Vec<f64>) -> f64 {
+fn huber_threshold(mut sizes: Vec<f64>) -> f64 {
     let middle = sizes.len() / 2;
     if sizes.is_empty() {
         return f64::INFINITY;

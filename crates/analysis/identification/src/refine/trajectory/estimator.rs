@@ -1,17 +1,17 @@
 //! The trajectory form as an estimator.
 
 use super::super::candidate::CandidateFit;
-use super::super::equations::Equations;
+use super::super::equations::EquationForm;
 use super::super::estimator::Estimator;
-use super::super::family::Family;
+use super::super::family::TermFamily;
 use super::super::outcome::RefineError;
-use super::super::problem::Problem;
+use super::super::problem::RefinementProblem;
 use super::super::progress::Progress;
-use super::super::settings::Settings;
+use super::super::settings::RefinementSettings;
 use super::super::steps::step_s;
-use super::super::variant::Variant;
+use super::super::variant::TermVariant;
 use super::super::weak::{self, WeakForm};
-use super::candidates::from_weak_form;
+use super::candidates::add_from_weak_form;
 use super::thresholds::TRAJECTORY;
 use sistership_model::law::Law;
 
@@ -19,8 +19,13 @@ use sistership_model::law::Law;
 pub(in super::super) struct TrajectoryForm;
 
 impl Estimator for TrajectoryForm {
-    fn resolve(&self, settings: &mut Settings, law: &Law, length_s: Option<f64>) {
-        weak::resolve(settings, length_s, &Family::ALL);
+    fn resolve_settings(
+        &self,
+        settings: &mut RefinementSettings,
+        law: &Law,
+        length_s: Option<f64>,
+    ) {
+        weak::resolve_windows(settings, length_s, &TermFamily::ALL);
         let economical = settings.economical;
         settings.step_s = settings.step_s.or(length_s.map(|s| step_s(law, s, economical)));
         settings.segment_s = settings.segment_s.or(length_s.map(|s| TRAJECTORY.segment * s));
@@ -31,19 +36,19 @@ impl Estimator for TrajectoryForm {
         settings.residual_s = settings.residual_s.or(length_s.map(|s| s / residuals_a_length));
     }
 
-    fn equations(&self, settings: &Settings) -> Equations {
-        weak::equations(settings)
+    fn equation_form(&self, settings: &RefinementSettings) -> EquationForm {
+        weak::window_form(settings)
     }
 
-    fn candidates(
+    fn add_candidates(
         &self,
-        problem: &Problem<'_>,
-        variants: &[Variant],
+        problem: &RefinementProblem<'_>,
+        variants: &[TermVariant],
         candidates: &mut Vec<CandidateFit>,
         progress: Progress<'_>,
     ) -> Result<(), RefineError> {
         // Trajectories start from a ridge of the weak form, which must be among the candidates.
-        WeakForm.candidates(problem, variants, candidates, progress)?;
-        from_weak_form(problem, variants, candidates, progress)
+        WeakForm.add_candidates(problem, variants, candidates, progress)?;
+        add_from_weak_form(problem, variants, candidates, progress)
     }
 }

@@ -7,20 +7,20 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::super::candidate::Solution;
+use super::super::candidate::CandidateSolution;
 use super::super::errors::CoefficientErrors;
 use super::super::outcome::RefineError;
-use super::super::problem::Problem;
-use super::super::ridge::{Choices, Fit, Fitted};
-use super::super::variant::Variant;
-use super::prior::{WeakFormPrior, by_source};
+use super::super::problem::RefinementProblem;
+use super::super::ridge::{CoefficientFit, FittedCoefficient, RidgeChoices};
+use super::super::variant::TermVariant;
+use super::prior::{WeakFormPrior, source_pull};
 use super::solve::PenalisedEquations;
 
 /// A fit, with the data of its errors.
 pub(super) struct TrajectoryFit {
     /// The weak form from which it started: place of its variant, and choices.
     pub variant: usize,
-    pub choices: Choices,
+    pub choices: RidgeChoices,
     /// The coefficients in the order of the normal equations.
     pub(super) names: Vec<String>,
     pub(super) at: DVector<f64>,
@@ -34,32 +34,35 @@ pub(super) struct TrajectoryFit {
     pub(super) pull: f64,
 }
 
-impl Solution for TrajectoryFit {
-    fn fit(&self, _: &[Variant]) -> Result<Option<Fit>, RefineError> {
-        Ok(Some(self.coefficients()))
+impl CandidateSolution for TrajectoryFit {
+    fn fit(&self, _: &[TermVariant]) -> Result<Option<CoefficientFit>, RefineError> {
+        Ok(Some(self.coefficient_fit()))
     }
 
-    fn errors(
+    fn coefficient_errors(
         &self,
-        problem: &Problem<'_>,
-        variants: &[Variant],
+        problem: &RefinementProblem<'_>,
+        variants: &[TermVariant],
     ) -> Result<Option<CoefficientErrors>, RefineError> {
-        let weak = variants[self.variant].errors(&problem.training, &self.choices)?;
+        let weak = variants[self.variant].ridge_errors(&problem.training, &self.choices)?;
         Ok(weak.and_then(|weak| self.joint_errors(&weak)))
     }
 }
 
 impl TrajectoryFit {
     /// The coefficients, without their errors.
-    fn coefficients(&self) -> Fit {
-        let deviations = self.prior.deviations(self.pull);
+    fn coefficient_fit(&self) -> CoefficientFit {
+        let deviations = self.prior.coefficient_deviations(self.pull);
         let one = |(k, name): (usize, &String)| {
             // The prior counts in units of the residuals' mean square.
             let prior_deviation = deviations[k] * (self.cost / self.count.max(1.0)).sqrt();
-            (name.clone(), Fitted { value: self.at[k], standard_error: 0.0, prior_deviation })
+            (
+                name.clone(),
+                FittedCoefficient { value: self.at[k], standard_error: 0.0, prior_deviation },
+            )
         };
         let coefficients = self.names.iter().enumerate().map(one).collect();
-        Fit {
+        CoefficientFit {
             coefficients,
             condition_number: self.held.condition_number(),
             collinear_groups: Vec::new(),
@@ -71,14 +74,14 @@ impl TrajectoryFit {
     /// a matrix cannot be inverted or a coefficient is missing.
     fn joint_errors(&self, weak: &CoefficientErrors) -> Option<CoefficientErrors> {
         let Self { names, prior, pull, .. } = self;
-        let inverse = self.held.inverse()?;
-        let weak = weak.ordered(names)?;
+        let inverse = self.held.inverse_hessian()?;
+        let weak = weak.in_order(names)?;
         let to_weak = &prior.hessian * *pull;
-        let to_source = &prior.of_source * by_source(*pull);
+        let to_source = &prior.of_source * source_pull(*pull);
         // The errors of weak form and source are correlated, since the source is the weak form's
         // prior.
         let both = &to_weak * &weak.cross * &to_source;
-        let middle = scatter(&self.gradients, self.count, names.len())
+        let middle = gradient_scatter(&self.gradients, self.count, names.len())
             + &to_weak * &weak.covariance * &to_weak
             + &to_source * &weak.source * &to_source
             + &both
@@ -95,7 +98,7 @@ impl TrajectoryFit {
 
 /// Covariance of the mean gradient from the gradients of the segments, with the correction `n/(n -
 /// 1)` for their number.
-fn scatter(gradients: &[DVector<f64>], count: f64, size: usize) -> DMatrix<f64> {
+fn gradient_scatter(gradients: &[DVector<f64>], count: f64, size: usize) -> DMatrix<f64> {
     let segments = gradients.len() as f64;
     let mut sum = DMatrix::zeros(size, size);
     gradients.iter().for_each(|gradient| sum.ger(1.0, gradient, gradient, 1.0));

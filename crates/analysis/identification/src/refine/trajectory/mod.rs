@@ -22,4 +22,6 @@ mod thresholds;
 
 pub(super) use estimator::TrajectoryForm;
 pub(super) use prior::WeakFormPrior;
-pub(super) use segments::{ComparisonPlan, Segment, SegmentLengths, compared, cut};
+pub(super) use segments::{
+    ComparisonPlan, SegmentLengths, TrialSegment, compared_states, divide_into_segments,
+};

@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use sistership_simulation::sensitivity::{SensitiveRun, SensitiveSystem};
-use sistership_simulation::{Envelope, Method};
+use sistership_simulation::{Method, MotionEnvelope};
 
-use super::segments::{ComparisonPlan, Segment, difference};
+use super::segments::{ComparisonPlan, TrialSegment, state_difference};
 use super::thresholds::TRAJECTORY;
 
 /// Segments that are simulated in lockstep.
@@ -57,19 +57,19 @@ impl NormalEquations {
 }
 
 /// Inputs of a simulation of all segments besides the system.
-pub(super) struct SegmentPass<'a> {
-    pub segments: &'a [Segment],
+pub(super) struct SegmentSimulation<'a> {
+    pub segments: &'a [TrialSegment],
     pub plan: &'a ComparisonPlan,
-    pub envelope: Envelope,
+    pub envelope: MotionEnvelope,
     /// Huber's thresholds by compared state, in standard deviations.
     pub thresholds: Vec<f64>,
     pub trials: usize,
 }
 
-impl SegmentPass<'_> {
+impl SegmentSimulation<'_> {
     /// Simulates every segment. Sums are added in the segments' order, so that the size of batches
     /// affects only the memory.
-    pub fn pass(&self, system: &SensitiveSystem) -> SegmentSums {
+    pub fn simulate_segments(&self, system: &SensitiveSystem) -> SegmentSums {
         let size = system.names().len();
         let mut pass = SegmentSums {
             trials: vec![NormalEquations::zeros(size); self.trials],
@@ -78,7 +78,7 @@ impl SegmentPass<'_> {
         for batch in self.segments.chunks(LANES * BLOCKS) {
             // Parallel over blocks of lanes; `collect` keeps their order.
             let blocks: Vec<Vec<LaneSums>> =
-                batch.par_chunks(LANES).map(|block| self.block(system, block)).collect();
+                batch.par_chunks(LANES).map(|block| self.simulate_block(system, block)).collect();
             for (segment, lane) in batch.iter().zip(blocks.into_iter().flatten()) {
                 pass.trials[segment.trial].add(&lane.normal);
                 pass.gradients.push(lane.normal.gradient);
@@ -91,10 +91,10 @@ impl SegmentPass<'_> {
     }
 
     /// Returns the absolute residuals by compared state, of every `some`th block of segments.
-    pub fn sizes(&self, system: &SensitiveSystem, some: usize) -> Vec<Vec<f64>> {
-        let blocks: Vec<&[Segment]> = self.segments.chunks(LANES).step_by(some).collect();
-        let of_block = |block: &[Segment]| {
-            self.block(system, block).into_iter().map(|lane| lane.sizes).collect()
+    pub fn residual_sizes(&self, system: &SensitiveSystem, some: usize) -> Vec<Vec<f64>> {
+        let blocks: Vec<&[TrialSegment]> = self.segments.chunks(LANES).step_by(some).collect();
+        let of_block = |block: &[TrialSegment]| {
+            self.simulate_block(system, block).into_iter().map(|lane| lane.sizes).collect()
         };
         let lanes: Vec<Vec<Vec<Vec<f64>>>> = blocks.into_par_iter().map(of_block).collect();
         let mut sizes = vec![Vec::new(); self.plan.compared.len()];
@@ -105,7 +105,7 @@ impl SegmentPass<'_> {
     }
 
     /// Simulates up to `LANES` segments in lockstep.
-    fn block(&self, system: &SensitiveSystem, block: &[Segment]) -> Vec<LaneSums> {
+    fn simulate_block(&self, system: &SensitiveSystem, block: &[TrialSegment]) -> Vec<LaneSums> {
         let size = system.names().len();
         let mut run = SensitiveRun::<LANES>::new(system);
         let mut lanes: Vec<LaneSums> =
@@ -121,9 +121,9 @@ impl SegmentPass<'_> {
             for (half, given) in inputs.iter_mut().enumerate() {
                 // The classical Runge-Kutta method reads inputs at the beginning, middle and end of
                 // a step.
-                load(block, 2 * k + half, width, given);
+                load_inputs(block, 2 * k + half, width, given);
             }
-            run.step(Method::Rk4, self.plan.step_s, [&inputs[0], &inputs[1], &inputs[2]]);
+            run.advance_step(Method::Rk4, self.plan.step_s, [&inputs[0], &inputs[1], &inputs[2]]);
             if (k + 1) % self.plan.stride == 0 {
                 // A lane whose segment has ended is simulated on, but no longer compared.
                 let due = lanes
@@ -132,7 +132,7 @@ impl SegmentPass<'_> {
                     .enumerate()
                     .filter(|(_, (_, segment))| k < segment.steps);
                 due.for_each(|(lane, (own, segment))| {
-                    self.compare(&run, lane, own, segment, (k + 1) / self.plan.stride - 1)
+                    self.add_residuals(&run, lane, own, segment, (k + 1) / self.plan.stride - 1)
                 });
             }
         }
@@ -141,19 +141,19 @@ impl SegmentPass<'_> {
     }
 
     /// Adds a lane's residuals at a time.
-    fn compare(
+    fn add_residuals(
         &self,
         run: &SensitiveRun<'_, LANES>,
         lane: usize,
         own: &mut LaneSums,
-        segment: &Segment,
+        segment: &TrialSegment,
         residual: usize,
     ) {
         let state = run.state(lane);
         own.normal.count += 1.0;
         // A lane that left the physical range once stays lost: its later residuals count a fixed
         // cost and no gradient.
-        own.lost = own.lost || self.envelope.check(0.0, &state).is_err();
+        own.lost = own.lost || self.envelope.check_state(0.0, &state).is_err();
         let width = self.plan.compared.len();
         let measured = &segment.measured[residual * width..(residual + 1) * width];
         for (index, (&(row, place, deviation), measured)) in
@@ -167,10 +167,10 @@ impl SegmentPass<'_> {
                 own.normal.cost += TRAJECTORY.lost * TRAJECTORY.lost;
                 continue;
             }
-            let value = difference(place, state[place], *measured) / deviation;
+            let value = state_difference(place, state[place], *measured) / deviation;
             own.sizes[index].push(value.abs());
-            own.add(
-                &run.sensitivity(lane, row)[..own.normal.gradient.len()],
+            own.add_residual(
+                &run.state_sensitivities(lane, row)[..own.normal.gradient.len()],
                 value,
                 deviation,
                 self.thresholds[index],
@@ -180,7 +180,7 @@ impl SegmentPass<'_> {
 }
 
 /// Loads the inputs of each lane at a half step; a lane that has ended keeps its last.
-fn load(block: &[Segment], half_step: usize, width: usize, into: &mut [[f64; LANES]]) {
+fn load_inputs(block: &[TrialSegment], half_step: usize, width: usize, into: &mut [[f64; LANES]]) {
     for lane in 0..LANES {
         let segment = block.get(lane).unwrap_or(&block[0]);
         let at = half_step.min(2 * segment.steps) * width;
@@ -212,7 +212,7 @@ impl LaneSums {
     }
 
     /// Adds one residual in standard deviations with its sensitivities, weighted as by Huber.
-    fn add(&mut self, sensitivity: &[f64], value: f64, deviation: f64, threshold: f64) {
+    fn add_residual(&mut self, sensitivity: &[f64], value: f64, deviation: f64, threshold: f64) {
         let size = value.abs();
         let weight = if size <= threshold { 1.0 } else { threshold / size };
         self.normal.cost +=

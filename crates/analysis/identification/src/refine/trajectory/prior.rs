@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::super::blocks::{Block, Blocks};
-use sistership_numerics::Moments;
+use super::super::blocks::{RegressionBlock, RegressionBlocks};
+use sistership_numerics::RegressionMoments;
 
 /// The prior by the weak form, as the minimum and the Hessian of its cost, and by the source.
 #[derive(Debug, Clone)]
@@ -25,8 +25,8 @@ impl WeakFormPrior {
     /// source's.
     pub fn new(
         names: &[String],
-        blocks: &Blocks,
-        moments: &[Moments],
+        blocks: &RegressionBlocks,
+        moments: &[RegressionMoments],
         values: &dyn Fn(&str) -> (f64, f64),
         lambda: f64,
     ) -> Self {
@@ -38,7 +38,7 @@ impl WeakFormPrior {
             let raw = moments.raw_products();
             // Targets follow the regressors: the diagonal there has the square of each
             // acceleration.
-            let weights: Vec<f64> = (block.regressors()..raw.nrows())
+            let weights: Vec<f64> = (block.regressor_count()..raw.nrows())
                 .map(|t| 1.0 / raw[(t, t)].max(f64::MIN_POSITIVE))
                 .collect();
             add_block(&mut hessian, block, (&raw, &weights), &place);
@@ -46,7 +46,7 @@ impl WeakFormPrior {
                 add_block(&mut of_source, block, (precision, &weights), &place);
             }
         }
-        for (block, name, shrinkage) in blocks.blocks.iter().flat_map(each) {
+        for (block, name, shrinkage) in blocks.blocks.iter().flat_map(named_coefficients) {
             // Without a joint precision each coefficient is measured by its own curvature.
             if let (None, Some(&k)) = (&block.precision, place.get(name.as_str())) {
                 of_source[(k, k)] = shrinkage * hessian[(k, k)];
@@ -62,25 +62,25 @@ impl WeakFormPrior {
     pub fn cost(&self, at: &DVector<f64>, pull: f64) -> f64 {
         let (weak, source) = (at - &self.weak, at - &self.source);
         pull * weak.dot(&(&self.hessian * &weak))
-            + by_source(pull) * source.dot(&(&self.of_source * &source))
+            + source_pull(pull) * source.dot(&(&self.of_source * &source))
     }
 
     /// Adds its Hessian and gradient to normal equations.
-    pub fn add(
+    pub fn add_to_equations(
         &self,
         at: &DVector<f64>,
         pull: f64,
         hessian: &mut DMatrix<f64>,
         gradient: &mut DVector<f64>,
     ) {
-        *hessian += &self.hessian * pull + &self.of_source * by_source(pull);
+        *hessian += &self.hessian * pull + &self.of_source * source_pull(pull);
         gradient.gemv(pull, &self.hessian, &(at - &self.weak), 1.0);
-        gradient.gemv(by_source(pull), &self.of_source, &(at - &self.source), 1.0);
+        gradient.gemv(source_pull(pull), &self.of_source, &(at - &self.source), 1.0);
     }
 
     /// Standard deviations of the coefficients by the source alone, within the weak form and
     /// directly, for an error of the motion of its own size.
-    pub fn deviations(&self, pull: f64) -> DVector<f64> {
+    pub fn coefficient_deviations(&self, pull: f64) -> DVector<f64> {
         // Scaled to a diagonal of ones before it is inverted, since coefficients differ by orders
         // of magnitude.
         let scales = self.of_source.diagonal().map(|own| 1.0 / own.max(1e-300).sqrt());
@@ -90,19 +90,21 @@ impl WeakFormPrior {
         let free = DMatrix::identity(scales.len(), scales.len());
         let inverse = unit.cholesky().map_or(free, |root| root.inverse());
         DVector::from_fn(scales.len(), |k, _| {
-            inverse[(k, k)].sqrt() * scales[k] / (pull + by_source(pull)).sqrt()
+            inverse[(k, k)].sqrt() * scales[k] / (pull + source_pull(pull)).sqrt()
         })
     }
 }
 
 /// Pull of the source relative to its strength in the weak form, for a pull towards the weak form:
 /// at most 1, and less where the weak form pulls little.
-pub(super) fn by_source(pull: f64) -> f64 {
+pub(super) fn source_pull(pull: f64) -> f64 {
     pull / (1.0 + pull)
 }
 
 /// Coefficients of a block, with the factor of the source's strength on each.
-fn each(block: &Block) -> impl Iterator<Item = (&Block, &String, f64)> {
+fn named_coefficients(
+    block: &RegressionBlock,
+) -> impl Iterator<Item = (&RegressionBlock, &String, f64)> {
     block.names.iter().flat_map(move |own| {
         own.iter().zip(&block.shrinkage).map(move |(name, factor)| (block, name, *factor))
     })
@@ -112,7 +114,7 @@ fn each(block: &Block) -> impl Iterator<Item = (&Block, &String, f64)> {
 /// acceleration.
 fn add_block(
     into: &mut DMatrix<f64>,
-    block: &Block,
+    block: &RegressionBlock,
     (products, weights): (&DMatrix<f64>, &[f64]),
     place: &BTreeMap<&str, usize>,
 ) {

@@ -5,9 +5,9 @@ use std::ops::Range;
 use sistership_model::effect::input_channel;
 use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
-use sistership_simulation::error::wrapped;
+use sistership_simulation::error::wrap_angle;
 use sistership_simulation::interpolate::MonotoneCubic;
-use sistership_simulation::state::{RECORDED, StateVector, at};
+use sistership_simulation::state::{RECORDED_CHANNELS, StateVector, at};
 
 use super::super::outcome::RefineError;
 use super::thresholds::TRAJECTORY;
@@ -25,7 +25,7 @@ pub(in super::super) struct SegmentLengths {
 
 /// One segment.
 #[derive(Debug)]
-pub(in super::super) struct Segment {
+pub(in super::super) struct TrialSegment {
     /// Place of its trial among all.
     pub trial: usize,
     /// The measured state at its start.
@@ -53,13 +53,13 @@ pub(in super::super) struct ComparisonPlan {
 ///
 /// # Errors
 /// Returns an error with the channel that a trial lacks.
-pub(in super::super) fn cut(
+pub(in super::super) fn divide_into_segments(
     trials: &[&Trial],
     law: &Law,
     input_names: &[String],
     cut: SegmentLengths,
     plan: &ComparisonPlan,
-) -> Result<Vec<Segment>, RefineError> {
+) -> Result<Vec<TrialSegment>, RefineError> {
     let mut segments = Vec::new();
     for (index, trial) in trials.iter().enumerate() {
         let record = SegmentRecord::new(trial, law, input_names, plan)?;
@@ -72,7 +72,7 @@ pub(in super::super) fn cut(
                     / plan.stride
                     * plan.stride;
                 if steps > 0 {
-                    segments.push(record.segment(index, part.clone(), from, steps));
+                    segments.push(record.build_segment(index, part.clone(), from, steps));
                 }
                 from += cut.segment_s;
             }
@@ -127,37 +127,49 @@ impl<'a> SegmentRecord<'a> {
             constant.map(SegmentInput::Constant).ok_or_else(missing)
         };
         let inputs = input_names.iter().map(input).collect::<Result<_, _>>()?;
-        let states: Vec<(usize, &[f64])> =
-            RECORDED.iter().filter_map(|&(c, place)| Some((place, trial.channel(c)?))).collect();
+        let states: Vec<(usize, &[f64])> = RECORDED_CHANNELS
+            .iter()
+            .filter_map(|&(c, place)| Some((place, trial.channel(c)?)))
+            .collect();
         Ok(Self { trial, plan, inputs, states })
     }
 
     /// A segment of a part of the record from a time on.
-    fn segment(&self, index: usize, part: Range<usize>, from: f64, steps: usize) -> Segment {
+    fn build_segment(
+        &self,
+        index: usize,
+        part: Range<usize>,
+        from: f64,
+        steps: usize,
+    ) -> TrialSegment {
         let half = 0.5 * self.plan.step_s;
         let mut inputs = Vec::with_capacity((2 * steps + 1) * self.inputs.len());
         for k in 0..=2 * steps {
             let t = from + k as f64 * half;
             // Inputs are averaged over a quarter step to both sides of a half step.
-            inputs.extend(self.inputs.iter().map(|input| self.input(input, &part, t, 0.5 * half)));
+            inputs.extend(
+                self.inputs.iter().map(|input| self.input_value(input, &part, t, 0.5 * half)),
+            );
         }
         let mut start = StateVector::zeros();
         self.states
             .iter()
-            .for_each(|(place, column)| start[*place] = self.value(column, &part, from));
+            .for_each(|(place, column)| start[*place] = self.state_value(column, &part, from));
         let mut measured = Vec::new();
         for k in 1..=steps / self.plan.stride {
             let t = from + (k * self.plan.stride) as f64 * self.plan.step_s;
             for &(_, place, _) in &self.plan.compared {
                 let column = self.states.iter().find(|(of, _)| *of == place);
-                measured.push(column.map_or(f64::NAN, |(_, column)| self.value(column, &part, t)));
+                measured.push(
+                    column.map_or(f64::NAN, |(_, column)| self.state_value(column, &part, t)),
+                );
             }
         }
-        Segment { trial: index, start, inputs, steps, measured }
+        TrialSegment { trial: index, start, inputs, steps, measured }
     }
 
     /// Returns the sample before a time, and the fraction of the interval to the next.
-    fn place(&self, part: &Range<usize>, t: f64) -> (usize, f64) {
+    fn sample_before(&self, part: &Range<usize>, t: f64) -> (usize, f64) {
         let t_s = &self.trial.t_s;
         let after = part.start + t_s[part.clone()].partition_point(|s| *s <= t + 1e-9);
         let k =
@@ -167,19 +179,25 @@ impl<'a> SegmentRecord<'a> {
     }
 
     /// A state at a time, linear between samples.
-    fn value(&self, column: &[f64], part: &Range<usize>, t: f64) -> f64 {
-        let (k, w) = self.place(part, t);
+    fn state_value(&self, column: &[f64], part: &Range<usize>, t: f64) -> f64 {
+        let (k, w) = self.sample_before(part, t);
         if k + 1 < part.end { column[k] + w * (column[k + 1] - column[k]) } else { column[k] }
     }
 
     /// An input at a time: the mean over a quarter step to both sides if that contains three
     /// samples or more, otherwise interpolated as in a simulation.
-    fn input(&self, input: &SegmentInput<'_>, part: &Range<usize>, t: f64, around: f64) -> f64 {
+    fn input_value(
+        &self,
+        input: &SegmentInput<'_>,
+        part: &Range<usize>,
+        t: f64,
+        around: f64,
+    ) -> f64 {
         let SegmentInput::Recorded { column, cubic, angle } = input else {
             let SegmentInput::Constant(value) = input else { return 0.0 };
             return *value;
         };
-        let (k, w) = self.place(part, t);
+        let (k, w) = self.sample_before(part, t);
         let t_s = &self.trial.t_s[part.clone()];
         let (low, high) =
             (t_s.partition_point(|s| *s < t - around), t_s.partition_point(|s| *s <= t + around));
@@ -187,7 +205,7 @@ impl<'a> SegmentRecord<'a> {
         let from = column[k];
         if *angle {
             // Directions are averaged as differences to a sample nearby, which may cross 180 deg.
-            let turned = |value: &f64| wrapped(value - from);
+            let turned = |value: &f64| wrap_angle(value - from);
             // The last sample has no next one to be turned to.
             let next = column.get(k + 1).map_or(0.0, turned);
             return from
@@ -197,13 +215,17 @@ impl<'a> SegmentRecord<'a> {
                     near.iter().map(turned).sum::<f64>() / near.len() as f64
                 };
         }
-        if near.len() < 3 { cubic.at(k, w) } else { near.iter().sum::<f64>() / near.len() as f64 }
+        if near.len() < 3 {
+            cubic.interpolate_at(k, w)
+        } else {
+            near.iter().sum::<f64>() / near.len() as f64
+        }
     }
 }
 
 /// Returns the states that are compared: those that some trial records, with their standard
 /// deviations over the trials.
-pub(in super::super) fn compared(
+pub(in super::super) fn compared_states(
     states: &[usize],
     deviations: &std::collections::BTreeMap<Channel, f64>,
 ) -> Vec<(usize, usize, f64)> {
@@ -212,11 +234,11 @@ pub(in super::super) fn compared(
         let deviation = *deviations.get(&channel)?;
         (deviation > 0.0).then_some((row, place, deviation))
     };
-    RECORDED.iter().filter_map(of).collect()
+    RECORDED_CHANNELS.iter().filter_map(of).collect()
 }
 
 /// Returns the simulated less the measured value of a state; headings are differenced on the
 /// circle.
-pub(super) fn difference(place: usize, simulated: f64, measured: f64) -> f64 {
-    if place == at::PSI { wrapped(simulated - measured) } else { simulated - measured }
+pub(super) fn state_difference(place: usize, simulated: f64, measured: f64) -> f64 {
+    if place == at::PSI { wrap_angle(simulated - measured) } else { simulated - measured }
 }

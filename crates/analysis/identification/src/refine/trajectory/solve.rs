@@ -23,14 +23,14 @@ impl PenalisedEquations {
     ) -> Self {
         let count = normal.count.max(1.0);
         let (mut hessian, mut gradient) = (&normal.hessian / count, &normal.gradient / count);
-        prior.add(at, pull, &mut hessian, &mut gradient);
+        prior.add_to_equations(at, pull, &mut hessian, &mut gradient);
         Self { hessian, gradient, cost: normal.cost / count + prior.cost(at, pull) }
     }
 
     /// Returns the step with every curvature increased by the share `damping`; `None` if the
     /// equations cannot be solved.
-    pub fn step(&self, damping: f64) -> Option<DVector<f64>> {
-        let (mut scaled, scales) = self.scaled();
+    pub fn damped_step(&self, damping: f64) -> Option<DVector<f64>> {
+        let (mut scaled, scales) = self.scaled_hessian();
         scaled
             .iter_mut()
             .step_by(scales.len() + 1)
@@ -41,13 +41,13 @@ impl PenalisedEquations {
     }
 
     /// Returns the share of the cost that a step gains if the residuals are linear.
-    pub fn foretold(&self, step: &DVector<f64>) -> f64 {
+    pub fn predicted_gain(&self, step: &DVector<f64>) -> f64 {
         -(2.0 * self.gradient.dot(step) + step.dot(&(&self.hessian * step)))
             / self.cost.max(f64::MIN_POSITIVE)
     }
 
     /// The Hessian scaled to a diagonal of ones, and the scales.
-    fn scaled(&self) -> (DMatrix<f64>, DVector<f64>) {
+    fn scaled_hessian(&self) -> (DMatrix<f64>, DVector<f64>) {
         let scales = self.hessian.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
         let scaled = DMatrix::from_fn(scales.len(), scales.len(), |i, j| {
             self.hessian[(i, j)] * scales[i] * scales[j]
@@ -57,14 +57,14 @@ impl PenalisedEquations {
 
     /// Returns the ratio of the extreme eigenvalues of the scaled Hessian.
     pub fn condition_number(&self) -> f64 {
-        let values = self.scaled().0.symmetric_eigenvalues();
+        let values = self.scaled_hessian().0.symmetric_eigenvalues();
         let largest = values.max();
         largest / values.min().max(largest * f64::EPSILON)
     }
 
     /// Returns the inverse of the Hessian; `None` if it cannot be inverted.
-    pub fn inverse(&self) -> Option<DMatrix<f64>> {
-        let (mut scaled, scales) = self.scaled();
+    pub fn inverse_hessian(&self) -> Option<DMatrix<f64>> {
+        let (mut scaled, scales) = self.scaled_hessian();
         scaled
             .iter_mut()
             .step_by(scales.len() + 1)

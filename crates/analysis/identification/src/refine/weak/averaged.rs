@@ -7,7 +7,7 @@ use super::thresholds::WEAK;
 
 /// Returns a trial in means over as many samples as still leave a window its intervals; `None` if
 /// that is one sample, or if a part between gaps would be lost.
-pub(super) fn averaged(trial: &Trial, window_s: f64) -> Option<Trial> {
+pub(super) fn average_samples(trial: &Trial, window_s: f64) -> Option<Trial> {
     let wanted = window_s / WEAK.most_intervals / trial.interval_s();
     let every = (wanted + 1e-9).floor();
     if !(every.is_finite() && every > 1.0) {
@@ -21,7 +21,7 @@ pub(super) fn averaged(trial: &Trial, window_s: f64) -> Option<Trial> {
     // A direction has no mean where it passes from 180 to -180 deg: the middle sample stands for
     // it.
     let channels = trial.channels.iter().map(|(&channel, column)| {
-        (channel, by_group(column, if turns(channel) { middle } else { mean }))
+        (channel, by_group(column, if is_direction(channel) { middle_sample } else { mean }))
     });
     let fewer = Trial {
         t_s: by_group(&trial.t_s, mean),
@@ -36,12 +36,12 @@ fn mean(group: &[f64]) -> f64 {
     group.iter().sum::<f64>() / group.len() as f64
 }
 
-fn middle(group: &[f64]) -> f64 {
+fn middle_sample(group: &[f64]) -> f64 {
     group[group.len() / 2]
 }
 
 /// Returns true if a channel is a direction, which may pass from 180 to -180 deg.
-fn turns(channel: Channel) -> bool {
+fn is_direction(channel: Channel) -> bool {
     matches!(channel, Channel::Psi | Channel::WindFrom | Channel::ApparentWindFrom)
 }
 
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn noise_falls_and_a_slope_stays() {
-        let (whole, fewer) = (trial(30.0), averaged(&trial(30.0), 18.0).unwrap());
+        let (whole, fewer) = (trial(30.0), average_samples(&trial(30.0), 18.0).unwrap());
         assert_eq!((fewer.len(), fewer.segments().len()), (200 + 200, 2));
         for (t, u) in fewer.t_s.iter().zip(fewer.channel(Channel::U).unwrap()) {
             assert!((u - 0.01 * t).abs() < 1e-12);
@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     fn slow_records_are_left_as_they_are() {
-        assert!(averaged(&trial(30.0), 6.0).is_none());
-        assert!(averaged(&trial(0.1), 18.0).is_none(), "a gap of two samples would vanish");
+        assert!(average_samples(&trial(30.0), 6.0).is_none());
+        assert!(average_samples(&trial(0.1), 18.0).is_none(), "a gap of two samples would vanish");
     }
 }

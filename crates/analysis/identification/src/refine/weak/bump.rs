@@ -8,7 +8,7 @@ use super::thresholds::WEAK;
 
 /// Length and spacing of the windows of a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Windows {
+pub struct WindowSpacing {
     /// Length, s; at least eight sampling intervals are used.
     pub length_s: f64,
     /// Time from one window's start to the next, s; at least a sampling interval.
@@ -17,31 +17,31 @@ pub struct Windows {
     pub in_means: bool,
 }
 
-impl Windows {
-    fn length(&self, interval_s: f64) -> f64 {
+impl WindowSpacing {
+    fn window_length(&self, interval_s: f64) -> f64 {
         self.length_s.max(WEAK.least_intervals * interval_s)
     }
 
     /// The weight of a window's row: its own share of time, since windows that overlap share
     /// information.
-    pub(super) fn share(&self, interval_s: f64) -> f64 {
-        (self.hop_s.max(interval_s) / (WEAK.equivalent * self.length(interval_s))).min(1.0)
+    pub(super) fn effective_share(&self, interval_s: f64) -> f64 {
+        (self.hop_s.max(interval_s) / (WEAK.equivalent * self.window_length(interval_s))).min(1.0)
     }
 
     /// The bump functions of a trial, none of which crosses a gap.
-    pub(super) fn over(&self, trial: &Trial) -> Vec<BumpFunction> {
+    pub(super) fn bumps_over(&self, trial: &Trial) -> Vec<BumpFunction> {
         let interval_s = trial.interval_s();
-        let (length, hop) = (self.length(interval_s), self.hop_s.max(interval_s));
+        let (length, hop) = (self.window_length(interval_s), self.hop_s.max(interval_s));
         trial
             .segments()
             .into_iter()
-            .flat_map(|segment| within(&trial.t_s, segment, length, hop))
+            .flat_map(|segment| segment_bumps(&trial.t_s, segment, length, hop))
             .collect()
     }
 }
 
 /// The bump functions of a part without gaps.
-fn within(t_s: &[f64], segment: Range<usize>, length: f64, hop: f64) -> Vec<BumpFunction> {
+fn segment_bumps(t_s: &[f64], segment: Range<usize>, length: f64, hop: f64) -> Vec<BumpFunction> {
     let (start, end) = (t_s[segment.start], t_s[segment.end - 1]);
     let count = ((end - start - length) / hop + 1e-9).floor();
     let count = if count < 0.0 { 0 } else { count as usize + 1 };
@@ -86,12 +86,12 @@ impl BumpFunction {
 
     /// Returns the weighted mean of a column of the trial.
     pub fn mean(&self, column: &[f64]) -> f64 {
-        product(&self.weights, &column[self.samples.clone()])
+        dot_product(&self.weights, &column[self.samples.clone()])
     }
 
     /// Returns the weighted mean of mass times a velocity's rate of change, by parts: `-int v d(b
     /// m)`, summed so that a constant velocity gives exactly zero. The mass is 1 if none is given.
-    pub fn rate(&self, mass: Option<&[f64]>, velocity: &[f64]) -> f64 {
+    pub fn mean_rate(&self, mass: Option<&[f64]>, velocity: &[f64]) -> f64 {
         let v = &velocity[self.samples.clone()];
         let weighted =
             |k: usize| self.bump[k] * mass.map_or(1.0, |mass| mass[self.samples.start + k]);
@@ -108,7 +108,7 @@ impl BumpFunction {
 }
 
 /// The sum of products in eight separate sums: a single one would wait for each of its additions.
-fn product(a: &[f64], b: &[f64]) -> f64 {
+fn dot_product(a: &[f64], b: &[f64]) -> f64 {
     let ((a, a_left), (b, b_left)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
     let mut sums = [0.0; 8];
     for (a, b) in a.iter().zip(b) {

@@ -14,16 +14,16 @@ mod thresholds;
 
 use sistership_model::trial::Trial;
 
-pub use bump::Windows;
-pub(super) use estimator::{WeakForm, equations, resolve};
+pub use bump::WindowSpacing;
+pub(super) use estimator::{WeakForm, resolve_windows, window_form};
 
-use super::blocks::{Block, Blocks};
+use super::blocks::{RegressionBlock, RegressionBlocks};
 use super::outcome::RefineError;
-use super::rows::Table;
-use averaged::averaged;
+use super::rows::RegressionTable;
+use averaged::average_samples;
 use bump::BumpFunction;
-use samples::{SampledRegression, columns};
-use sistership_numerics::Moments;
+use samples::{SampledRegression, sample_columns};
+use sistership_numerics::RegressionMoments;
 
 /// Returns the statistics of one trial in weak form about zero, one set for each regression; no
 /// window crosses a gap. Windows overlap, so that each counts as its own share of time.
@@ -31,14 +31,15 @@ use sistership_numerics::Moments;
 /// # Errors
 /// Returns an error with the channel that the trial lacks.
 pub fn weak_moments(
-    blocks: &Blocks,
+    blocks: &RegressionBlocks,
     trial: &Trial,
-    windows: Windows,
-) -> Result<Vec<Moments>, RefineError> {
+    windows: WindowSpacing,
+) -> Result<Vec<RegressionMoments>, RefineError> {
     let tables = weak_tables(blocks, trial, windows)?;
-    let share = windows.share(trial.interval_s());
-    let of =
-        |(block, table): (&Block, &Table)| Moments::about_zero(table, block.regressors(), share);
+    let share = windows.effective_share(trial.interval_s());
+    let of = |(block, table): (&RegressionBlock, &RegressionTable)| {
+        RegressionMoments::about_zero(table, block.regressor_count(), share)
+    };
     Ok(blocks.blocks.iter().zip(&tables).map(of).collect())
 }
 
@@ -48,23 +49,30 @@ pub fn weak_moments(
 /// # Errors
 /// As [`weak_moments`].
 pub fn weak_tables(
-    blocks: &Blocks,
+    blocks: &RegressionBlocks,
     trial: &Trial,
-    windows: Windows,
-) -> Result<Vec<Table>, RefineError> {
-    let averaged = windows.in_means.then(|| averaged(trial, windows.length_s)).flatten();
+    windows: WindowSpacing,
+) -> Result<Vec<RegressionTable>, RefineError> {
+    let averaged = windows.in_means.then(|| average_samples(trial, windows.length_s)).flatten();
     let trial = averaged.as_ref().unwrap_or(trial);
-    let sampled = columns(blocks, trial)?;
-    let mut tables: Vec<Table> =
-        blocks.blocks.iter().map(|b| vec![Vec::new(); b.width()]).collect();
-    for bump in windows.over(trial) {
-        sampled.iter().zip(&mut tables).for_each(|(columns, table)| append(columns, &bump, table));
+    let sampled = sample_columns(blocks, trial)?;
+    let mut tables: Vec<RegressionTable> =
+        blocks.blocks.iter().map(|b| vec![Vec::new(); b.column_count()]).collect();
+    for bump in windows.bumps_over(trial) {
+        sampled
+            .iter()
+            .zip(&mut tables)
+            .for_each(|(columns, table)| append_window(columns, &bump, table));
     }
     Ok(tables)
 }
 
 /// Appends the row of one window.
-fn append(columns: &SampledRegression<'_>, bump: &BumpFunction, table: &mut Table) {
+fn append_window(
+    columns: &SampledRegression<'_>,
+    bump: &BumpFunction,
+    table: &mut RegressionTable,
+) {
     let (regressors, targets) = table.split_at_mut(columns.regressors.len());
     for (out, column) in regressors.iter_mut().zip(&columns.regressors) {
         out.push(bump.mean(column));
@@ -73,7 +81,7 @@ fn append(columns: &SampledRegression<'_>, bump: &BumpFunction, table: &mut Tabl
         let momentum: f64 = target
             .inertia
             .iter()
-            .map(|(mass, velocity)| bump.rate(mass.as_deref(), velocity))
+            .map(|(mass, velocity)| bump.mean_rate(mass.as_deref(), velocity))
             .sum();
         out.push(momentum - bump.mean(&target.rest));
     }

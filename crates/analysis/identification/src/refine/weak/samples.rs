@@ -5,9 +5,9 @@ use std::borrow::Cow;
 
 use nalgebra::DVector;
 use sistership_model::trial::Trial;
-use sistership_simulation::tape::{Lanes, Slots};
+use sistership_simulation::tape::{LaneValues, TapeResults};
 
-use super::super::blocks::{Block, Blocks};
+use super::super::blocks::{RegressionBlock, RegressionBlocks};
 use super::super::outcome::RefineError;
 use super::super::rows::{LANES, RegressionRecord};
 
@@ -31,8 +31,8 @@ pub(super) struct RegressionTarget<'a> {
 }
 
 /// Returns the columns of every regression of a law over a trial.
-pub(super) fn columns<'a>(
-    blocks: &Blocks,
+pub(super) fn sample_columns<'a>(
+    blocks: &RegressionBlocks,
     trial: &'a Trial,
 ) -> Result<Vec<SampledRegression<'a>>, RefineError> {
     let record = RegressionRecord::new(blocks, trial)?;
@@ -42,14 +42,14 @@ pub(super) fn columns<'a>(
         .map(|block| SampledRegression::new(block, &record, trial.len()))
         .collect();
     let mut lanes = vec![[0.0; LANES]; record.columns.len()];
-    let mut work = Slots::default();
+    let mut work = TapeResults::default();
     // The record loads pairs of samples; a pair of the same sample is that sample.
     let samples: Vec<(usize, usize)> = (0..trial.len()).map(|k| (k, k)).collect();
     for chunk in samples.chunks(LANES) {
-        record.load(chunk, &mut lanes);
-        blocks.tape.run(&lanes, &mut work);
+        record.load_lanes(chunk, &mut lanes);
+        blocks.tape.evaluate(&lanes, &mut work);
         for (block, columns) in blocks.blocks.iter().zip(&mut all) {
-            columns.append(blocks, block, &work);
+            columns.append_chunk(blocks, block, &work);
         }
     }
     all.iter_mut().for_each(|columns| columns.truncate(trial.len()));
@@ -57,8 +57,8 @@ pub(super) fn columns<'a>(
 }
 
 impl<'a> SampledRegression<'a> {
-    fn new(block: &Block, record: &RegressionRecord<'a>, samples: usize) -> Self {
-        let velocity = |axis| Cow::Borrowed(record.velocity(axis));
+    fn new(block: &RegressionBlock, record: &RegressionRecord<'a>, samples: usize) -> Self {
+        let velocity = |axis| Cow::Borrowed(record.axis_velocity(axis));
         // The last chunk is appended whole before it is truncated.
         let room = || Vec::with_capacity(samples + LANES);
         let target = |own| RegressionTarget {
@@ -73,19 +73,24 @@ impl<'a> SampledRegression<'a> {
             rest: room(),
         };
         let targets = block.axes.iter().map(|&axis| target(axis)).collect();
-        Self { regressors: vec![room(); block.regressors()], targets }
+        Self { regressors: vec![room(); block.regressor_count()], targets }
     }
 
     /// Appends all lanes of a chunk, also those beyond the last sample of a short chunk; `truncate`
     /// removes these.
-    fn append(&mut self, blocks: &Blocks, block: &Block, work: &[Lanes<LANES>]) {
-        let read = |output: usize| blocks.tape.read(output, work);
+    fn append_chunk(
+        &mut self,
+        blocks: &RegressionBlocks,
+        block: &RegressionBlock,
+        work: &[LaneValues<LANES>],
+    ) {
+        let read = |output: usize| blocks.tape.output_lanes(output, work);
         let own_mass = if block.is_force() || block.axes.len() > 1 {
             None
         } else {
             block.mass[0][0].map(read)
         };
-        let divided = |value: Lanes<LANES>| -> Lanes<LANES> {
+        let divided = |value: LaneValues<LANES>| -> LaneValues<LANES> {
             own_mass.map_or(value, |mass| std::array::from_fn(|lane| value[lane] / mass[lane]))
         };
         let scale = read(block.scales[0]);
@@ -120,7 +125,7 @@ impl<'a> SampledRegression<'a> {
     }
 
     /// Appends the accelerations that the rests of coupled axes cause.
-    fn append_rests(&mut self, block: &Block, read: &dyn Fn(usize) -> Lanes<LANES>) {
+    fn append_rests(&mut self, block: &RegressionBlock, read: &dyn Fn(usize) -> LaneValues<LANES>) {
         let (scales, rests): (Vec<_>, Vec<_>) =
             block.scales.iter().zip(&block.rests).map(|(&s, &r)| (read(s), read(r))).unzip();
         for lane in 0..LANES {

@@ -13,10 +13,10 @@ fn a_rate_by_parts_is_the_mean_rate_under_the_bump() {
     let (wave, slope) = (column(&|t| (0.5 * t).sin()), column(&|t| 0.5 * (0.5 * t).cos()));
     let (mass, moving) =
         (column(&|t| 2.0 + 0.1 * t), column(&|t| (2.0 + 0.1 * t) * 0.5 * (0.5 * t).cos()));
-    for bump in (Windows { length_s: 10.0, hop_s: 1.0, in_means: false }).over(&trial) {
-        assert!((bump.rate(None, &wave) - bump.mean(&slope)).abs() < 2e-4);
-        assert!((bump.rate(Some(&mass), &wave) - bump.mean(&moving)).abs() < 1e-3);
-        assert!(bump.rate(None, &vec![3.0; 400]).abs() < 1e-12);
+    for bump in (WindowSpacing { length_s: 10.0, hop_s: 1.0, in_means: false }).bumps_over(&trial) {
+        assert!((bump.mean_rate(None, &wave) - bump.mean(&slope)).abs() < 2e-4);
+        assert!((bump.mean_rate(Some(&mass), &wave) - bump.mean(&moving)).abs() < 1e-3);
+        assert!(bump.mean_rate(None, &vec![3.0; 400]).abs() < 1e-12);
         assert!((bump.mean(&vec![3.0; 400]) - 3.0).abs() < 1e-12);
     }
 }
@@ -25,20 +25,20 @@ fn a_rate_by_parts_is_the_mean_rate_under_the_bump() {
 fn windows_do_not_reach_over_gaps() {
     let t_s: Vec<f64> = (0..100).map(|k| f64::from(k) + if k < 40 { 0.0 } else { 30.0 }).collect();
     let trial = Trial { t_s, ..Trial::default() };
-    let windows = Windows { length_s: 10.0, hop_s: 2.0, in_means: false };
-    assert_eq!(windows.over(&trial).len(), 15 + 25);
+    let windows = WindowSpacing { length_s: 10.0, hop_s: 2.0, in_means: false };
+    assert_eq!(windows.bumps_over(&trial).len(), 15 + 25);
     let short = Trial { t_s: vec![0.0, 1.0, 2.0], ..Trial::default() };
-    assert!(windows.over(&short).is_empty());
+    assert!(windows.bumps_over(&short).is_empty());
 }
 
 /// A ship of one axis whose speed decays by a known law, with noise that ruins differences.
 #[test]
 fn a_known_resistance_is_found_through_noise() {
     use sistership_model::{Law, Model, Zoo};
-    let zoo = Zoo::embedded().unwrap();
-    let model: Model = zoo.model("mariner").unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let model: Model = zoo.find_model("mariner").unwrap();
     let law: &Law = zoo.law(&model.law).unwrap();
-    let blocks = Blocks::new(&model, law).unwrap();
+    let blocks = RegressionBlocks::new(&model, law).unwrap();
     let mut trial =
         Trial { t_s: (0..3000).map(|k| 0.1 * f64::from(k)).collect(), ..Trial::default() };
     let noise = |k: usize| 0.02 * (12.9898 * k as f64).sin();
@@ -48,9 +48,12 @@ fn a_known_resistance_is_found_through_noise() {
     for channel in [Channel::V, Channel::R, Channel::Delta] {
         trial.channels.insert(channel, vec![0.0; 3000]);
     }
-    let table =
-        &weak_tables(&blocks, &trial, Windows { length_s: 10.0, hop_s: 1.0, in_means: false })
-            .unwrap()[0];
+    let table = &weak_tables(
+        &blocks,
+        &trial,
+        WindowSpacing { length_s: 10.0, hop_s: 1.0, in_means: false },
+    )
+    .unwrap()[0];
     let target = table.last().unwrap();
     // The rate of cos(0.2 t) in the mean under each bump.
     let worst = target.iter().enumerate().map(|(k, rate)| {

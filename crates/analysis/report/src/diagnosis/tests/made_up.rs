@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use sistership_diagnosis::{
-    Change, ChangeCourse, Confounded, DetectionLimit, Diagnosis, DiscrepancyLevel, Found,
-    Hypothesis, LimitedBy, NextTrial, OriginKind, RemainderDependence, RemainderOrigin,
-    ResidualSeries, SailedManoeuvre, Settings, TrialErrors, Unexplained, Value, VariableDependence,
-    Verdict,
+    ChangeCourse, ConfoundedEffect, DetectionLimit, Diagnosis, DiscrepancyLevel, EffectChange,
+    HypothesisReport, LimitedBy, ManoeuvreOutcome, MissingEffect, NextTrial, OriginKind,
+    RemainderDependence, RemainderOrigin, ResidualSeries, Settings, TrialErrors,
+    UnexplainedSegment, ValueWithError, VariableDependence, Verdict,
 };
 use sistership_model::effect::ActsOn;
 use sistership_model::quantity::Quantity;
@@ -15,7 +15,7 @@ use sistership_model::{Model, Zoo};
 use sistership_simulation::metrics::{ManoeuvreMetrics, TurningMetrics};
 
 use crate::diagnosis::{DiagnosisInput, render_diagnosis};
-use crate::{Rendered, VersionLabel};
+use crate::{RenderedReport, VersionLabel};
 
 pub struct Case {
     zoo: Zoo,
@@ -26,15 +26,15 @@ pub struct Case {
 
 impl Case {
     pub fn new() -> Self {
-        let zoo = Zoo::embedded().unwrap();
-        let model = zoo.model("mariner").unwrap();
+        let zoo = Zoo::load_embedded().unwrap();
+        let model = zoo.find_model("mariner").unwrap();
         let mut after = model.clone();
         after.coefficients.insert("Y_v".into(), Quantity::new(-0.012, "fitted"));
         let trials = vec![trial("zz<1>", 0.2), trial("turn", 0.3)];
         Self { diagnosis: diagnosis(after), zoo, model, trials }
     }
 
-    pub fn render(&self) -> Rendered {
+    pub fn render(&self) -> RenderedReport {
         let trials: Vec<&Trial> = self.trials.iter().collect();
         let label =
             |number| VersionLabel { ship: "mariner".into(), number, sha256: "ab".repeat(32) };
@@ -83,12 +83,12 @@ fn errors(scale: f64) -> BTreeMap<String, f64> {
     all.map(|(channel, error)| (channel.to_owned(), scale * error)).into()
 }
 
-fn values(all: &[(&str, f64, f64)]) -> BTreeMap<String, Value> {
-    all.iter().map(|&(name, value, se)| (name.to_owned(), Value { value, se })).collect()
+fn values(all: &[(&str, f64, f64)]) -> BTreeMap<String, ValueWithError> {
+    all.iter().map(|&(name, value, se)| (name.to_owned(), ValueWithError { value, se })).collect()
 }
 
-fn current() -> Found {
-    Found {
+fn current() -> MissingEffect {
+    MissingEffect {
         name: "current".into(),
         form: "constant".into(),
         meaning: "one current for all trials".into(),
@@ -101,13 +101,17 @@ fn current() -> Found {
         ]),
         evidence: 41.2,
         in_model: BTreeMap::new(),
-        confounded_with: vec![Confounded { name: "wind".into(), angle_deg: 4.1, behind: 1.2 }],
+        confounded_with: vec![ConfoundedEffect {
+            name: "wind".into(),
+            angle_deg: 4.1,
+            behind: 1.2,
+        }],
     }
 }
 
-fn hypothesis(effects: &[&str], evidence: f64, taken: bool) -> Hypothesis {
+fn hypothesis(effects: &[&str], evidence: f64, taken: bool) -> HypothesisReport {
     let effects = effects.iter().map(|&effect| effect.to_owned()).collect();
-    Hypothesis {
+    HypothesisReport {
         effects,
         evidence,
         held_out: taken.then_some(30.5),
@@ -117,13 +121,13 @@ fn hypothesis(effects: &[&str], evidence: f64, taken: bool) -> Hypothesis {
 }
 
 /// One judged twice on the way, and so many others that the last are folded away.
-fn hypotheses() -> Vec<Hypothesis> {
+fn hypotheses() -> Vec<HypothesisReport> {
     let first = [
         ("current/constant", 41.2, true),
         ("current/constant", 41.0, false),
         ("wind/constant", 40.0, false),
     ];
-    let mut all: Vec<Hypothesis> =
+    let mut all: Vec<HypothesisReport> =
         first.map(|(effect, evidence, taken)| hypothesis(&[effect], evidence, taken)).into();
     all.extend((0..12).map(|k| {
         hypothesis(
@@ -152,7 +156,7 @@ fn residual(trial: &str, channel: &str) -> ResidualSeries {
     }
 }
 
-fn sailed() -> SailedManoeuvre {
+fn sailed() -> ManoeuvreOutcome {
     let turn = |advance_m| {
         ManoeuvreMetrics::Turn(TurningMetrics {
             rudder_deg: 20.0,
@@ -165,7 +169,7 @@ fn sailed() -> SailedManoeuvre {
             speed_loss_m_s: 2.0,
         })
     };
-    SailedManoeuvre {
+    ManoeuvreOutcome {
         trial: "turn".into(),
         measured: turn(600.0),
         before: Some(turn(540.0)),
@@ -189,8 +193,8 @@ fn limits() -> Vec<DetectionLimit> {
 }
 
 /// A rudder that was hit in a turn.
-fn damage() -> Change {
-    Change {
+fn damage() -> EffectChange {
+    EffectChange {
         effect: "rudder-damage".into(),
         form: "share-lost".into(),
         meaning: "a share of the rudder's angle does nothing".into(),
@@ -198,7 +202,8 @@ fn damage() -> Change {
         course: ChangeCourse::Begins,
         at_s: Some(310.0),
         between_s: Some([300.0, 320.0]),
-        parameters: [("share_lost_percent".to_owned(), Value { value: 35.0, se: 2.0 })].into(),
+        parameters: [("share_lost_percent".to_owned(), ValueWithError { value: 35.0, se: 2.0 })]
+            .into(),
         evidence: 80.0,
         or: Vec::new(),
     }
@@ -233,7 +238,7 @@ fn diagnosis(after: Model) -> Diagnosis {
         .into_iter()
         .flat_map(|name| [residual(name, "u"), residual(name, "r")])
         .collect();
-    let stretch = Unexplained {
+    let stretch = UnexplainedSegment {
         channel: "r".into(),
         rms_over_noise: 3.1,
         trial: "turn".into(),

@@ -1,50 +1,53 @@
 //! Table of all coefficients.
 
-use crate::numbers::{fixed, known, signed, significant, superscript};
-use crate::refinement::coefficients::{ChangedCoefficient, Coefficients};
-use crate::tables::{Cell, Column, Row, Table};
+use crate::numbers::{
+    format_fixed, format_known, format_signed, format_significant, format_superscript,
+};
+use crate::refinement::coefficients::{CoefficientEntry, CoefficientReport};
+use crate::tables::{ReportTable, TableCell, TableColumn, TableRow};
 use crate::words;
 
 /// Table of all coefficients by axis, with values in one power of ten.
-pub(crate) fn coefficients(coefficients: &Coefficients<'_>) -> Table {
-    let exponent = coefficients.exponent();
-    let unit = if exponent == 0 { String::new() } else { format!("×10{}", superscript(exponent)) };
+pub(crate) fn coefficient_table(coefficients: &CoefficientReport<'_>) -> ReportTable {
+    let exponent = coefficients.display_exponent();
+    let unit =
+        if exponent == 0 { String::new() } else { format!("×10{}", format_superscript(exponent)) };
     let columns = vec![
-        Column::text("coefficient", ""),
-        Column::text("unit", ""),
-        Column::number("source", &unit),
-        Column::number("refined", &unit),
-        Column::number("standard error", &unit),
-        Column::number("moved", "prior s.d."),
-        Column::number("moved", "%"),
+        TableColumn::text_column("coefficient", ""),
+        TableColumn::text_column("unit", ""),
+        TableColumn::number_column("source", &unit),
+        TableColumn::number_column("refined", &unit),
+        TableColumn::number_column("standard error", &unit),
+        TableColumn::number_column("moved", "prior s.d."),
+        TableColumn::number_column("moved", "%"),
     ];
     let mut rows = Vec::new();
     for axis in &coefficients.axes {
-        rows.push(Row::heading(words::axis(axis.axis)));
-        rows.extend(axis.coefficients.iter().map(|change| row(change, exponent)));
+        rows.push(TableRow::heading_row(words::axis_words(axis.axis)));
+        rows.extend(axis.coefficients.iter().map(|change| coefficient_row(change, exponent)));
     }
-    Table { columns, rows }
+    ReportTable { columns, rows }
 }
 
-fn row(coefficient: &ChangedCoefficient<'_>, exponent: i32) -> Row {
+fn coefficient_row(coefficient: &CoefficientEntry<'_>, exponent: i32) -> TableRow {
     let change = coefficient.change;
     let value = |value: f64| match exponent {
-        0 => significant(value, 4),
-        _ => fixed(value / 10_f64.powi(exponent), 2),
+        0 => format_significant(value, 4),
+        _ => format_fixed(value / 10_f64.powi(exponent), 2),
     };
-    let name = Cell::code(&change.name);
+    let name = TableCell::code_cell(&change.name);
     let name = match coefficient.collinear_group {
-        Some(group) => name.mark(format!("group {group}"), "note"),
+        Some(group) => name.with_mark(format!("group {group}"), "note"),
         None => name,
     };
-    let source = Cell::new(value(change.source));
-    Row::of(vec![
+    let source = TableCell::new(value(change.source));
+    TableRow::from_cells(vec![
         name,
-        Cell::new(&change.unit),
-        if coefficient.source_estimated { source.mark("estimated", "warn") } else { source },
-        Cell::new(value(change.refined)),
-        Cell::new(value(change.standard_error)),
-        Cell::new(signed(change.moved_sd, 2)),
-        Cell::new(known(coefficient.moved_percent, |value| signed(value, 1))),
+        TableCell::new(&change.unit),
+        if coefficient.source_estimated { source.with_mark("estimated", "warn") } else { source },
+        TableCell::new(value(change.refined)),
+        TableCell::new(value(change.standard_error)),
+        TableCell::new(format_signed(change.moved_sd, 2)),
+        TableCell::new(format_known(coefficient.moved_percent, |value| format_signed(value, 1))),
     ])
 }

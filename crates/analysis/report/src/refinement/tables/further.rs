@@ -3,82 +3,95 @@
 use sistership_simulation::manoeuvre::FurtherManoeuvres;
 use sistership_simulation::metrics::{PullOutMetrics, SpiralMetrics, StoppingMetrics};
 
-use super::results::pass;
-use crate::numbers::{fixed, known, significant};
-use crate::tables::{Cell, Column, Row, Table};
+use super::results::pass_cell;
+use crate::numbers::{format_fixed, format_known, format_significant};
+use crate::tables::{ReportTable, TableCell, TableColumn, TableRow};
 
 /// Table of the figures, under a heading for each manoeuvre.
-pub(crate) fn further(sailed: &FurtherManoeuvres, lpp_m: f64) -> Table {
+pub(crate) fn further_table(sailed: &FurtherManoeuvres, lpp_m: f64) -> ReportTable {
     let columns = vec![
-        Column::text("figure", ""),
-        Column::text("unit", ""),
-        Column::number("refined", ""),
-        Column::number("limit", "at most"),
-        Column::text("", ""),
+        TableColumn::text_column("figure", ""),
+        TableColumn::text_column("unit", ""),
+        TableColumn::number_column("refined", ""),
+        TableColumn::number_column("limit", "at most"),
+        TableColumn::text_column("", ""),
     ];
     let mut rows = Vec::new();
     if let Some(stop) = &sailed.stopping {
-        rows.extend(stopping(stop, lpp_m));
+        rows.extend(stopping_rows(stop, lpp_m));
     }
     for one in &sailed.pull_outs {
-        rows.extend(pull_out(one));
+        rows.extend(pull_out_rows(one));
     }
     if let Some(one) = &sailed.spiral {
-        rows.extend(spiral(one));
+        rows.extend(spiral_rows(one));
     }
-    Table { columns, rows }
+    ReportTable { columns, rows }
 }
 
-fn figure(name: &str, unit: &str, value: Option<f64>) -> Row {
-    let value = Cell::new(known(value, |value| significant(value, 3)));
-    Row::of(vec![Cell::new(name), Cell::new(unit), value, Cell::new(""), Cell::new("")])
-}
-
-/// Row of a figure that has a limit.
-fn limited(name: &str, unit: &str, value: Option<f64>, limit: f64, met: Option<bool>) -> Row {
-    Row::of(vec![
-        Cell::new(name),
-        Cell::new(unit),
-        Cell::new(known(value, |value| fixed(value, 2))),
-        Cell::new(fixed(limit, 2)),
-        pass(met),
+fn figure_row(name: &str, unit: &str, value: Option<f64>) -> TableRow {
+    let value = TableCell::new(format_known(value, |value| format_significant(value, 3)));
+    TableRow::from_cells(vec![
+        TableCell::new(name),
+        TableCell::new(unit),
+        value,
+        TableCell::new(""),
+        TableCell::new(""),
     ])
 }
 
-fn stopping(stop: &StoppingMetrics, lpp_m: f64) -> Vec<Row> {
-    let criterion = stop.criterion(lpp_m);
-    let title = format!("full astern stop, revolutions to {} 1/s", significant(stop.astern_rps, 3));
+/// Row of a figure that has a limit.
+fn limited_row(
+    name: &str,
+    unit: &str,
+    value: Option<f64>,
+    limit: f64,
+    met: Option<bool>,
+) -> TableRow {
+    TableRow::from_cells(vec![
+        TableCell::new(name),
+        TableCell::new(unit),
+        TableCell::new(format_known(value, |value| format_fixed(value, 2))),
+        TableCell::new(format_fixed(limit, 2)),
+        pass_cell(met),
+    ])
+}
+
+fn stopping_rows(stop: &StoppingMetrics, lpp_m: f64) -> Vec<TableRow> {
+    let criterion = stop.track_reach_criterion(lpp_m);
+    let title =
+        format!("full astern stop, revolutions to {} 1/s", format_significant(stop.astern_rps, 3));
     vec![
-        Row::heading(&title),
-        limited("track reach", "L", criterion.value, criterion.limit, criterion.pass),
-        figure("track reach", "m", stop.track_reach_m),
-        figure("head reach", "m", stop.head_reach_m),
-        figure("deviation to starboard", "m", stop.lateral_deviation_m),
-        figure("time", "s", stop.time_s),
+        TableRow::heading_row(&title),
+        limited_row("track reach", "L", criterion.value, criterion.limit, criterion.pass),
+        figure_row("track reach", "m", stop.track_reach_m),
+        figure_row("head reach", "m", stop.head_reach_m),
+        figure_row("deviation to starboard", "m", stop.lateral_deviation_m),
+        figure_row("time", "s", stop.time_s),
     ]
 }
 
-fn pull_out(one: &PullOutMetrics) -> Vec<Row> {
+fn pull_out_rows(one: &PullOutMetrics) -> Vec<TableRow> {
     let side = if one.rudder_deg < 0.0 { "port" } else { "starboard" };
     let title = format!("pull-out of a turn with {} deg to {side}", one.rudder_deg.abs());
     vec![
-        Row::heading(&title),
-        figure("yaw rate in the turn", "deg/s", Some(one.turning_rate_deg_s)),
-        figure("yaw rate left amidships", "deg/s", one.residual_rate_deg_s),
+        TableRow::heading_row(&title),
+        figure_row("yaw rate in the turn", "deg/s", Some(one.turning_rate_deg_s)),
+        figure_row("yaw rate left amidships", "deg/s", one.residual_rate_deg_s),
     ]
 }
 
-fn spiral(one: &SpiralMetrics) -> Vec<Row> {
+fn spiral_rows(one: &SpiralMetrics) -> Vec<TableRow> {
     let width = one.loop_width_deg;
     vec![
-        Row::heading("spirals"),
-        limited(
+        TableRow::heading_row("spirals"),
+        limited_row(
             "width of the loop",
             "deg of rudder",
             Some(width),
             one.width_limit_deg,
             Some(width <= one.width_limit_deg),
         ),
-        figure("height of the loop", "deg/s", Some(one.loop_height_deg_s)),
+        figure_row("height of the loop", "deg/s", Some(one.loop_height_deg_s)),
     ]
 }

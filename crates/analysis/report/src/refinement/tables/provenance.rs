@@ -1,52 +1,55 @@
 //! Tables of the sources of particulars, parameters and settings.
 
-use sistership_identification::refine::{Range, Settings};
+use sistership_identification::refine::{RefinementSettings, TuningRange};
 
-use crate::numbers::{self, known};
+use crate::numbers::{self, format_known};
 use crate::refinement::provenance::StatedQuantity;
-use crate::tables::{Cell, Column, Row, Table, setting};
+use crate::tables::{ReportTable, TableCell, TableColumn, TableRow, format_setting};
 
 /// Table of the ship's particulars.
-pub(crate) fn particulars(stated: &[StatedQuantity<'_>]) -> Table {
-    with_sources("particular", stated)
+pub(crate) fn particulars_table(stated: &[StatedQuantity<'_>]) -> ReportTable {
+    source_table("particular", stated)
 }
 
 /// Table of the law's parameters.
-pub(crate) fn parameters(stated: &[StatedQuantity<'_>]) -> Table {
-    with_sources("parameter", stated)
+pub(crate) fn parameters_table(stated: &[StatedQuantity<'_>]) -> ReportTable {
+    source_table("parameter", stated)
 }
 
-fn with_sources(what: &str, stated: &[StatedQuantity<'_>]) -> Table {
+fn source_table(what: &str, stated: &[StatedQuantity<'_>]) -> ReportTable {
     let mut columns = vec![
-        Column::text(what, ""),
-        Column::prose("meaning"),
-        Column::number("value", ""),
-        Column::text("unit", ""),
-        Column::text("source", ""),
+        TableColumn::text_column(what, ""),
+        TableColumn::prose_column("meaning"),
+        TableColumn::number_column("value", ""),
+        TableColumn::text_column("unit", ""),
+        TableColumn::text_column("source", ""),
     ];
     let remarked = stated.iter().any(|stated| stated.quantity.note.is_some());
     // The column of remarks only exists if there is one.
-    columns.extend(remarked.then(|| Column::prose("remark")));
-    Table { columns, rows: stated.iter().map(|stated| row(stated, remarked)).collect() }
+    columns.extend(remarked.then(|| TableColumn::prose_column("remark")));
+    ReportTable {
+        columns,
+        rows: stated.iter().map(|stated| quantity_row(stated, remarked)).collect(),
+    }
 }
 
-fn row(stated: &StatedQuantity<'_>, remarked: bool) -> Row {
-    let source = Cell::new(&stated.quantity.source);
+fn quantity_row(stated: &StatedQuantity<'_>, remarked: bool) -> TableRow {
+    let source = TableCell::new(&stated.quantity.source);
     let source = match stated.kind {
-        Some("estimated") => source.mark("estimated", "warn"),
-        Some(kind) => source.mark(kind, "note"),
+        Some("estimated") => source.with_mark("estimated", "warn"),
+        Some(kind) => source.with_mark(kind, "note"),
         None => source,
     };
-    let value = numbers::stated(stated.quantity.value, 5);
+    let value = numbers::format_stated(stated.quantity.value, 5);
     let mut cells = vec![
-        Cell::code(stated.name),
-        Cell::new(&stated.meaning),
-        Cell::new(value),
-        Cell::new(stated.unit),
+        TableCell::code_cell(stated.name),
+        TableCell::new(&stated.meaning),
+        TableCell::new(value),
+        TableCell::new(stated.unit),
         source,
     ];
-    cells.extend(remarked.then(|| Cell::new(stated.quantity.note.as_deref().unwrap_or(""))));
-    Row::of(cells)
+    cells.extend(remarked.then(|| TableCell::new(stated.quantity.note.as_deref().unwrap_or(""))));
+    TableRow::from_cells(cells)
 }
 
 /// Meanings of the settings, in the order of the table; a setting that is not listed comes after
@@ -83,25 +86,36 @@ const MEANINGS: [(&str, &str); 13] = [
 ];
 
 /// Table of all settings with their meaning.
-pub(crate) fn settings(settings: &Settings) -> Table {
-    let columns =
-        vec![Column::text("setting", ""), Column::prose("value"), Column::prose("meaning")];
+pub(crate) fn settings_table(settings: &RefinementSettings) -> ReportTable {
+    let columns = vec![
+        TableColumn::text_column("setting", ""),
+        TableColumn::prose_column("value"),
+        TableColumn::prose_column("meaning"),
+    ];
     let written = serde_json::to_value(settings).unwrap_or_default();
-    let mut lines: Vec<(usize, Row)> = Vec::new();
+    let mut lines: Vec<(usize, TableRow)> = Vec::new();
     for (name, value) in written.as_object().into_iter().flatten() {
         let rank = MEANINGS.iter().position(|(known, _)| known == name).unwrap_or(MEANINGS.len());
         let meaning = MEANINGS.get(rank).map_or("", |(_, meaning)| meaning);
-        let value = if name == "ranges" { ranges(&settings.ranges) } else { setting(value) };
-        lines.push((rank, Row::of(vec![Cell::code(name), Cell::new(value), Cell::new(meaning)])));
+        let value =
+            if name == "ranges" { ranges_text(&settings.ranges) } else { format_setting(value) };
+        lines.push((
+            rank,
+            TableRow::from_cells(vec![
+                TableCell::code_cell(name),
+                TableCell::new(value),
+                TableCell::new(meaning),
+            ]),
+        ));
     }
     lines.sort_by_key(|(rank, _)| *rank);
-    Table { columns, rows: lines.into_iter().map(|(_, row)| row).collect() }
+    ReportTable { columns, rows: lines.into_iter().map(|(_, row)| row).collect() }
 }
 
 /// Number and limits of the tuning ranges: `7, least λ from 1 to 10⁻⁶`.
-fn ranges(ranges: &[Range]) -> String {
-    let least = |range: Option<&Range>| {
-        known(range.map(|range| range.lambda_min), |value| numbers::stated(value, 2))
+fn ranges_text(ranges: &[TuningRange]) -> String {
+    let least = |range: Option<&TuningRange>| {
+        format_known(range.map(|range| range.lambda_min), |value| numbers::format_stated(value, 2))
     };
     format!("{}, least λ from {} to {}", ranges.len(), least(ranges.first()), least(ranges.last()))
 }

@@ -1,43 +1,45 @@
 //! Table of measured and simulated figures.
 
-use crate::numbers::{known, signed, significant};
-use crate::refinement::sailed::Sailed;
-use crate::tables::{Cell, Column, Row, Table};
+use crate::numbers::{format_known, format_signed, format_significant};
+use crate::refinement::sailed::MeasuredFigure;
+use crate::tables::{ReportTable, TableCell, TableColumn, TableRow};
 
 /// Table of the figures, under a heading for each trial.
-pub(crate) fn sailed(figures: &[Sailed]) -> Table {
+pub(crate) fn measured_table(figures: &[MeasuredFigure]) -> ReportTable {
     let columns = vec![
-        Column::text("figure", ""),
-        Column::text("unit", ""),
-        Column::number("measured", ""),
-        Column::number("source", ""),
-        Column::number("refined", ""),
-        Column::number("source off by", "%"),
-        Column::number("refined off by", "%"),
+        TableColumn::text_column("figure", ""),
+        TableColumn::text_column("unit", ""),
+        TableColumn::number_column("measured", ""),
+        TableColumn::number_column("source", ""),
+        TableColumn::number_column("refined", ""),
+        TableColumn::number_column("source off by", "%"),
+        TableColumn::number_column("refined off by", "%"),
     ];
     let mut rows = Vec::new();
     let mut last = "";
     for figure in figures {
         if figure.trial != last {
-            rows.push(Row::heading(&figure.trial));
+            rows.push(TableRow::heading_row(&figure.trial));
             last = &figure.trial;
         }
-        rows.push(row(figure));
+        rows.push(measured_row(figure));
     }
-    Table { columns, rows }
+    ReportTable { columns, rows }
 }
 
-fn row(figure: &Sailed) -> Row {
-    let value = |value: Option<f64>| Cell::new(known(value, |value| significant(value, 4)));
+fn measured_row(figure: &MeasuredFigure) -> TableRow {
+    let value = |value: Option<f64>| {
+        TableCell::new(format_known(value, |value| format_significant(value, 4)))
+    };
     let off = |simulated: Option<f64>| {
         let both = simulated.zip(figure.measured).filter(|(_, measured)| *measured != 0.0);
-        Cell::new(known(
+        TableCell::new(format_known(
             both.map(|(simulated, measured)| 100.0 * (simulated / measured - 1.0)),
-            |value| signed(value, 1),
+            |value| format_signed(value, 1),
         ))
     };
-    let mut cells = vec![Cell::new(figure.figure), Cell::new(figure.unit)];
+    let mut cells = vec![TableCell::new(figure.figure), TableCell::new(figure.unit)];
     cells.extend([figure.measured, figure.source, figure.refined].map(value));
     cells.extend([figure.source, figure.refined].map(off));
-    Row::of(cells)
+    TableRow::from_cells(cells)
 }

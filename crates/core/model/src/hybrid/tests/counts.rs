@@ -1,14 +1,14 @@
 //! The unknowns of Miyauchi 2024, Table 4.
 
-use super::super::Unknowns;
+use super::super::UnknownCounts;
 use super::{PRINTED, vectwin};
 use crate::Zoo;
 
 const WIND: &str = "effects: [{ effect: wind, form: measured }]\n";
 
-fn count(order: u32, scheme: &str, rules: &str) -> Unknowns {
-    let zoo = Zoo::embedded().unwrap();
-    vectwin(order, &format!("submodels: {scheme}\n{WIND}{rules}")).unknowns(&zoo).unwrap()
+fn count(order: u32, scheme: &str, rules: &str) -> UnknownCounts {
+    let zoo = Zoo::load_embedded().unwrap();
+    vectwin(order, &format!("submodels: {scheme}\n{WIND}{rules}")).count_unknowns(&zoo).unwrap()
 }
 
 #[test]
@@ -53,9 +53,10 @@ fn the_count_is_the_sum_of_its_parts() {
 
 #[test]
 fn an_effect_that_is_not_there_is_named() {
-    let zoo = Zoo::embedded().unwrap();
-    let fault =
-        |uses: &str| vectwin(1, &format!("effects: [{uses}]\n")).unknowns(&zoo).unwrap_err().1;
+    let zoo = Zoo::load_embedded().unwrap();
+    let fault = |uses: &str| {
+        vectwin(1, &format!("effects: [{uses}]\n")).count_unknowns(&zoo).unwrap_err().1
+    };
     assert!(fault("{ effect: wnd, form: measured }").contains("there are current"));
     assert!(
         fault("{ effect: wind, form: guessed }").contains("it has measured, unrecorded, constant")

@@ -1,6 +1,6 @@
 //! Bad declarations are refused with file, line and field.
 
-use super::super::derive;
+use super::super::derive_law;
 use super::with_head;
 
 const GOOD: &str = "order: 2
@@ -14,7 +14,7 @@ submodels: ahead_stalled_astern
 
 fn refused(from: &str, to: &str) -> String {
     assert!(GOOD.contains(from), "{from}");
-    derive("bad.yaml", &with_head(&GOOD.replace(from, to))).unwrap_err().to_string()
+    derive_law("bad.yaml", &with_head(&GOOD.replace(from, to))).unwrap_err().to_string()
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn the_fault_is_named_with_its_place() {
 fn quadrants_need_one_propeller() {
     let text =
         "order: 1\nactuators: { n: { kind: propeller, pair: true } }\nsubmodels: quadrants\n";
-    let error = derive("bad.yaml", &with_head(text)).unwrap_err().to_string();
+    let error = derive_law("bad.yaml", &with_head(text)).unwrap_err().to_string();
     assert!(
         error.contains("bad.yaml:6: submodels: `quadrants` needs one single propeller"),
         "{error}"
@@ -102,7 +102,7 @@ fn quadrants_need_one_propeller() {
 #[test]
 fn names_that_could_be_mistaken_are_refused() {
     let text = "order: 2\nactuators: { n: { kind: propeller }, nn: { kind: propeller } }\n";
-    let error = derive("bad.yaml", &with_head(text)).unwrap_err().to_string();
+    let error = derive_law("bad.yaml", &with_head(text)).unwrap_err().to_string();
     assert!(error.contains("bad.yaml:5: actuators: their names make `X_n"), "{error}");
 }
 
@@ -111,6 +111,6 @@ fn an_expansion_without_end_is_refused() {
     let azimuths: Vec<String> =
         (0..6).map(|k| format!("a{k}: {{ kind: azimuth, pair: true }}")).collect();
     let text = format!("order: 4\nactuators: {{ {} }}\n", azimuths.join(", "));
-    let error = derive("bad.yaml", &with_head(&text)).unwrap_err().to_string();
+    let error = derive_law("bad.yaml", &with_head(&text)).unwrap_err().to_string();
     assert!(error.contains("order: 39 variables to order 4"), "{error}");
 }

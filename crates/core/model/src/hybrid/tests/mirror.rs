@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Derivation, declared};
+use super::{LawDerivation, declared};
 use crate::coefficient::Axis;
 
 /// Ships that are symmetric under `symmetry: mirror`, with any coefficients.
@@ -44,14 +44,19 @@ fn mirrored(point: &Point) -> Point {
 }
 
 fn force(
-    derivation: &Derivation,
+    derivation: &LawDerivation,
     axis: Axis,
     coefficients: &BTreeMap<String, f64>,
     point: &Point,
 ) -> f64 {
     let law = &derivation.law;
-    let value =
-        |name: &String| law.term(name).unwrap().1.value(&|n| of(derivation, n, point)).unwrap();
+    let value = |name: &String| {
+        law.unscaled_regressor(name)
+            .unwrap()
+            .1
+            .value(&|n| evaluate_term(derivation, n, point))
+            .unwrap()
+    };
     coefficients
         .iter()
         .filter(|(name, _)| name.starts_with(&axis.to_string()))
@@ -59,14 +64,16 @@ fn force(
         .sum()
 }
 
-fn of(derivation: &Derivation, name: &str, point: &Point) -> Option<f64> {
+fn evaluate_term(derivation: &LawDerivation, name: &str, point: &Point) -> Option<f64> {
     let known = point.get(name).copied().or((name == "lpp_m").then_some(3.0));
-    known.or_else(|| derivation.law.values.get(name)?.value(&|n| of(derivation, n, point)))
+    known.or_else(|| {
+        derivation.law.values.get(name)?.value(&|n| evaluate_term(derivation, n, point))
+    })
 }
 
 /// The largest difference between the forces of mirrored motions and the mirrored forces, and the
 /// largest force.
-fn asymmetry(derivation: &Derivation) -> (f64, f64) {
+fn asymmetry(derivation: &LawDerivation) -> (f64, f64) {
     let mut numbers = Numbers(7);
     let coefficients =
         derivation.law.coefficient_names().into_iter().map(|name| (name, numbers.next())).collect();

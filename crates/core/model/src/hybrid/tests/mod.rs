@@ -8,19 +8,19 @@ mod switches;
 
 use std::collections::BTreeSet;
 
-use super::{Derivation, derive};
+use super::{LawDerivation, derive_law};
 use crate::coefficient::Axis;
 
 /// The ship of the paper: one propeller, VecTwin rudders; `more` is further YAML.
-fn vectwin(order: u32, more: &str) -> Derivation {
+fn vectwin(order: u32, more: &str) -> LawDerivation {
     declared(&format!(
         "order: {order}\nscaling: dimensional\nactuators:\n  n: {{ kind: propeller }}\n  \
          delta: {{ kind: vectwin, stall_deg: {{ starboard: 50, port: 55 }} }}\n{more}"
     ))
 }
 
-fn declared(body: &str) -> Derivation {
-    derive("test.yaml", &with_head(body)).unwrap_or_else(|error| panic!("{error}"))
+fn declared(body: &str) -> LawDerivation {
+    derive_law("test.yaml", &with_head(body)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn with_head(body: &str) -> String {
@@ -35,7 +35,7 @@ rules:
 ";
 
 /// The terms of an axis by what their names spell.
-fn names(derivation: &Derivation, axis: Axis) -> BTreeSet<String> {
+fn names(derivation: &LawDerivation, axis: Axis) -> BTreeSet<String> {
     let spelled = |name: &String| {
         name.split_once('_').map_or(name.clone(), |(_, factors)| factors.to_owned())
     };

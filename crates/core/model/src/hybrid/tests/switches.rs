@@ -5,14 +5,14 @@ use crate::Law;
 use crate::coefficient::Axis;
 
 /// A single screw and rudder of second order.
-fn single(rules: &str) -> super::Derivation {
+fn single(rules: &str) -> super::LawDerivation {
     declared(&format!(
         "order: 2\nactuators: {{ n: {{ kind: propeller }}, delta: {{ kind: rudder }} }}\nrules: {{ \
          {rules} }}\n"
     ))
 }
 
-fn sizes(derivation: &super::Derivation) -> [usize; 3] {
+fn sizes(derivation: &super::LawDerivation) -> [usize; 3] {
     [Axis::X, Axis::Y, Axis::N].map(|axis| derivation.law.axes[&axis].terms.len())
 }
 
@@ -96,7 +96,7 @@ fn every_kind_of_actuator_has_its_variables() {
 
 #[test]
 fn the_scaling_decides_whether_coefficients_carry_units() {
-    let unit = |derivation: &super::Derivation| {
+    let unit = |derivation: &super::LawDerivation| {
         ["X_u|u|", "Y_vn", "N_rcosdelta_s"]
             .map(|name| derivation.law.coefficient_dimension(name).unwrap().to_string())
     };
@@ -156,8 +156,8 @@ fn submodels_are_those_of_the_algorithms() {
 #[test]
 fn deviations_carry_their_shrinkage() {
     let law = vectwin(1, "submodels: ahead_astern\nshrinkage: 9.0\n").law;
-    assert_eq!(law.deviation("X_u@astern").map(|submodel| submodel.shrinkage), Some(9.0));
-    assert!(law.deviation("X_u").is_none());
+    assert_eq!(law.deviation_submodel("X_u@astern").map(|submodel| submodel.shrinkage), Some(9.0));
+    assert!(law.deviation_submodel("X_u").is_none());
 }
 
 #[test]

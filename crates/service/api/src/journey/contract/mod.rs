@@ -252,7 +252,7 @@ fn usual(name: &str) -> &'static str {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn every_limit_of_the_document_is_one_of_the_server() {
-    let harness = Harness::on(TestDatabase::sqlite()).await;
+    let harness = Harness::on(TestDatabase::new_sqlite()).await;
     let family = json!({ "name": "walked", "foundation": "mariner/1", "members": ["mariner"] });
     assert_eq!(harness.post("/v1/families", &family).await.0, 201);
     let document = crate::openapi();

@@ -6,19 +6,19 @@ use std::net::{SocketAddr, TcpListener};
 use reqwest::redirect::Policy;
 use reqwest::{Client, Method, StatusCode, Url};
 use serde_json::{Value, json};
-use sistership_auth::openid::testing::{CLIENT, Hostile, with_secret};
-use sistership_auth::openid::{OpenIdArguments, Settings};
+use sistership_auth::openid::testing::{CLIENT, ScriptedProvider, with_secret};
+use sistership_auth::openid::{OpenIdArguments, ProviderSettings};
 use sistership_store::testing::TestDatabase;
 
 use super::super::harness::{config, read};
-use crate::{Running, Server, StartError};
+use crate::{RunningServer, Server, StartError};
 
 pub(super) const OWNER: &str = "sesame";
 pub(super) const PASSWORD: &str = "a long sentence of its own";
 
 /// A server with an OpenID provider.
 pub(super) struct Knowing {
-    pub server: Running,
+    pub server: RunningServer,
     pub url: String,
     pub client: Client,
 }
@@ -41,7 +41,7 @@ pub(super) fn settings(
     issuer: &str,
     secret: &str,
     change: impl FnOnce(&mut OpenIdArguments),
-) -> Settings {
+) -> ProviderSettings {
     let mut told = OpenIdArguments {
         issuer: Some(issuer.to_owned()),
         client_id: Some(CLIENT.0.to_owned()),
@@ -50,7 +50,7 @@ pub(super) fn settings(
         ..OpenIdArguments::default()
     };
     change(&mut told);
-    with_secret(told.settings(&OpenIdArguments::default()).unwrap().unwrap(), secret)
+    with_secret(told.resolve_settings(&OpenIdArguments::default()).unwrap().unwrap(), secret)
 }
 
 /// Returns an address without a listener.
@@ -62,7 +62,7 @@ impl Knowing {
     pub async fn start(
         database: &TestDatabase,
         listen: SocketAddr,
-        settings: Settings,
+        settings: ProviderSettings,
     ) -> Result<Self, StartError> {
         let mut config = config(database);
         config.listen = listen;
@@ -79,7 +79,7 @@ impl Knowing {
 
     pub async fn on(
         database: &TestDatabase,
-        hostile: &Hostile,
+        hostile: &ScriptedProvider,
         change: impl FnOnce(&mut OpenIdArguments),
     ) -> Self {
         let listen = free();
@@ -169,14 +169,14 @@ impl Browser {
     }
 
     /// Goes to the provider, which admits the person; returns the address of the way back.
-    pub async fn leaves(&mut self, on: &Knowing, hostile: &Hostile, next: &str) -> String {
+    pub async fn leaves(&mut self, on: &Knowing, hostile: &ScriptedProvider, next: &str) -> String {
         let gone = self.looks(on, &format!("/sign-in/oidc{next}")).await;
         assert_eq!(gone.status, StatusCode::SEE_OTHER, "{}", gone.text);
         assert!(gone.place.starts_with(&format!("{}/authorize?", hostile.url)), "{}", gone.place);
-        format!("/sign-in/oidc/callback?{}", hostile.lets_through(&gone.place))
+        format!("/sign-in/oidc/callback?{}", hostile.accept_person(&gone.place))
     }
 
-    pub async fn signs_in(&mut self, on: &Knowing, hostile: &Hostile) -> Shown {
+    pub async fn signs_in(&mut self, on: &Knowing, hostile: &ScriptedProvider) -> Shown {
         let back = self.leaves(on, hostile, "").await;
         self.looks(on, &back).await
     }
@@ -188,8 +188,8 @@ impl Browser {
     }
 }
 
-pub(super) fn claims(hostile: &Hostile, claims: Value) {
-    hostile.told().claims = claims.as_object().unwrap().clone();
+pub(super) fn claims(hostile: &ScriptedProvider, claims: Value) {
+    hostile.lock_script().claims = claims.as_object().unwrap().clone();
 }
 
 pub(super) fn token(page: &str) -> &str {

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
-use sistership_auth::openid::testing::Hostile;
+use sistership_auth::openid::testing::ScriptedProvider;
 use sistership_store::testing::TestDatabase;
 
 use super::harness::{Harness, config};
@@ -16,7 +16,7 @@ use knowing::{Browser, Knowing, PASSWORD, claims, settings, token};
 
 /// A person whom an admin has linked signs in as that user; others are refused.
 async fn who_is_linked_gets_in(database: TestDatabase) {
-    let hostile = Hostile::start().await;
+    let hostile = ScriptedProvider::start().await;
     let on = Knowing::on(&database, &hostile, |_| {}).await;
     on.user("ann", "engineer").await;
     let mut browser = Browser::default();
@@ -61,7 +61,7 @@ async fn who_is_linked_gets_in(database: TestDatabase) {
 
 /// A provider that accepts a code twice does not cause a second sign-in.
 async fn a_sign_in_ends_once_whatever_the_provider_says(database: TestDatabase) {
-    let hostile = Hostile::start().await;
+    let hostile = ScriptedProvider::start().await;
     let on = Knowing::on(&database, &hostile, |told| {
         (told.auto_create, told.default_role) = (true, Some("reader".into()));
     })
@@ -70,10 +70,10 @@ async fn a_sign_in_ends_once_whatever_the_provider_says(database: TestDatabase) 
     let gone = browser.looks(&on, "/sign-in/oidc").await.place;
     let ticket = browser.0.clone();
     let back = |query: &str| format!("/sign-in/oidc/callback?{query}");
-    let first = browser.looks(&on, &back(&hostile.lets_through(&gone))).await;
+    let first = browser.looks(&on, &back(&hostile.accept_person(&gone))).await;
     assert_eq!(first.status, StatusCode::SEE_OTHER, "{}", first.text);
     let mut again = Browser(ticket);
-    let second = again.looks(&on, &back(&hostile.lets_through(&gone))).await;
+    let second = again.looks(&on, &back(&hostile.accept_person(&gone))).await;
     assert!(second.text.contains("has ended already"), "{}", second.text);
     assert!(!again.0.contains_key("sistership_session"));
     on.server.stop().await;
@@ -81,7 +81,7 @@ async fn a_sign_in_ends_once_whatever_the_provider_says(database: TestDatabase) 
 
 /// A person without an account gets one, unless the name is taken.
 async fn accounts_are_created_where_that_is_set(database: TestDatabase) {
-    let hostile = Hostile::start().await;
+    let hostile = ScriptedProvider::start().await;
     let on = Knowing::on(&database, &hostile, |told| {
         (told.auto_create, told.default_role) = (true, Some("reader".into()));
     })
@@ -112,14 +112,14 @@ async fn accounts_are_created_where_that_is_set(database: TestDatabase) {
         "{}",
         unnamed.text
     );
-    let found = sistership_jobs::upkeep::fsck(on.server.archive()).await.unwrap();
+    let found = sistership_jobs::upkeep::check_archive(on.server.archive()).await.unwrap();
     assert!(found.clean, "{:?}", found.faults);
     on.server.stop().await;
 }
 
 /// The roles of groups are given and removed at each sign-in.
 async fn groups_say_what_people_may_do(database: TestDatabase) {
-    let hostile = Hostile::start().await;
+    let hostile = ScriptedProvider::start().await;
     let on = Knowing::on(&database, &hostile, |told| {
         told.auto_create = true;
         told.group_roles =
@@ -160,7 +160,7 @@ async fn groups_say_what_people_may_do(database: TestDatabase) {
 
 /// A user who has signed in by password links the own account on its page, and no other.
 async fn people_link_their_own_account(database: TestDatabase) {
-    let hostile = Hostile::start().await;
+    let hostile = ScriptedProvider::start().await;
     let on = Knowing::on(&database, &hostile, |_| {}).await;
     for name in ["ann", "bob"] {
         on.user(name, "reader").await;
@@ -180,14 +180,14 @@ async fn people_link_their_own_account(database: TestDatabase) {
     let page = ann.sends(&on, "/account/identity", &[("form_token", token(&page))]).await.text;
     let place = page.split("href=\"http").nth(1).unwrap().split('"').next().unwrap();
     let place = format!("http{place}").replace("&#38;", "&").replace("&amp;", "&");
-    let query = hostile.lets_through(&place);
+    let query = hostile.accept_person(&place);
     let back = format!("/sign-in/oidc/callback?{query}");
     // In the browser of another person, who is given the ticket.
     let mut bob = signed_in("bob").await;
     bob.0.insert("sistership_oidc".into(), ann.0["sistership_oidc"].clone());
     let other = bob.looks(&on, &back).await;
     assert!(other.text.contains("sign in as ann again"), "{}", other.text);
-    let back = format!("/sign-in/oidc/callback?{}", hostile.lets_through(&place));
+    let back = format!("/sign-in/oidc/callback?{}", hostile.accept_person(&place));
     let done = ann.looks(&on, &back).await;
     assert_eq!(done.place, "/account?done=link", "{}", done.text);
     let account = ann.looks(&on, &done.place).await.text;
@@ -200,8 +200,8 @@ async fn people_link_their_own_account(database: TestDatabase) {
 
 /// No redirect leads to another site, and each failure is shown on the sign-in page.
 async fn failures_are_told_and_local_accounts_go_on(database: TestDatabase) {
-    let hostile = Hostile::start().await;
-    hostile.told().down = true;
+    let hostile = ScriptedProvider::start().await;
+    hostile.lock_script().down = true;
     let on = Knowing::on(&database, &hostile, |_| {}).await;
     on.user("ann", "reader").await;
     let mut browser = Browser::default();
@@ -213,7 +213,7 @@ async fn failures_are_told_and_local_accounts_go_on(database: TestDatabase) {
     );
     let form = [("name", "ann"), ("password", PASSWORD), ("form_token", token(&page.text))];
     assert_eq!(browser.sends(&on, "/sign-in", &form).await.status, StatusCode::SEE_OTHER);
-    hostile.told().down = false;
+    hostile.lock_script().down = false;
     for next in ["//evil.example", "/%5Cevil.example", "/%09/evil.example", "https://evil.example"]
     {
         let page = browser.looks(&on, &format!("/sign-in?next={next}")).await.text;
@@ -237,12 +237,12 @@ async fn failures_are_told_and_local_accounts_go_on(database: TestDatabase) {
 
 #[tokio::test]
 async fn without_accounts_there_is_no_provider() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let mut config = config(&database);
     config.openid = Some(settings("http://127.0.0.1:1", "https://id.example", "a", |_| {}));
     let refused = Server::start(config).await;
     assert!(matches!(refused, Err(StartError::OpenIdWithoutAccounts)), "{refused:?}");
-    let harness = Harness::on(TestDatabase::sqlite()).await;
+    let harness = Harness::on(TestDatabase::new_sqlite()).await;
     for path in ["/sign-in/oidc", "/sign-in/oidc/callback?code=a"] {
         let answer = harness.client.get(harness.url(path)).send().await.unwrap();
         assert_eq!(answer.status(), StatusCode::NOT_FOUND);

@@ -53,7 +53,7 @@ async fn a_certified_provider_lets_people_in() {
     let listen = free();
     let url = format!("http://{listen}");
     let Some(provider) = RealProvider::start(&url) else { return };
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let settings = settings(&url, &provider.issuer, RealProvider::SECRET, |told| {
         told.auto_create = true;
         told.scopes = Some("openid profile email groups".into());

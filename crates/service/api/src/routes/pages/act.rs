@@ -5,103 +5,103 @@ use axum::response::Response;
 use serde_json::{Value, json};
 
 use super::super::{aliases, diagnoses, refinements};
-use super::answer::then;
+use super::answer::redirect_to;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::field::Remark;
 use crate::web::form::PageForm;
-use crate::web::{Id, Name, Place, Word};
+use crate::web::{Id, Name, PathParams, Word};
 use sistership_jobs::line::CHAMPION;
-use sistership_store::Expect;
+use sistership_store::ExpectedRevision;
 
 /// Queues a refinement, and leads to its job.
-pub(super) async fn refine(
+pub(super) async fn refine_ship(
     State(app): State<App>,
-    Place(ship): Place<Name>,
+    PathParams(ship): PathParams<Name>,
     PageForm(form): PageForm,
 ) -> Result<Response> {
-    let settings = form.text("method").map_or(json!({}), |method| json!({ "method": method }));
+    let settings = form.get_text("method").map_or(json!({}), |method| json!({ "method": method }));
     // Only the fields that are filled in: the endpoint knows the defaults.
     let mut asked = json!({ "ship": &*ship, "settings": settings });
     for name in ["source", "law"] {
-        if let Some(text) = form.text(name) {
+        if let Some(text) = form.get_text(name) {
             asked[name] = Value::from(text);
         }
     }
-    Ok(then(&format!("/jobs/{}", refinements::ask(&app, &asked).await?.id)))
+    Ok(redirect_to(&format!("/jobs/{}", refinements::queue_from_page(&app, &asked).await?.id)))
 }
 
-pub(super) async fn diagnose(
+pub(super) async fn diagnose_ship(
     State(app): State<App>,
-    Place(ship): Place<Name>,
+    PathParams(ship): PathParams<Name>,
     PageForm(form): PageForm,
 ) -> Result<Response> {
-    let asked = json!({ "model": format!("{}/{}", &*ship, form.whole("version")?) });
-    Ok(then(&format!("/jobs/{}", diagnoses::ask(&app, &asked).await?.id)))
+    let asked = json!({ "model": format!("{}/{}", &*ship, form.whole_number("version")?) });
+    Ok(redirect_to(&format!("/jobs/{}", diagnoses::queue_from_page(&app, &asked).await?.id)))
 }
 
 /// Moves the champion if its position is still that which the page showed.
-pub(super) async fn promote(
+pub(super) async fn promote_version(
     State(app): State<App>,
-    Place(ship): Place<Name>,
+    PathParams(ship): PathParams<Name>,
     PageForm(form): PageForm,
 ) -> Result<Response> {
-    let expect = match form.text("revision") {
-        None => Expect::Absent,
-        Some(_) => Expect::Revision(form.whole("revision")?),
+    let expect = match form.get_text("revision") {
+        None => ExpectedRevision::Absent,
+        Some(_) => ExpectedRevision::Revision(form.whole_number("revision")?),
     };
-    let reason = form.needed("reason")?;
-    aliases::move_to(&app, &ship, CHAMPION, form.whole("version")?, expect, reason).await?;
-    Ok(then(&format!("/ships/{}", &*ship)))
+    let reason = form.required_text("reason")?;
+    aliases::move_to(&app, &ship, CHAMPION, form.whole_number("version")?, expect, reason).await?;
+    Ok(redirect_to(&format!("/ships/{}", &*ship)))
 }
 
-pub(super) async fn note(
+pub(super) async fn add_note(
     State(app): State<App>,
-    Place(ship): Place<Name>,
+    PathParams(ship): PathParams<Name>,
     PageForm(form): PageForm,
 ) -> Result<Response> {
     // Forms send ends of lines as two characters (WHATWG, HTML, 4.10.22); the note has one.
-    let text = form.needed("text")?.replace("\r\n", "\n").parse::<Remark>();
+    let text = form.required_text("text")?.replace("\r\n", "\n").parse::<Remark>();
     let text = text.map_err(|message| Problem::invalid("text", message))?;
-    app.store().ships().note(&ship, &text).await?;
-    Ok(then(&format!("/ships/{}#notes", &*ship)))
+    app.store().ships().add_note(&ship, &text).await?;
+    Ok(redirect_to(&format!("/ships/{}#notes", &*ship)))
 }
 
-pub(super) async fn tag(
+pub(super) async fn add_tag(
     State(app): State<App>,
-    Place(ship): Place<Name>,
+    PathParams(ship): PathParams<Name>,
     PageForm(form): PageForm,
 ) -> Result<Response> {
-    let word = form.needed("tag")?.parse::<Word>();
+    let word = form.required_text("tag")?.parse::<Word>();
     let word = word.map_err(|message| Problem::invalid("tag", message))?;
-    app.store().ships().tag(&ship, &word).await?;
-    Ok(then(&format!("/ships/{}#actions", &*ship)))
+    app.store().ships().add_tag(&ship, &word).await?;
+    Ok(redirect_to(&format!("/ships/{}#actions", &*ship)))
 }
 
-pub(super) async fn untag(
+pub(super) async fn remove_tag(
     State(app): State<App>,
-    Place(ship): Place<Name>,
+    PathParams(ship): PathParams<Name>,
     PageForm(form): PageForm,
 ) -> Result<Response> {
-    app.store().ships().untag(&ship, form.needed("tag")?).await?;
-    Ok(then(&format!("/ships/{}#actions", &*ship)))
+    app.store().ships().remove_tag(&ship, form.required_text("tag")?).await?;
+    Ok(redirect_to(&format!("/ships/{}#actions", &*ship)))
 }
 
-pub(super) async fn cancel(
+pub(super) async fn cancel_job(
     State(app): State<App>,
-    Place(id): Place<Id>,
+    PathParams(id): PathParams<Id>,
     // The form is extracted for the check of its token.
     PageForm(_): PageForm,
 ) -> Result<Response> {
-    Ok(then(&format!("/jobs/{}", app.store().jobs().request_cancel(&id).await?.id)))
+    Ok(redirect_to(&format!("/jobs/{}", app.store().jobs().request_cancel(&id).await?.id)))
 }
 
-pub(super) async fn retry(
+pub(super) async fn retry_job(
     State(app): State<App>,
-    Place(id): Place<Id>,
+    PathParams(id): PathParams<Id>,
     PageForm(_): PageForm,
 ) -> Result<Response> {
     let job = app.store().jobs().retry(&id).await?;
-    app.wake().notify_one();
-    Ok(then(&format!("/jobs/{}", job.id)))
+    app.wake_signal().notify_one();
+    Ok(redirect_to(&format!("/jobs/{}", job.id)))
 }

@@ -6,91 +6,138 @@ use sistership_auth::Role;
 use sistership_jobs::budget;
 use sistership_jobs::memory::trial_bytes;
 use sistership_pages as pages;
-use sistership_pages::Fields;
+use sistership_pages::FormFields;
 
-use super::answer::{answer, begun};
+use super::answer::{page_response, stream_page};
 use crate::app::App;
 use crate::problem::Result;
-use crate::rights::visible;
-use crate::web::form::shell;
-use crate::web::{Id, Name, Number, Params, Place, Word};
+use crate::rights::filter_visible;
+use crate::web::form::page_shell;
+use crate::web::{Id, Name, Number, PathParams, QueryParams, Word};
 
-type Asked = Params<Vec<(String, String)>>;
+type PageQuery = QueryParams<Vec<(String, String)>>;
 
-pub(super) async fn fleet(State(app): State<App>, Params(query): Asked) -> Result<Response> {
-    let (known, query) = (app.catalogue().vectors(), Fields::from(query));
-    Ok(answer(pages::fleet::page(app.archive(), known, shell(&app), &query).await?))
+pub(super) async fn fleet_page(
+    State(app): State<App>,
+    QueryParams(query): PageQuery,
+) -> Result<Response> {
+    let (known, query) = (app.catalogue().known_vectors(), FormFields::from(query));
+    Ok(page_response(
+        pages::fleet::fleet_page(app.archive(), known, page_shell(&app), &query).await?,
+    ))
 }
 
-pub(super) async fn ship(State(app): State<App>, Place(ship): Place<Name>) -> Result<Response> {
-    let gathered = pages::ship::gather(app.archive(), shell(&app), &ship).await?;
-    let beginning = pages::beginning(shell(&app), &ship, "/")?;
+pub(super) async fn ship_page(
+    State(app): State<App>,
+    PathParams(ship): PathParams<Name>,
+) -> Result<Response> {
+    let gathered = pages::ship::gather_inputs(app.archive(), page_shell(&app), &ship).await?;
+    let beginning = pages::page_beginning(page_shell(&app), &ship, "/")?;
     // The similar ships take a ranking of the zoo: the page begins before they are known.
     let page = async move {
         let zoo = app.zoo_shown(gathered.vessel()).await?;
-        let similar = gathered.similar(app.archive(), zoo).await?;
-        let similar = visible(app.store(), Role::Reader, similar, |ranked| &ranked.ship).await?;
-        Ok(app.compute(move || gathered.html(similar)).await??)
+        let similar = gathered.similar_ships(app.archive(), zoo).await?;
+        let similar =
+            filter_visible(app.store(), Role::Reader, similar, |ranked| &ranked.ship).await?;
+        Ok(app.run_blocking(move || gathered.render_html(similar)).await??)
     };
-    Ok(begun(beginning, page))
+    Ok(stream_page(beginning, page))
 }
 
-pub(super) async fn version(
+pub(super) async fn version_page(
     State(app): State<App>,
-    Place((ship, number)): Place<(Name, Number)>,
+    PathParams((ship, number)): PathParams<(Name, Number)>,
 ) -> Result<Response> {
-    let gathered = pages::version::gather(app.archive(), shell(&app), &ship, number.get()).await?;
-    let (known, title) = (app.manoeuvres(), format!("{}/{}", &*ship, number.get()));
-    let beginning = pages::beginning(shell(&app), &title, "/")?;
-    let page = async move { Ok(app.compute(move || gathered.html(&known)).await??) };
-    Ok(begun(beginning, page))
+    let gathered =
+        pages::version::gather_inputs(app.archive(), page_shell(&app), &ship, number.get()).await?;
+    let (known, title) = (app.known_manoeuvres(), format!("{}/{}", &*ship, number.get()));
+    let beginning = pages::page_beginning(page_shell(&app), &title, "/")?;
+    let page = async move { Ok(app.run_blocking(move || gathered.render_html(&known)).await??) };
+    Ok(stream_page(beginning, page))
 }
 
-pub(super) async fn trial(State(app): State<App>, Place(id): Place<Id>) -> Result<Response> {
-    budget::take(trial_bytes(app.store().trials().get(&id).await?.sample_rows)).await?;
-    let gathered = pages::trial::gather(app.archive(), shell(&app), &id).await?;
-    Ok(answer(app.compute(move || gathered.html()).await??))
+pub(super) async fn trial_page(
+    State(app): State<App>,
+    PathParams(id): PathParams<Id>,
+) -> Result<Response> {
+    budget::reserve_for_request(trial_bytes(app.store().trials().get(&id).await?.sample_rows))
+        .await?;
+    let gathered = pages::trial::gather_inputs(app.archive(), page_shell(&app), &id).await?;
+    Ok(page_response(app.run_blocking(move || gathered.render_html()).await??))
 }
 
-pub(super) async fn compare(State(app): State<App>, Params(query): Asked) -> Result<Response> {
-    let query = Fields::from(query);
-    let gathered = pages::compare::gather(app.archive(), shell(&app), &query).await?;
-    let beginning = pages::beginning(shell(&app), "Compare", "/compare")?;
-    Ok(begun(beginning, async move { Ok(app.compute(move || gathered.html()).await??) }))
+pub(super) async fn compare_page(
+    State(app): State<App>,
+    QueryParams(query): PageQuery,
+) -> Result<Response> {
+    let query = FormFields::from(query);
+    let gathered = pages::compare::gather_inputs(app.archive(), page_shell(&app), &query).await?;
+    let beginning = pages::page_beginning(page_shell(&app), "Compare", "/compare")?;
+    Ok(stream_page(beginning, async move {
+        Ok(app.run_blocking(move || gathered.render_html()).await??)
+    }))
 }
 
-pub(super) async fn playground(State(app): State<App>, Params(query): Asked) -> Result<Response> {
-    let query = Fields::from(query);
-    let gathered = pages::playground::gather(app.archive(), shell(&app), query).await?;
+pub(super) async fn playground_page(
+    State(app): State<App>,
+    QueryParams(query): PageQuery,
+) -> Result<Response> {
+    let query = FormFields::from(query);
+    let gathered = pages::playground::gather_inputs(app.archive(), page_shell(&app), query).await?;
     let most = app.limits().prediction_samples;
-    let beginning = pages::beginning(shell(&app), "Playground", "/playground")?;
-    Ok(begun(beginning, async move { Ok(app.compute(move || gathered.html(most)).await??) }))
+    let beginning = pages::page_beginning(page_shell(&app), "Playground", "/playground")?;
+    Ok(stream_page(beginning, async move {
+        Ok(app.run_blocking(move || gathered.render_html(most)).await??)
+    }))
 }
 
-pub(super) async fn families(State(app): State<App>, Params(query): Asked) -> Result<Response> {
-    Ok(answer(pages::families::list(app.archive(), shell(&app), &Fields::from(query)).await?))
+pub(super) async fn families_page(
+    State(app): State<App>,
+    QueryParams(query): PageQuery,
+) -> Result<Response> {
+    Ok(page_response(
+        pages::families::families_page(app.archive(), page_shell(&app), &FormFields::from(query))
+            .await?,
+    ))
 }
 
-pub(super) async fn family(State(app): State<App>, Place(name): Place<Word>) -> Result<Response> {
-    Ok(answer(pages::families::one(app.archive(), shell(&app), &name).await?))
+pub(super) async fn family_page(
+    State(app): State<App>,
+    PathParams(name): PathParams<Word>,
+) -> Result<Response> {
+    Ok(page_response(pages::families::family_page(app.archive(), page_shell(&app), &name).await?))
 }
 
-pub(super) async fn zoo(State(app): State<App>) -> Result<Response> {
-    Ok(answer(pages::zoo::index(&*app.laws().await?, shell(&app))?))
+pub(super) async fn zoo_page(State(app): State<App>) -> Result<Response> {
+    Ok(page_response(pages::zoo::zoo_page(&*app.stored_laws().await?, page_shell(&app))?))
 }
 
-pub(super) async fn law(State(app): State<App>, Place(name): Place<Name>) -> Result<Response> {
-    Ok(answer(pages::zoo::law(app.archive(), shell(&app), &name).await?))
+pub(super) async fn law_page(
+    State(app): State<App>,
+    PathParams(name): PathParams<Name>,
+) -> Result<Response> {
+    Ok(page_response(pages::zoo::law_page(app.archive(), page_shell(&app), &name).await?))
 }
 
-pub(super) async fn effect(State(app): State<App>, Place(name): Place<Name>) -> Result<Response> {
-    Ok(answer(pages::zoo::effect(shell(&app), &name)?))
+pub(super) async fn effect_page(
+    State(app): State<App>,
+    PathParams(name): PathParams<Name>,
+) -> Result<Response> {
+    Ok(page_response(pages::zoo::effect_page(page_shell(&app), &name)?))
 }
 
-pub(super) async fn jobs(State(app): State<App>, Params(query): Asked) -> Result<Response> {
-    Ok(answer(pages::jobs::list(app.archive(), shell(&app), &Fields::from(query)).await?))
+pub(super) async fn jobs_page(
+    State(app): State<App>,
+    QueryParams(query): PageQuery,
+) -> Result<Response> {
+    Ok(page_response(
+        pages::jobs::jobs_page(app.archive(), page_shell(&app), &FormFields::from(query)).await?,
+    ))
 }
 
-pub(super) async fn job(State(app): State<App>, Place(id): Place<Id>) -> Result<Response> {
-    Ok(answer(pages::jobs::one(app.archive(), shell(&app), &id).await?))
+pub(super) async fn job_page(
+    State(app): State<App>,
+    PathParams(id): PathParams<Id>,
+) -> Result<Response> {
+    Ok(page_response(pages::jobs::job_page(app.archive(), page_shell(&app), &id).await?))
 }

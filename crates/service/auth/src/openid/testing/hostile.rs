@@ -18,15 +18,15 @@ pub const CLIENT: (&str, &str) = ("ships", "a secret: with signs & spaces");
 
 /// A provider on this machine with configurable answers.
 #[derive(Debug)]
-pub struct Hostile {
+pub struct ScriptedProvider {
     /// Its issuer.
     pub url: String,
-    told: Arc<Mutex<Told>>,
+    told: Arc<Mutex<ProviderScript>>,
 }
 
 /// Behaviour of the provider, and the requests to it.
 #[derive(Debug)]
-pub struct Told {
+pub struct ProviderScript {
     /// The keys by name.
     keys: BTreeMap<String, EcdsaKeyPair>,
     /// Names of the published keys.
@@ -68,20 +68,20 @@ pub fn now_s() -> i64 {
         .expect("a provider for tests")
 }
 
-fn key() -> EcdsaKeyPair {
+fn generate_key() -> EcdsaKeyPair {
     let (random, kind) = (SystemRandom::new(), &ECDSA_P256_SHA256_FIXED_SIGNING);
     let document = EcdsaKeyPair::generate_pkcs8(kind, &random).expect("a provider for tests");
     EcdsaKeyPair::from_pkcs8(kind, document.as_ref(), &random).expect("a provider for tests")
 }
 
-fn encoded(bytes: impl AsRef<[u8]>) -> String {
+fn base64_url(bytes: impl AsRef<[u8]>) -> String {
     BASE64_URL_SAFE_NO_PAD.encode(bytes)
 }
 
-impl Told {
+impl ProviderScript {
     /// Creates a key, which is not published yet.
     pub fn add_key(&mut self, name: &str) {
-        self.keys.insert(name.to_owned(), key());
+        self.keys.insert(name.to_owned(), generate_key());
     }
 
     fn key_set(&self) -> Value {
@@ -89,55 +89,58 @@ impl Told {
             // An uncompressed point: one byte of format, then 32 bytes each of x and y.
             let point = self.keys[name].public_key().as_ref();
             json!({ "kty": "EC", "crv": "P-256", "use": "sig", "alg": "ES256", "kid": name,
-                "x": encoded(&point[1..33]), "y": encoded(&point[33..]) })
+                "x": base64_url(&point[1..33]), "y": base64_url(&point[33..]) })
         };
         json!({ "keys": self.published.iter().map(known).collect::<Vec<_>>() })
     }
 
-    fn token(&self, issuer: &str, nonce: &str) -> String {
+    fn signed_token(&self, issuer: &str, nonce: &str) -> String {
         let head = json!({ "alg": "ES256", "kid": self.signs });
         let claims = json!({ "iss": issuer, "sub": "7-of-9", "aud": CLIENT.0, "nonce": nonce,
             "iat": now_s(), "exp": now_s() + 300, "preferred_username": "Ann" });
-        let head = changed(head, &self.head).to_string();
-        let signed =
-            format!("{}.{}", encoded(head), encoded(changed(claims, &self.claims).to_string()));
+        let head = apply_changes(head, &self.head).to_string();
+        let signed = format!(
+            "{}.{}",
+            base64_url(head),
+            base64_url(apply_changes(claims, &self.claims).to_string())
+        );
         // A JSON Web Signature covers the encoded header and claims, joined by a dot.
         let signature = self.keys[&self.signs]
             .sign(&SystemRandom::new(), signed.as_bytes())
             .expect("a provider for tests");
-        (self.mangle)(format!("{signed}.{}", encoded(signature)))
+        (self.mangle)(format!("{signed}.{}", base64_url(signature)))
     }
 
-    fn about(&self, url: &str) -> Value {
+    fn discovery_document(&self, url: &str) -> Value {
         let about = json!({ "issuer": url, "authorization_endpoint": format!("{url}/authorize"),
             "token_endpoint": format!("{url}/token"), "jwks_uri": format!("{url}/keys"),
             "userinfo_endpoint": format!("{url}/userinfo"),
             "authorization_response_iss_parameter_supported": true });
-        changed(about, &self.discovery)
+        apply_changes(about, &self.discovery)
     }
 
     /// Returns status and body of the answer to a request.
-    fn answer(&mut self, url: &str, path: &str, head: &str, body: &str) -> (u16, String) {
+    fn answer_request(&mut self, url: &str, path: &str, head: &str, body: &str) -> (u16, String) {
         *self.asked.entry(path.to_owned()).or_default() += 1;
         if self.down {
             return (503, String::new());
         }
         match path {
-            "/.well-known/openid-configuration" => (200, self.about(url).to_string()),
+            "/.well-known/openid-configuration" => (200, self.discovery_document(url).to_string()),
             "/keys" => (200, self.key_set().to_string()),
             "/userinfo" if head.contains("bearer an-access-token") => {
                 (200, self.described.to_string())
             }
-            "/token" => self.exchange(url, head, body),
+            "/token" => self.exchange_code(url, head, body),
             _ => (404, String::new()),
         }
     }
 
-    fn exchange(&mut self, url: &str, head: &str, body: &str) -> (u16, String) {
+    fn exchange_code(&mut self, url: &str, head: &str, body: &str) -> (u16, String) {
         let form: HashMap<String, String> =
             serde_urlencoded::from_str(body).expect("a provider for tests");
         let refused = |error: &str| (400, json!({ "error": error }).to_string());
-        self.client_by = match shown(head, &form) {
+        self.client_by = match client_method(head, &form) {
             Some(by) => by,
             None => return refused("invalid_client"),
         };
@@ -146,12 +149,12 @@ impl Told {
             return refused("invalid_grant");
         };
         let hash = ring::digest::digest(&ring::digest::SHA256, form["code_verifier"].as_bytes());
-        if self.checks_pkce && encoded(hash) != challenge {
+        if self.checks_pkce && base64_url(hash) != challenge {
             return refused("invalid_grant");
         }
         assert_eq!(form["grant_type"], "authorization_code");
         assert!(form["redirect_uri"].ends_with("/sign-in/oidc/callback"));
-        let token = self.token(url, &nonce);
+        let token = self.signed_token(url, &nonce);
         (
             200,
             json!({ "id_token": token, "access_token": "an-access-token", "token_type": "Bearer" })
@@ -161,7 +164,7 @@ impl Told {
 }
 
 /// Returns the method by which a client has authenticated itself, if it has.
-fn shown(head: &str, form: &HashMap<String, String>) -> Option<&'static str> {
+fn client_method(head: &str, form: &HashMap<String, String>) -> Option<&'static str> {
     // Name and secret of the client in form encoding; the request's head was set to lower case.
     let basic = BASE64_STANDARD.encode("ships:a+secret%3A+with+signs+%26+spaces").to_lowercase();
     let (id, secret) = (form.get("client_id"), form.get("client_secret"));
@@ -173,7 +176,7 @@ fn shown(head: &str, form: &HashMap<String, String>) -> Option<&'static str> {
     }
 }
 
-fn changed(mut value: Value, changes: &Map<String, Value>) -> Value {
+fn apply_changes(mut value: Value, changes: &Map<String, Value>) -> Value {
     let fields = value.as_object_mut().expect("a provider for tests");
     for (name, change) in changes {
         match change {
@@ -184,7 +187,7 @@ fn changed(mut value: Value, changes: &Map<String, Value>) -> Value {
     value
 }
 
-impl Hostile {
+impl ScriptedProvider {
     /// Starts the provider.
     ///
     /// # Panics
@@ -192,7 +195,7 @@ impl Hostile {
     pub async fn start() -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").await.expect("a provider for tests");
         let url = format!("http://{}", listener.local_addr().expect("a provider for tests"));
-        let mut told = Told {
+        let mut told = ProviderScript {
             keys: BTreeMap::new(),
             published: vec!["first".into()],
             signs: "first".into(),
@@ -212,7 +215,7 @@ impl Hostile {
         let (url, told) = (hostile.url.clone(), Arc::clone(&hostile.told));
         tokio::spawn(async move {
             while let Ok((stream, _)) = listener.accept().await {
-                tokio::spawn(served(stream, url.clone(), Arc::clone(&told)));
+                tokio::spawn(serve_connection(stream, url.clone(), Arc::clone(&told)));
             }
         });
         hostile
@@ -222,7 +225,7 @@ impl Hostile {
     ///
     /// # Panics
     /// Panics if the provider has panicked.
-    pub fn told(&self) -> MutexGuard<'_, Told> {
+    pub fn lock_script(&self) -> MutexGuard<'_, ProviderScript> {
         self.told.lock().expect("a provider for tests")
     }
 
@@ -231,7 +234,7 @@ impl Hostile {
     ///
     /// # Panics
     /// Panics if the URL is not a valid request.
-    pub fn lets_through(&self, place: &str) -> String {
+    pub fn accept_person(&self, place: &str) -> String {
         let (_, query) = place.split_once("/authorize?").expect("its own endpoint");
         let asked: HashMap<String, String> =
             serde_urlencoded::from_str(query).expect("a provider for tests");
@@ -240,7 +243,7 @@ impl Hostile {
             (&*asked["code_challenge_method"], &*asked["scope"]),
             ("S256", "openid profile email")
         );
-        let mut told = self.told();
+        let mut told = self.lock_script();
         let code = format!("code-{}", told.codes.len() + told.asked.values().sum::<usize>());
         told.codes.insert(code.clone(), (asked["nonce"].clone(), asked["code_challenge"].clone()));
         let answer = [("code", &code), ("state", &asked["state"]), ("iss", &self.url)];
@@ -248,7 +251,11 @@ impl Hostile {
     }
 }
 
-async fn served(mut stream: TcpStream, url: String, told: Arc<Mutex<Told>>) -> std::io::Result<()> {
+async fn serve_connection(
+    mut stream: TcpStream,
+    url: String,
+    told: Arc<Mutex<ProviderScript>>,
+) -> std::io::Result<()> {
     let mut bytes = Vec::new();
     loop {
         let mut part = [0; 4096];
@@ -270,7 +277,7 @@ async fn served(mut stream: TcpStream, url: String, told: Arc<Mutex<Told>>) -> s
         }
         let path = head.split(' ').nth(1).unwrap_or_default().to_owned();
         let (status, answer) =
-            told.lock().expect("a provider for tests").answer(&url, &path, &head, body);
+            told.lock().expect("a provider for tests").answer_request(&url, &path, &head, body);
         let answer = format!(
             "HTTP/1.1 {status} x\r\nContent-Type: application/json\r\nContent-Length: \
              {}\r\nConnection: close\r\n\r\n{answer}",

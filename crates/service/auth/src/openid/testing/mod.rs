@@ -3,13 +3,13 @@
 mod hostile;
 mod real;
 
-pub use hostile::{CLIENT, Hostile, Told, now_s};
+pub use hostile::{CLIENT, ProviderScript, ScriptedProvider, now_s};
 pub use real::RealProvider;
 
-use crate::openid::settings::Settings;
+use crate::openid::settings::ProviderSettings;
 
 /// Returns settings with a client secret, as if it were read from a file.
 #[must_use]
-pub fn with_secret(settings: Settings, secret: &str) -> Settings {
-    Settings { client_secret: Some(secret.to_owned()), ..settings }
+pub fn with_secret(settings: ProviderSettings, secret: &str) -> ProviderSettings {
+    ProviderSettings { client_secret: Some(secret.to_owned()), ..settings }
 }

@@ -11,8 +11,8 @@ mod table;
 mod under_way;
 
 pub use request::{CurrentRequest, OrdersRequest, SessionRequest, StepsRequest, WindRequest};
-pub use table::{Handle, SessionLimits, Sessions};
-pub use under_way::Session;
+pub use table::{SessionHandle, SessionLimits, SessionTable};
+pub use under_way::PredictionSession;
 
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use sistership_model::environment::Environment;
+use sistership_model::environment::PredictionEnvironment;
 use sistership_request_types::{
     DrawCount, ModelName, Positive, StepCount, StepLength, WaterSpeed, WindSpeed,
 };
@@ -61,8 +61,8 @@ pub struct WindRequest {
 
 impl SessionRequest {
     /// Wind, current and depth of the request.
-    pub(super) fn environment(&self) -> Environment {
-        Environment {
+    pub(super) fn environment(&self) -> PredictionEnvironment {
+        PredictionEnvironment {
             wind_speed_m_s: self.wind.map(|wind| wind.speed_m_s.get()),
             current_speed_m_s: self.current.map(|current| current.speed_m_s.get()),
             depth_m: self.depth_m.map(Positive::get),
@@ -72,19 +72,19 @@ impl SessionRequest {
 
 impl CurrentRequest {
     /// Components to north and east, m/s.
-    pub(super) fn parts(self) -> [f64; 2] {
-        parts(self.speed_m_s.get(), self.towards_rad)
+    pub(super) fn components(self) -> [f64; 2] {
+        direction_components(self.speed_m_s.get(), self.towards_rad)
     }
 }
 
 impl WindRequest {
     /// Components from north and east, m/s.
-    pub(super) fn parts(self) -> [f64; 2] {
-        parts(self.speed_m_s.get(), self.from_rad)
+    pub(super) fn components(self) -> [f64; 2] {
+        direction_components(self.speed_m_s.get(), self.from_rad)
     }
 }
 
-fn parts(speed: f64, direction_rad: f64) -> [f64; 2] {
+fn direction_components(speed: f64, direction_rad: f64) -> [f64; 2] {
     let (sin, cos) = direction_rad.sin_cos();
     [speed * cos, speed * sin]
 }
@@ -119,7 +119,7 @@ pub struct OrdersRequest {
 
 impl StepsRequest {
     /// Number of steps.
-    pub(super) fn count(&self) -> usize {
+    pub(super) fn step_count(&self) -> usize {
         usize::try_from(self.steps.unwrap_or_default().get()).unwrap_or(1)
     }
 }

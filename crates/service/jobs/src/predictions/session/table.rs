@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use super::under_way::Session;
-use crate::predictions::error::{PredictError, Result};
+use super::under_way::PredictionSession;
+use crate::predictions::error::{PredictionError, Result};
 
 /// Limits of sessions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,33 +29,33 @@ impl Default for SessionLimits {
 
 /// The sessions of a server.
 #[derive(Debug, Default)]
-pub struct Sessions {
+pub struct SessionTable {
     limits: SessionLimits,
-    table: Mutex<HashMap<String, Entry>>,
+    table: Mutex<HashMap<String, SessionEntry>>,
 }
 
 #[derive(Debug)]
-struct Entry {
+struct SessionEntry {
     owner: String,
-    handle: Handle,
+    handle: SessionHandle,
     used: Instant,
 }
 
 /// Handle of an open session.
 #[derive(Debug, Clone)]
-pub struct Handle {
+pub struct SessionHandle {
     /// Description of the model: `model`, `version`, `sha256`, `law`.
     pub about: Value,
-    session: Arc<Mutex<Session>>,
+    session: Arc<Mutex<PredictionSession>>,
 }
 
-impl Sessions {
+impl SessionTable {
     /// Creates an empty table.
     pub fn new(limits: SessionLimits) -> Self {
         Self { limits, ..Self::default() }
     }
 
-    fn table(&self) -> MutexGuard<'_, HashMap<String, Entry>> {
+    fn lock_table(&self) -> MutexGuard<'_, HashMap<String, SessionEntry>> {
         let mut table = self.table.lock().unwrap_or_else(PoisonError::into_inner);
         let idle = self.limits.idle;
         // Idle sessions are removed at every access, so that they count against no limit.
@@ -64,28 +64,35 @@ impl Sessions {
     }
 
     /// Ends idle sessions.
-    pub fn tidy(&self) {
-        drop(self.table());
+    pub fn remove_idle(&self) {
+        drop(self.lock_table());
     }
 
     /// Checks that an owner may open another session, before the work of creating one.
     ///
     /// # Errors
     /// Returns an error if the limit of the owner or of the server is reached.
-    pub fn room(&self, owner: &str) -> Result<()> {
-        self.limits.room(&self.table(), owner)
+    pub fn check_room(&self, owner: &str) -> Result<()> {
+        self.limits.check_limits(&self.lock_table(), owner)
     }
 
     /// Adds a session under an id.
     ///
     /// # Errors
     /// Returns an error if the limit of the owner or of the server is reached.
-    pub fn open(&self, id: &str, owner: &str, about: Value, session: Session) -> Result<Handle> {
-        let mut table = self.table();
+    pub fn open(
+        &self,
+        id: &str,
+        owner: &str,
+        about: Value,
+        session: PredictionSession,
+    ) -> Result<SessionHandle> {
+        let mut table = self.lock_table();
         // Checked again under the lock: other sessions may have been opened since the first check.
-        self.limits.room(&table, owner)?;
-        let handle = Handle { about, session: Arc::new(Mutex::new(session)) };
-        let entry = Entry { owner: owner.to_owned(), handle: handle.clone(), used: Instant::now() };
+        self.limits.check_limits(&table, owner)?;
+        let handle = SessionHandle { about, session: Arc::new(Mutex::new(session)) };
+        let entry =
+            SessionEntry { owner: owner.to_owned(), handle: handle.clone(), used: Instant::now() };
         table.insert(id.to_owned(), entry);
         Ok(handle)
     }
@@ -94,10 +101,10 @@ impl Sessions {
     ///
     /// # Errors
     /// Returns an error if the owner has no session with this id.
-    pub fn find(&self, id: &str, owner: &str) -> Result<Handle> {
-        let mut table = self.table();
+    pub fn find_session(&self, id: &str, owner: &str) -> Result<SessionHandle> {
+        let mut table = self.lock_table();
         let entry = table.get_mut(id).filter(|entry| entry.owner == owner);
-        let entry = entry.ok_or_else(|| PredictError::NoSession(id.to_owned()))?;
+        let entry = entry.ok_or_else(|| PredictionError::NoSession(id.to_owned()))?;
         entry.used = Instant::now();
         Ok(entry.handle.clone())
     }
@@ -107,14 +114,14 @@ impl Sessions {
     /// # Errors
     /// Returns an error if the owner has no session with this id.
     pub fn close(&self, id: &str, owner: &str) -> Result<()> {
-        self.find(id, owner)?;
-        self.table().remove(id);
+        self.find_session(id, owner)?;
+        self.lock_table().remove(id);
         Ok(())
     }
 
     /// Lists the sessions of an owner by id, with their descriptions.
-    pub fn of(&self, owner: &str) -> Vec<(String, Value)> {
-        let table = self.table();
+    pub fn list_sessions(&self, owner: &str) -> Vec<(String, Value)> {
+        let table = self.lock_table();
         let own = table.iter().filter(|(_, entry)| entry.owner == owner);
         let mut own: Vec<_> =
             own.map(|(id, entry)| (id.clone(), entry.handle.about.clone())).collect();
@@ -124,29 +131,34 @@ impl Sessions {
 }
 
 impl SessionLimits {
-    fn room(&self, table: &HashMap<String, Entry>, owner: &str) -> Result<()> {
+    fn check_limits(&self, table: &HashMap<String, SessionEntry>, owner: &str) -> Result<()> {
         let own = table.values().filter(|entry| entry.owner == owner).count();
         if own >= self.of_one {
-            return Err(PredictError::ManySessions { whose: "you have", most: self.of_one });
+            return Err(PredictionError::ManySessions { whose: "you have", most: self.of_one });
         }
         match table.len() < self.all {
             true => Ok(()),
-            false => Err(PredictError::ManySessions { whose: "this server has", most: self.all }),
+            false => {
+                Err(PredictionError::ManySessions { whose: "this server has", most: self.all })
+            }
         }
     }
 }
 
-impl Handle {
+impl SessionHandle {
     /// Runs `work` on the session, unless another request uses it.
     ///
     /// # Errors
     /// Returns an error if another request uses it, or the error of `work`.
-    pub fn with<T>(&self, work: impl FnOnce(&mut Session) -> Result<T>) -> Result<T> {
+    pub fn with_session<T>(
+        &self,
+        work: impl FnOnce(&mut PredictionSession) -> Result<T>,
+    ) -> Result<T> {
         match self.session.try_lock() {
             Ok(mut session) => work(&mut session),
             // A panic in an earlier request does not end the session.
             Err(TryLockError::Poisoned(poisoned)) => work(&mut poisoned.into_inner()),
-            Err(TryLockError::WouldBlock) => Err(PredictError::SessionBusy),
+            Err(TryLockError::WouldBlock) => Err(PredictionError::SessionBusy),
         }
     }
 }

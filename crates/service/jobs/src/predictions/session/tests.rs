@@ -6,17 +6,17 @@ use serde_json::{Value, json};
 use sistership_model::posterior::Posterior;
 use sistership_model::{Law, Model, Zoo};
 use sistership_simulation::integrate::Method;
-use sistership_simulation::state::{at, straight};
-use sistership_simulation::{Order, Run, Ship, Trajectory};
+use sistership_simulation::state::{at, straight_state};
+use sistership_simulation::{HelmOrder, RunSettings, Ship, Trajectory};
 
-use super::{Session, SessionLimits, SessionRequest, Sessions, StepsRequest};
-use crate::predictions::error::{PredictError, Result};
+use super::{PredictionSession, SessionLimits, SessionRequest, SessionTable, StepsRequest};
+use crate::predictions::error::{PredictionError, Result};
 
 const MOST: usize = 200_000;
 
 fn of(ship: &str) -> (Model, std::sync::Arc<Law>) {
-    let zoo = Zoo::embedded().unwrap();
-    let model = zoo.model(ship).unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = zoo.find_model(ship).unwrap();
     let law = zoo.law(&model.law).unwrap().clone();
     (model, law)
 }
@@ -27,24 +27,27 @@ fn sure_by(deviation: f64) -> (Model, std::sync::Arc<Law>) {
     let names: Vec<String> = ["N_delta", "Y_delta"].map(str::to_owned).to_vec();
     let values: Vec<f64> = names.iter().map(|name| model.coefficient(name)).collect();
     let deviations = values.iter().map(|value| deviation * value.abs()).collect();
-    let root_correlation = Posterior::rows(2, &|i, j| [[1.0, 0.0], [-0.6, 0.8]][i][j]);
+    let root_correlation = Posterior::format_rows(2, &|i, j| [[1.0, 0.0], [-0.6, 0.8]][i][j]);
     model.posterior = Some(Posterior { names, values, deviations, root_correlation });
     (model, law)
 }
 
-fn session((model, law): &(Model, std::sync::Arc<Law>), mut asked: Value) -> Result<Session> {
+fn session(
+    (model, law): &(Model, std::sync::Arc<Law>),
+    mut asked: Value,
+) -> Result<PredictionSession> {
     asked["model"] = json!("m");
     let asked: SessionRequest = serde_json::from_value(asked).unwrap();
-    Session::new(&asked, model, law)
+    PredictionSession::new(&asked, model, law)
 }
 
 fn steps(asked: Value) -> StepsRequest {
     serde_json::from_value(asked).unwrap()
 }
 
-fn field(error: PredictError) -> String {
+fn field(error: PredictionError) -> String {
     match error {
-        PredictError::Field { field, .. } => field,
+        PredictionError::Field { field, .. } => field,
         other => panic!("{other}"),
     }
 }
@@ -58,18 +61,24 @@ fn steps_are_those_of_a_run_under_the_same_orders() {
     let (model, law) = of("mariner");
     let ship = Ship::new(&model, &law).unwrap();
     let speed = ship.approach_speed_m_s();
-    let run = Run { start: straight(speed), duration_s: 60.0, step_s: 0.1, method: Method::Rk4 };
+    let run = RunSettings {
+        start: straight_state(speed),
+        duration_s: 60.0,
+        step_s: 0.1,
+        method: Method::Rk4,
+    };
     let n_rps = ship.revolutions_at(speed);
-    let order =
-        |t_s: f64, _: &_| Some(Order { delta_rad: if t_s < 29.95 { 0.3 } else { -0.2 }, n_rps });
+    let order = |t_s: f64, _: &_| {
+        Some(HelmOrder { delta_rad: if t_s < 29.95 { 0.3 } else { -0.2 }, n_rps })
+    };
     let mut track = Trajectory::default();
-    ship.sail(run, &mut track, order).unwrap();
+    ship.simulate_orders(run, &mut track, order).unwrap();
     let mut session = session(&(model, law), json!({})).unwrap();
     let port = json!({ "orders": { "delta_rad": -0.2 }, "dt_s": 0.1, "steps": 300 });
     session
-        .sail(&steps(json!({ "orders": { "delta_rad": 0.3 }, "dt_s": 0.5, "steps": 60 })), MOST)
+        .simulate(&steps(json!({ "orders": { "delta_rad": 0.3 }, "dt_s": 0.5, "steps": 60 })), MOST)
         .unwrap();
-    let answer = session.sail(&steps(port), MOST).unwrap();
+    let answer = session.simulate(&steps(port), MOST).unwrap();
     for (column, place) in
         [("psi_rad", at::PSI), ("x_m", at::X), ("u_m_s", at::U), ("delta_rad", at::DELTA)]
     {
@@ -83,13 +92,13 @@ fn steps_are_those_of_a_run_under_the_same_orders() {
 #[test]
 fn the_rudder_moves_as_the_gear_does() {
     let mariner = of("mariner");
-    let gear = Ship::new(&mariner.0, &mariner.1).unwrap().gear();
+    let gear = Ship::new(&mariner.0, &mariner.1).unwrap().steering_gear();
     let mut session = session(&mariner, json!({})).unwrap();
     let hard = json!({ "orders": { "delta_rad": 3.0 }, "dt_s": 1.0 });
-    let answer = session.sail(&steps(hard), MOST).unwrap();
+    let answer = session.simulate(&steps(hard), MOST).unwrap();
     let rate = gear.rate_rad_s().min(gear.limit_rad() / gear.time_constant_s().max(0.1));
     assert!(last(&answer, "delta_rad") <= rate * 1.0 + 1e-9);
-    let answer = session.sail(&steps(json!({ "dt_s": 1.0, "steps": 100 })), MOST).unwrap();
+    let answer = session.simulate(&steps(json!({ "dt_s": 1.0, "steps": 100 })), MOST).unwrap();
     assert!((last(&answer, "delta_rad") - gear.limit_rad()).abs() < 1e-3);
 }
 
@@ -102,7 +111,7 @@ fn a_current_carries_a_ship_along_with_the_water() {
     let sail = |v_m_s: f64, current: Value| {
         let start = json!({ "u_m_s": 7.7, "v_m_s": v_m_s });
         let asked = json!({ "start": start, "current": current });
-        session(&mariner, asked).unwrap().sail(&steps(turn.clone()), MOST).unwrap()
+        session(&mariner, asked).unwrap().simulate(&steps(turn.clone()), MOST).unwrap()
     };
     let still = sail(0.0, Value::Null);
     let east = json!({ "speed_m_s": 1.0, "towards_rad": std::f64::consts::FRAC_PI_2 });
@@ -123,7 +132,7 @@ fn a_wind_from_starboard_pushes_to_port_and_turns_away_from_itself() {
     let first = json!({ "dt_s": 0.01 });
     let sail = |wind: Value| {
         let asked = json!({ "start": { "u_m_s": 7.7175 }, "wind": wind });
-        session(&mariner, asked).unwrap().sail(&steps(first.clone()), MOST).unwrap()
+        session(&mariner, asked).unwrap().simulate(&steps(first.clone()), MOST).unwrap()
     };
     let still = sail(Value::Null);
     let from = std::f64::consts::FRAC_PI_2;
@@ -142,7 +151,7 @@ fn the_band_holds_the_ship_and_widens_with_the_posterior() {
     let turn = json!({ "orders": { "delta_rad": 0.3 }, "dt_s": 1.0, "steps": 120 });
     let width = |deviation: f64| {
         let mut session = session(&sure_by(deviation), json!({ "draws": 40, "seed": 3 })).unwrap();
-        let answer = session.sail(&steps(turn.clone()), MOST).unwrap();
+        let answer = session.simulate(&steps(turn.clone()), MOST).unwrap();
         assert_eq!(
             (&answer["band"]["drawn"], &answer["band"]["sailing"]),
             (&json!(40), &json!(40))
@@ -164,27 +173,27 @@ fn a_motion_that_leaves_what_is_physical_is_told_and_stays_told() {
     model.coefficients.get_mut("N_r").unwrap().value *= -30.0;
     let mut session = session(&(model, law), json!({})).unwrap();
     let asked = || steps(json!({ "orders": { "delta_rad": 0.3 }, "dt_s": 1.0, "steps": 10_000 }));
-    let answer = session.sail(&asked(), MOST).unwrap();
+    let answer = session.simulate(&asked(), MOST).unwrap();
     assert!(answer["stopped"]["reason"].is_string(), "{}", answer["stopped"]);
     assert!(answer["trajectory"]["t_s"].as_array().unwrap().len() < 10_000);
-    let again = session.sail(&asked(), MOST).unwrap();
+    let again = session.simulate(&asked(), MOST).unwrap();
     assert_eq!(again["stopped"], answer["stopped"]);
     assert_eq!(again["trajectory"]["t_s"], json!([]));
-    assert!(session.view()["x_m"].is_number());
-    let (rows, ended) = session.rows(&asked(), 0, 64, MOST).unwrap();
+    assert!(session.current_view()["x_m"].is_number());
+    let (rows, ended) = session.simulate_rows(&asked(), 0, 64, MOST).unwrap();
     assert!((rows.len(), ended) == (1, true) && rows[0]["stopped"].is_object());
 }
 
 #[test]
 fn orders_of_any_size_never_end_in_something_else_than_an_answer() {
-    let zoo = Zoo::embedded().unwrap();
+    let zoo = Zoo::load_embedded().unwrap();
     for vessel in zoo.vessels().filter(|vessel| !vessel.file.models.is_empty()) {
         let ship = vessel.name();
         let mut session = session(&of(ship), json!({})).unwrap();
         for n_rps in [0.0, -1e3, 1e150, -1e300] {
             let asked = json!({ "orders": { "delta_rad": n_rps, "n_rps": n_rps }, "dt_s": 60.0,
                 "steps": 5 });
-            let answer = session.sail(&steps(asked), MOST).unwrap();
+            let answer = session.simulate(&steps(asked), MOST).unwrap();
             assert!(serde_json::to_string(&answer).unwrap().len() > 10, "{ship}");
         }
     }
@@ -203,7 +212,7 @@ fn a_step_takes_less_than_a_fifth_of_a_millisecond() {
         for _ in 0..500 {
             let start = std::time::Instant::now();
             let asked: StepsRequest = serde_json::from_slice(asked).unwrap();
-            let answer = session.sail(&asked, MOST).unwrap();
+            let answer = session.simulate(&asked, MOST).unwrap();
             std::hint::black_box(serde_json::to_string(&answer).unwrap());
             least = least.min(start.elapsed());
         }
@@ -221,21 +230,21 @@ fn what_cannot_be_is_refused_by_field_and_changes_nothing() {
     assert_eq!(refused(json!({ "start": { "u_m_s": 1e300 } })), "start");
     assert_eq!(refused(json!({ "start": { "u_m_s": 5.0, "phi_rad": 3.0 } })), "start");
     let mut session = session(&mariner, json!({})).unwrap();
-    let mut sail = |asked: Value| session.sail(&steps(asked), MOST).map_err(field).unwrap_err();
+    let mut sail = |asked: Value| session.simulate(&steps(asked), MOST).map_err(field).unwrap_err();
     let unknown = json!({ "orders": { "delta_rad": 0.3, "inputs": { "bow": 1.0 } }, "dt_s": 1.0 });
     assert_eq!(sail(unknown), "orders.inputs.bow");
     assert_eq!(sail(json!({ "dt_s": 60.0, "steps": 10_000 })), "steps");
-    assert_eq!(session.view()["orders"]["delta_rad"], 0.0);
+    assert_eq!(session.current_view()["orders"]["delta_rad"], 0.0);
 }
 
 #[test]
 fn sessions_are_few_their_owner_s_and_end_when_idle() {
     let mariner = of("mariner");
-    let open = |sessions: &Sessions, id: &str, owner: &str| {
+    let open = |sessions: &SessionTable, id: &str, owner: &str| {
         sessions.open(id, owner, json!({}), session(&mariner, json!({})).unwrap()).map(drop)
     };
     let idle = Duration::from_millis(300);
-    let sessions = Sessions::new(SessionLimits { all: 3, of_one: 2, idle });
+    let sessions = SessionTable::new(SessionLimits { all: 3, of_one: 2, idle });
     open(&sessions, "a", "ann").unwrap();
     open(&sessions, "b", "ann").unwrap();
     let many = open(&sessions, "c", "ann").unwrap_err();
@@ -243,13 +252,13 @@ fn sessions_are_few_their_owner_s_and_end_when_idle() {
     open(&sessions, "d", "bob").unwrap();
     let many = open(&sessions, "e", "bob").unwrap_err();
     assert!(many.to_string().starts_with("this server has 3"), "{many}");
-    assert!(matches!(sessions.find("a", "bob"), Err(PredictError::NoSession(_))));
+    assert!(matches!(sessions.find_session("a", "bob"), Err(PredictionError::NoSession(_))));
     assert!(sessions.close("a", "bob").is_err());
     sessions.close("a", "ann").unwrap();
     open(&sessions, "e", "bob").unwrap();
-    let handle = sessions.find("b", "ann").unwrap();
-    let busy = handle.with(|_| sessions.find("b", "ann")?.with(|_| Ok(())));
-    assert!(matches!(busy, Err(PredictError::SessionBusy)));
+    let handle = sessions.find_session("b", "ann").unwrap();
+    let busy = handle.with_session(|_| sessions.find_session("b", "ann")?.with_session(|_| Ok(())));
+    assert!(matches!(busy, Err(PredictionError::SessionBusy)));
     std::thread::sleep(idle);
-    assert_eq!(sessions.of("ann"), []);
+    assert_eq!(sessions.list_sessions("ann"), []);
 }

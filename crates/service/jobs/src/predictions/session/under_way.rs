@@ -2,25 +2,25 @@
 
 use sistership_model::environment::UncoveredInput;
 use sistership_simulation::integrate::Method;
-use sistership_simulation::plant::{Inputs, Work};
+use sistership_simulation::plant::{LawInputs, PlantWorkspace};
 use sistership_simulation::state::at;
-use sistership_simulation::{Order, Ship, SideBySide, StateVector, Stopped};
+use sistership_simulation::{HelmOrder, Ship, ShipEnsemble, SimulationStop, StateVector};
 
 use super::request::{OrdersRequest, StepsRequest};
-use super::sample::{Sample, band};
-use crate::predictions::error::{PredictError, Result};
-use crate::predictions::track::bounded;
+use super::sample::{SessionSample, quantile_band};
+use crate::predictions::error::{PredictionError, Result};
+use crate::predictions::track::reserve_steps;
 
 /// Inputs of a law that have separate fields in a request.
-const NAMED: [&str; 3] = ["delta", "n", "depth"];
+const SEPARATE_INPUTS: [&str; 3] = ["delta", "n", "depth"];
 
 /// Simulation that is continued step by step.
 #[derive(Debug)]
-pub struct Session {
+pub struct PredictionSession {
     pub(super) ship: Ship,
-    pub(super) beside: Option<Beside>,
+    pub(super) beside: Option<PosteriorDraws>,
     pub(super) state: StateVector,
-    pub(super) order: Order,
+    pub(super) order: HelmOrder,
     /// Wind, current and depth that the model's trials do not cover.
     pub(super) uncovered: Vec<UncoveredInput>,
     /// Other inputs of the law, by index.
@@ -28,29 +28,29 @@ pub struct Session {
     pub(super) t_s: f64,
     /// Longest step of the integration, s.
     pub(super) longest_s: f64,
-    pub(super) stopped: Option<Stopped>,
-    pub(super) work: Work,
+    pub(super) stopped: Option<SimulationStop>,
+    pub(super) work: PlantWorkspace,
 }
 
 /// Draws of the posterior, simulated under the same orders.
 #[derive(Debug)]
-pub(super) struct Beside {
+pub(super) struct PosteriorDraws {
     pub ship: Ship,
-    pub sisters: SideBySide,
+    pub sisters: ShipEnsemble,
     /// Number of draws at the start.
     pub drawn: usize,
 }
 
-impl Session {
+impl PredictionSession {
     /// Applies orders, all or none of them, in a request of at most `most` steps.
     ///
     /// # Errors
     /// Returns an error that names the invalid field of the request, or the missing memory.
-    pub fn take(&mut self, request: &StepsRequest, most: usize) -> Result<()> {
-        self.bounded(request.dt_s.get(), request.count(), most)?;
+    pub fn apply_orders(&mut self, request: &StepsRequest, most: usize) -> Result<()> {
+        self.reserve_memory(request.dt_s.get(), request.step_count(), most)?;
         // Everything that can fail comes before the first change of the session.
-        let others = self.places(&request.orders)?;
-        self.order(request.orders.delta_rad, request.orders.n_rps);
+        let others = self.input_indices(&request.orders)?;
+        self.set_orders(request.orders.delta_rad, request.orders.n_rps);
         for (place, value) in others {
             // A new order of an input replaces the previous one.
             self.others.retain(|(known, _)| *known != place);
@@ -60,92 +60,102 @@ impl Session {
     }
 
     /// Reserves the memory of steps; refuses more work than is allowed.
-    pub(crate) fn bounded(&self, dt_s: f64, steps: usize, most: usize) -> Result<()> {
+    pub(crate) fn reserve_memory(&self, dt_s: f64, steps: usize, most: usize) -> Result<()> {
         // Draws are simulated in SIMD blocks, each of which costs about as much as one simulation.
-        let blocks = self.beside.as_ref().map_or(0, |beside| beside.sisters.blocks());
-        bounded("steps", (self.parts(dt_s) * steps) as f64 * (1 + blocks) as f64, most)
+        let blocks = self.beside.as_ref().map_or(0, |beside| beside.sisters.block_count());
+        reserve_steps("steps", (self.count_parts(dt_s) * steps) as f64 * (1 + blocks) as f64, most)
     }
 
     /// Sets the orders of rudder and revolutions; those not given stay.
-    pub(crate) fn order(&mut self, delta_rad: Option<f64>, n_rps: Option<f64>) {
+    pub(crate) fn set_orders(&mut self, delta_rad: Option<f64>, n_rps: Option<f64>) {
         delta_rad.into_iter().for_each(|delta_rad| self.order.delta_rad = delta_rad);
         n_rps.into_iter().for_each(|n_rps| self.order.n_rps = n_rps);
     }
 
     /// Simulates a step; `None` if the motion has left the physical range, in this step or before.
-    pub fn step(&mut self, dt_s: f64) -> Option<Sample> {
-        let parts = self.parts(dt_s);
+    pub fn simulate_step(&mut self, dt_s: f64) -> Option<SessionSample> {
+        let parts = self.count_parts(dt_s);
         let (since_s, step_s) = (self.t_s, dt_s / parts as f64);
         for part in 1..=parts {
             // Times are multiples of the step, not sums, so that rounding errors do not accumulate.
             let t_s = since_s + part as f64 * step_s;
-            if let Err(stopped) = self.part(t_s, step_s) {
+            if let Err(stopped) = self.integrate_part(t_s, step_s) {
                 self.stopped = Some(stopped);
                 return None;
             }
         }
-        Some(self.sample())
+        Some(self.current_sample())
     }
 
     /// Returns the present state with its band.
-    pub(crate) fn sample(&self) -> Sample {
-        let band = self.beside.as_ref().and_then(|beside| band(beside.sisters.states().collect()));
-        Sample { t_s: self.t_s, state: self.state, n_rps: self.order.n_rps, band }
+    pub(crate) fn current_sample(&self) -> SessionSample {
+        let band = self
+            .beside
+            .as_ref()
+            .and_then(|beside| quantile_band(beside.sisters.active_states().collect()));
+        SessionSample { t_s: self.t_s, state: self.state, n_rps: self.order.n_rps, band }
     }
 
-    fn part(&mut self, t_s: f64, step_s: f64) -> std::result::Result<(), Stopped> {
+    fn integrate_part(&mut self, t_s: f64, step_s: f64) -> std::result::Result<(), SimulationStop> {
         // A session that has stopped stays stopped.
         if let Some(stopped) = &self.stopped {
             return Err(stopped.clone());
         }
         let Self { ship, order, others, work, .. } = self;
-        let next = Method::Rk4.step(&self.state, step_s, |_, state| {
-            let inputs = inputs(ship, state[at::DELTA], order.n_rps, others);
+        let next = Method::Rk4.advance_state(&self.state, step_s, |_, state| {
+            let inputs = inputs_with_orders(ship, state[at::DELTA], order.n_rps, others);
             let mut rate = ship.rate_with(state, &inputs, work);
             // The rudder is a state: it follows the order at the rate of the steering gear.
-            rate[at::DELTA] = ship.gear().rate(order.delta_rad, state[at::DELTA], step_s);
+            rate[at::DELTA] =
+                ship.steering_gear().rudder_rate(order.delta_rad, state[at::DELTA], step_s);
             rate
         });
-        ship.envelope().check(t_s, &next)?;
+        ship.envelope().check_state(t_s, &next)?;
         (self.state, self.t_s) = (next, t_s);
-        if let Some(Beside { ship, sisters, .. }) = &mut self.beside {
+        if let Some(PosteriorDraws { ship, sisters, .. }) = &mut self.beside {
             // Each draw fills in its own rudder angle.
-            let inputs = inputs(ship, 0.0, self.order.n_rps, &self.others);
-            sisters.step(ship, &inputs, self.order.delta_rad, step_s);
+            let inputs = inputs_with_orders(ship, 0.0, self.order.n_rps, &self.others);
+            sisters.advance_step(ship, &inputs, self.order.delta_rad, step_s);
         }
         Ok(())
     }
 
     /// Number of parts in which a step is integrated.
-    fn parts(&self, dt_s: f64) -> usize {
+    fn count_parts(&self, dt_s: f64) -> usize {
         (dt_s / self.longest_s).ceil().max(1.0) as usize
     }
 
     /// Returns the indices of other inputs with their values.
-    fn places(&self, orders: &OrdersRequest) -> Result<Vec<(usize, f64)>> {
+    fn input_indices(&self, orders: &OrdersRequest) -> Result<Vec<(usize, f64)>> {
         let known: Vec<&str> = self.ship.law_inputs().map(|(name, _)| name).collect();
         let place = |(name, value): (&String, &f64)| {
             let place = known.iter().position(|known| known == name);
-            match place.filter(|_| !NAMED.contains(&name.as_str())) {
+            match place.filter(|_| !SEPARATE_INPUTS.contains(&name.as_str())) {
                 Some(place) => Ok((place, *value)),
-                None => Err(unknown(name, &known)),
+                None => Err(unknown_input(name, &known)),
             }
         };
         orders.inputs.iter().map(place).collect()
     }
 }
 
-fn unknown(name: &str, known: &[&str]) -> PredictError {
-    let others: Vec<&str> = known.iter().copied().filter(|name| !NAMED.contains(name)).collect();
+fn unknown_input(name: &str, known: &[&str]) -> PredictionError {
+    let others: Vec<&str> =
+        known.iter().copied().filter(|name| !SEPARATE_INPUTS.contains(name)).collect();
     let message = match others.as_slice() {
         [] => "is no input of the law, which takes rudder and revolutions alone".to_owned(),
         others => format!("is no input of the law; others than those are {}", others.join(", ")),
     };
-    PredictError::invalid(&format!("orders.inputs.{name}"), message)
+    PredictionError::invalid_field(&format!("orders.inputs.{name}"), message)
 }
 
-fn inputs(ship: &Ship, delta_rad: f64, n_rps: f64, others: &[(usize, f64)]) -> Inputs {
-    let mut inputs = ship.inputs(delta_rad, n_rps);
+fn inputs_with_orders(
+    ship: &Ship,
+    delta_rad: f64,
+    n_rps: f64,
+    others: &[(usize, f64)],
+) -> LawInputs {
+    let mut inputs = ship.inputs_for(delta_rad, n_rps);
     others.iter().for_each(|&(place, value)| inputs[place] = value);
     inputs
 }

@@ -2,10 +2,10 @@
 
 use serde_json::json;
 use sistership_store::testing::TestDatabase;
-use sistership_store::{Expect, sha256_hex};
+use sistership_store::{ExpectedRevision, sha256_hex};
 
 use super::{Place, archive, found, places};
-use crate::line::step;
+use crate::line::server_move;
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_healthy_archive_is_clean() {
@@ -153,12 +153,12 @@ const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', '
 
 #[tokio::test(flavor = "multi_thread")]
 async fn each_damage_to_rows_is_named_on_sqlite() {
-    damaged(TestDatabase::sqlite()).await;
+    damaged(TestDatabase::new_sqlite()).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn each_damage_to_rows_is_named_on_postgres() {
-    if let Some(database) = TestDatabase::postgres().await {
+    if let Some(database) = TestDatabase::new_postgres().await {
         damaged(database).await;
     }
 }
@@ -167,10 +167,12 @@ async fn each_damage_to_rows_is_named_on_postgres() {
 async fn damaged(database: TestDatabase) {
     let archive = archive(&database).await;
     for table in TABLES {
-        database.damage(&format!("CREATE TABLE healthy_{table} AS SELECT * FROM {table}")).await;
+        database
+            .execute_unchecked(&format!("CREATE TABLE healthy_{table} AS SELECT * FROM {table}"))
+            .await;
     }
     for (sql, check, place) in DAMAGES {
-        database.damage(sql).await;
+        database.execute_unchecked(sql).await;
         let findings = found(&archive).await;
         let hit = findings
             .faults
@@ -181,8 +183,10 @@ async fn damaged(database: TestDatabase) {
             "`{sql}` must be told by `{check}` at `{place}`: {findings:#?}"
         );
         for table in TABLES {
-            database.damage(&format!("DELETE FROM {table}")).await;
-            database.damage(&format!("INSERT INTO {table} SELECT * FROM healthy_{table}")).await;
+            database.execute_unchecked(&format!("DELETE FROM {table}")).await;
+            database
+                .execute_unchecked(&format!("INSERT INTO {table} SELECT * FROM healthy_{table}"))
+                .await;
         }
     }
     assert!(found(&archive).await.clean, "healed again");
@@ -225,7 +229,7 @@ const TABLES: [&str; 32] = [
 
 #[tokio::test(flavor = "multi_thread")]
 async fn each_damage_to_objects_is_named() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let archive = archive(&database).await;
     let key = sha256_hex(b"samples");
     let file = database.folder.path().join("objects").join(&key[..2]).join(&key[2..]);
@@ -247,7 +251,7 @@ async fn each_damage_to_objects_is_named() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_source_that_has_changed_is_named() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let archive = archive(&database).await;
     let mariner = archive.store.versions().get("mariner", 1).await.unwrap();
     let mut document: serde_json::Value = serde_json::from_str(&mariner.document).unwrap();
@@ -268,7 +272,7 @@ async fn a_source_that_has_changed_is_named() {
     archive
         .store
         .versions()
-        .create(&new, &[step("candidate", Expect::Any, "a test")])
+        .create(&new, &[server_move("candidate", ExpectedRevision::Any, "a test")])
         .await
         .unwrap();
     let checks: Vec<_> =

@@ -4,29 +4,29 @@ use std::time::{Duration, SystemTime};
 
 use bytes::Bytes;
 use sistership_store::testing::TestDatabase;
-use sistership_store::{Objects, sha256_hex};
+use sistership_store::{ObjectStorage, sha256_hex};
 
 use super::{Place, archive, found, places, trial};
 use crate::archive::Archive;
-use crate::upkeep::{Unreferred, gc};
+use crate::upkeep::{UnreferencedObjects, gc};
 
 #[tokio::test(flavor = "multi_thread")]
 async fn garbage_goes_when_it_is_old_and_nobodys() {
     for Place { archive, .. } in &places().await {
         let orphan = archive.objects.put(Bytes::from_static(b"orphan")).await.unwrap();
-        assert_eq!(found(archive).await.unreferred, Unreferred { objects: 1, bytes: 6 });
-        let young = gc(archive, Duration::from_secs(3600), false).await.unwrap();
+        assert_eq!(found(archive).await.unreferred, UnreferencedObjects { objects: 1, bytes: 6 });
+        let young = collect_garbage(archive, Duration::from_secs(3600), false).await.unwrap();
         assert_eq!(
             (young.removed.len(), young.objects),
             (0, 2),
             "what was put just now may still get its row"
         );
         tokio::time::sleep(Duration::from_millis(20)).await;
-        let asked = gc(archive, Duration::ZERO, true).await.unwrap();
+        let asked = collect_garbage(archive, Duration::ZERO, true).await.unwrap();
         assert_eq!((asked.removed.as_slice(), asked.bytes), ([orphan.clone()].as_slice(), 6));
         assert!(archive.objects.exists(&orphan).await.unwrap(), "a dry run removes nothing");
         assert_eq!(
-            gc(archive, Duration::ZERO, false).await.unwrap().removed,
+            collect_garbage(archive, Duration::ZERO, false).await.unwrap().removed,
             std::slice::from_ref(&orphan)
         );
         assert!(!archive.objects.exists(&orphan).await.unwrap());
@@ -37,7 +37,7 @@ async fn garbage_goes_when_it_is_old_and_nobodys() {
 /// As a process leaves them that is killed in the middle of an upload.
 #[tokio::test(flavor = "multi_thread")]
 async fn puts_that_never_ended_are_seen_and_go_when_they_are_old() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let archive = archive(&database).await;
     let place = database.folder.path().join("objects/00/11#1");
     std::fs::create_dir_all(place.parent().unwrap()).unwrap();
@@ -45,27 +45,31 @@ async fn puts_that_never_ended_are_seen_and_go_when_they_are_old() {
     std::io::Write::write_all(&mut &file, b"half").unwrap();
     let findings = found(&archive).await;
     assert!(
-        findings.clean && findings.unfinished == Unreferred { objects: 1, bytes: 4 },
+        findings.clean && findings.unfinished == UnreferencedObjects { objects: 1, bytes: 4 },
         "{findings:#?}"
     );
     assert!(
-        gc(&archive, Duration::ZERO, false).await.unwrap().unfinished.is_empty(),
+        collect_garbage(&archive, Duration::ZERO, false).await.unwrap().unfinished.is_empty(),
         "it may be under way"
     );
     file.set_modified(SystemTime::now() - Duration::from_secs(7200)).unwrap();
-    assert_eq!(gc(&archive, Duration::ZERO, true).await.unwrap().unfinished, ["objects/00/11#1"]);
-    assert_eq!(gc(&archive, Duration::ZERO, false).await.unwrap().bytes, 4);
+    assert_eq!(
+        collect_garbage(&archive, Duration::ZERO, true).await.unwrap().unfinished,
+        ["objects/00/11#1"]
+    );
+    assert_eq!(collect_garbage(&archive, Duration::ZERO, false).await.unwrap().bytes, 4);
     assert!(!place.exists() && found(&archive).await.unfinished.objects == 0);
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn samples_of_deleted_trials_and_of_versions_stay() {
-    let database = TestDatabase::sqlite();
+    let database = TestDatabase::new_sqlite();
     let archive = archive(&database).await;
-    let trial = archive.store.trials().find("mariner", &sha256_hex(b"samples")).await.unwrap();
+    let trial =
+        archive.store.trials().find_by_hash("mariner", &sha256_hex(b"samples")).await.unwrap();
     archive.store.trials().delete(&trial.id).await.unwrap();
     tokio::time::sleep(Duration::from_millis(20)).await;
-    assert!(gc(&archive, Duration::ZERO, false).await.unwrap().removed.is_empty());
+    assert!(collect_garbage(&archive, Duration::ZERO, false).await.unwrap().removed.is_empty());
     assert!(found(&archive).await.clean);
 }
 
@@ -77,7 +81,7 @@ async fn an_upload_and_the_collector_do_not_miss_each_other() {
         let collector = archive.clone();
         let collecting = tokio::spawn(async move {
             loop {
-                gc(&collector, Duration::ZERO, false).await.unwrap();
+                collect_garbage(&collector, Duration::ZERO, false).await.unwrap();
             }
         });
         for number in 0..60 {
@@ -90,7 +94,7 @@ async fn an_upload_and_the_collector_do_not_miss_each_other() {
     }
 }
 
-async fn upload(archive: &Archive, objects: &Objects, number: i32) {
+async fn upload(archive: &Archive, objects: &ObjectStorage, number: i32) {
     for _ in 0..1000 {
         let key = objects.put(Bytes::from(format!("samples {number}"))).await.unwrap();
         tokio::task::yield_now().await;

@@ -8,7 +8,7 @@ use sistership_store::{NewTrial, Store, SystemClock};
 
 use super::{Findings, fsck};
 use crate::archive::Archive;
-use crate::catalogue::Catalogue;
+use crate::catalogue::ZooCache;
 use crate::seed;
 
 mod damage;
@@ -20,7 +20,7 @@ async fn archive(database: &TestDatabase) -> Archive {
 }
 
 async fn filled(archive: Archive) -> Archive {
-    seed::seed(&archive.store, &Catalogue::default()).await.unwrap();
+    seed::seed_zoo(&archive.store, &ZooCache::default()).await.unwrap();
     let key = archive.objects.put(Bytes::from_static(b"samples")).await.unwrap();
     archive.store.trials().insert(&trial(&key)).await.unwrap();
     archive
@@ -43,11 +43,14 @@ fn trial(key: &str) -> NewTrial {
 }
 
 async fn found(archive: &Archive) -> Findings {
-    fsck(archive).await.unwrap()
+    check_archive(archive).await.unwrap()
 }
 
 async fn databases() -> Vec<TestDatabase> {
-    [Some(TestDatabase::sqlite()), TestDatabase::postgres().await].into_iter().flatten().collect()
+    [Some(TestDatabase::new_sqlite()), TestDatabase::new_postgres().await]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// An archive, and what must live as long as it does.
@@ -67,7 +70,7 @@ async fn places() -> Vec<Place> {
         let s3 = TestS3::start().await;
         let (store, objects) = (
             Store::connect(&database.url, Arc::new(SystemClock)).await.unwrap(),
-            s3.objects("fleet"),
+            s3.open_objects("fleet"),
         );
         places.push(Place {
             archive: filled(Archive { store, objects }).await,
