@@ -226,7 +226,7 @@ pub enum CorrectionError {
     #[error("weights_sha256: should be 64 hexadecimal digits")]
     Hash,
     /// The fade distance is not valid.
-    #[error("fade: {0} should be above 0 and at most {MOST_FADE}")]
+    #[error("fade: {0} should be above 0 and at most {MAX_FADE}")]
     Fade(f64),
     /// The domain lacks ranges of velocities.
     #[error("domain: should have ranges of u, v and r")]

@@ -142,7 +142,7 @@ fn range_function(plan: &ExportPlan) -> String {
     let meaning = wrapped::wrap_comment("    #", range::MEANING).join("\n");
     format!(
         "def {name}(state, inputs=INPUTS, coefficients=COEFFICIENTS):\n{meaning}\n    \
-         u, v, r, p, phi, psi, x, y, delta = state\n{unpack_statements}\n{statements}\n    \
+         u, v, r, p, phi, psi, x, y, delta = state\n{unpack}\n{statements}\n    \
          return {result}\n\n\n",
         name = range::NAME,
         unpack = unpack_statements(plan),

@@ -21,10 +21,10 @@ pub(crate) struct MeasuredFigure {
 
 /// Returns the figures of every recognised manoeuvre.
 pub(crate) fn collect_figures(input: &RefinementInput<'_>) -> Vec<MeasuredFigure> {
-    input.refinement.manoeuvres.measured.iter().flat_map(manoeuvre_figures).collect()
+    input.refinement.manoeuvres.measured.iter().flat_map(compared_figures).collect()
 }
 
-fn manoeuvre_figures(manoeuvre: &MeasuredManoeuvre) -> Vec<MeasuredFigure> {
+fn compared_figures(manoeuvre: &MeasuredManoeuvre) -> Vec<MeasuredFigure> {
     let seen = if manoeuvre.fitted { "fitted" } else { "kept out of the fit" };
     let trial = format!("{}, {seen}", manoeuvre.trial);
     let measured = manoeuvre_figures(&manoeuvre.measured);

@@ -150,7 +150,7 @@ pub fn run(zoo: &Zoo, arguments: &BranchArguments) -> Result<(), Failure> {
     check_outputs(&files, &read)?;
     print_note(&format!("{}: {} read", model.name, format_count(read.len(), "trial")));
     let (choice, trained) =
-        train_correction((zoo, &model, &law), &trials::trial_refs(&read), &settings)?;
+        train_and_judge((zoo, &model, &law), &trials::trial_refs(&read), &settings)?;
     match (out, beside_file, &trained) {
         (Some(out), Some(beside), Some(trained)) => {
             // Weights first, so that a model that exists has its weights.
@@ -190,7 +190,7 @@ fn refusal(error: impl std::fmt::Display) -> Failure {
 
 /// Trains the requested kind, or the one that the comparison on held-out trials selects; `None` if
 /// that selects none.
-fn train_correction(
+fn train_and_judge(
     (zoo, model, law): (&Zoo, &Model, &Law),
     trials: &[&Trial],
     settings: &BranchSettings,

@@ -202,7 +202,7 @@ fn check_manifest(zoo: &Zoo, manifest: PathBuf) -> Result<ImportDocument, Failur
         }
     }
     // The files of one manifest usually have the same channels: the first trial stands for all.
-    let needs = trials.first().map_or_else(Vec::new, |trial| missing_channels(zoo, trial));
+    let needs = trials.first().map_or_else(Vec::new, |trial| law_needs(zoo, trial));
     let names = trials.into_iter().map(|trial| trial.name).collect();
     Ok(ImportDocument {
         manifest,
@@ -217,7 +217,7 @@ fn check_manifest(zoo: &Zoo, manifest: PathBuf) -> Result<ImportDocument, Failur
     })
 }
 
-fn missing_channels(zoo: &Zoo, trial: &Trial) -> Vec<LawNeeds> {
+fn law_needs(zoo: &Zoo, trial: &Trial) -> Vec<LawNeeds> {
     let of = |law: &std::sync::Arc<sistership_model::Law>| LawNeeds {
         law: law.name.clone(),
         lacks: missing_channels(law, trial).iter().map(ToString::to_string).collect(),

@@ -59,7 +59,7 @@ pub fn run(zoo: &Zoo, asked: &PlanArguments) -> Result<(), Failure> {
     let ((model, law), read) =
         combine_results(model_or_estimate(zoo, &asked.ship), trials::read_trials(&asked.trials))?;
     trials::remark_other_ship(&read, &model.ship);
-    let plan = design_trials(zoo, asked, (&model, &law), &read)?;
+    let plan = plan_trials(zoo, asked, (&model, &law), &read)?;
     output::print_result(asked.json, &plan, || plan_text::format_plan(&plan))
 }
 
@@ -75,7 +75,7 @@ fn model_or_estimate(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure
     }
 }
 
-fn design_trials(
+fn plan_trials(
     zoo: &Zoo,
     asked: &PlanArguments,
     (model, law): (&Model, &Law),

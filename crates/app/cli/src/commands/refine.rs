@@ -244,7 +244,7 @@ fn refinement_start(
         }
         // A law alone is identified from the trials, without a prior.
         (None, Some(law)) if arguments.source.is_none() => {
-            Ok(SelectedStart::from_named(blank_model(&law, target, settings, read)?, Some(law)))
+            Ok(SelectedStart::from_named(blank_target(&law, target, settings, read)?, Some(law)))
         }
         (None, law) => {
             let (source, similarity) = choose_source(zoo, target, settings, read)?;
@@ -319,7 +319,7 @@ fn find_law(zoo: &Zoo, name: &str) -> Result<Arc<Law>, Failure> {
 }
 
 /// Returns a model without coefficients, with the approach speed of the fitted trials.
-fn blank_model(
+fn blank_target(
     law: &Law,
     target: &Vessel,
     settings: &RefinementSettings,

@@ -25,7 +25,7 @@ pub fn model_description(plan: &ExportPlan) -> String {
          <ModelExchange modelIdentifier=\"{model}\" {can}/>\n  \
          <CoSimulation modelIdentifier=\"{model}\" canHandleVariableCommunicationStepSize=\"true\" \
          {can}/>\n  \
-         <UnitDefinitions>\n{unit_elements}  </UnitDefinitions>\n  \
+         <UnitDefinitions>\n{units}  </UnitDefinitions>\n  \
          <LogCategories><Category name=\"logStatusError\"/></LogCategories>\n  \
          <DefaultExperiment startTime=\"0.0\" stopTime=\"600.0\" stepSize=\"{step:?}\"/>\n  \
          <ModelVariables>\n    \

@@ -22,7 +22,7 @@ use sistership_model::version::code_revision;
 
 /// Runs a diagnosis of the new trials and, if the job asks for it, another of these together with
 /// earlier ones.
-pub(super) async fn run_diagnosis(app: &App, job: &Job, progress: JobProgress) -> Result<()> {
+pub(super) async fn run_diagnosis_job(app: &App, job: &Job, progress: JobProgress) -> Result<()> {
     let asked: DiagnosisJob = serde_json::from_str(&job.request).map_err(permanent_failure)?;
     report_progress(&progress, 0.01, "reading the trials")?;
     let version = app.store().versions().get(&asked.ship, asked.number).await?;

@@ -32,12 +32,12 @@ pub(super) async fn prepare_refinement(
     let ship = app.store().ships().get(&asked.ship).await?;
     let trials = recipe_trials(app, &asked.trials).await?;
     let target = parse_vessel(&ship.name, &ship.document)?;
-    let start = select_start(app, asked, target, &trials, progress).await?;
+    let start = refinement_start(app, asked, target, &trials, progress).await?;
     let recipe = start.refinement_recipe(app.archive(), &ship, trials).await?;
     Ok(PreparedRefinement { recipe, start })
 }
 
-async fn select_start(
+async fn refinement_start(
     app: &App,
     asked: &RefinementJob,
     target: Vessel,

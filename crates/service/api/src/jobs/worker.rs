@@ -250,7 +250,7 @@ async fn run_work(app: App, job: Job, progress: JobProgress) -> Result<(), JobEr
     let _share = demand::take_memory(&app, &job, &progress).await?;
     match job.kind.as_str() {
         REFINEMENT_JOB_KIND => refinement::run_refinement(&app, &job, progress).await,
-        DIAGNOSIS_JOB_KIND => diagnosis::run_diagnosis(&app, &job, progress).await,
+        DIAGNOSIS_JOB_KIND => diagnosis::run_diagnosis_job(&app, &job, progress).await,
         BRANCH_JOB_KIND => branch::run_training(&app, &job, progress).await,
         BULK_JOB_KIND => chunk::run_chunk(&app, &job, progress).await,
         PRIOR_JOB_KIND => family_prior::run_learning(&app, &job, progress).await,

@@ -8,14 +8,14 @@ macro_rules! on_both_databases {
         mod sqlite {$(
             #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
             async fn $name() {
-                super::$name(super::TestDatabase::sqlite()).await;
+                super::$name(super::TestDatabase::new_sqlite()).await;
             }
         )*}
 
         mod postgres {$(
             #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
             async fn $name() {
-                let Some(database) = super::TestDatabase::postgres().await else { return };
+                let Some(database) = super::TestDatabase::new_postgres().await else { return };
                 super::$name(database).await;
             }
         )*}

@@ -105,7 +105,7 @@ impl EntryView {
 }
 
 /// List the entries of the audit, the latest first
-#[utoipa::path(get, path = "/v1/audit", tag = "access", params(Query),
+#[utoipa::path(get, path = "/v1/audit", tag = "access", params(AuditQuery),
     responses((status = 200, body = Listing<EntryView>)))]
 async fn list(
     State(app): State<App>,

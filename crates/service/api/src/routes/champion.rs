@@ -61,7 +61,7 @@ enum Format {
 /// The YAML form is a file that `sistership simulate --model` reads.
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/model", tag = "ships",
-    params(("ship" = inline(Name), Path), Query,
+    params(("ship" = inline(Name), Path), ChampionQuery,
         ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you \
             have")),
     responses(

@@ -50,7 +50,7 @@ async fn of_ship(
 /// their diagnosis names
 #[utoipa::path(
     get, path = "/v1/families/{family}/drift", tag = "families",
-    params(("family" = inline(Word), Path), Query),
+    params(("family" = inline(Word), Path), DriftQuery),
     responses((status = 200, body = FamilyDrift))
 )]
 async fn of_family(

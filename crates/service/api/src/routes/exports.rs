@@ -32,7 +32,7 @@ struct ExportQuery {
 /// in a prediction. A learned correction is written with it.
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/export", tag = "models",
-    params(("model" = inline(Name), Path), ("number" = inline(Number), Path), Query),
+    params(("model" = inline(Name), Path), ("number" = inline(Number), Path), ExportQuery),
     responses((status = 200, description = "The file",
     content((Binary = "application/octet-stream")), headers(("Content-Disposition" = String))))
 )]

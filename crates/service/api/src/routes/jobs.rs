@@ -134,7 +134,7 @@ impl JobView {
 }
 
 /// List the jobs, the latest first
-#[utoipa::path(get, path = "/v1/jobs", tag = "jobs", params(Query),
+#[utoipa::path(get, path = "/v1/jobs", tag = "jobs", params(JobQuery),
     responses((status = 200, body = Listing<JobView>)))]
 async fn list(
     State(app): State<App>,

@@ -41,7 +41,7 @@ enum Format {
 
 /// Get a report, as JSON or as a self-contained page
 #[utoipa::path(
-    get, path = "/v1/reports/{id}", tag = "reports", params(("id" = inline(Id), Path), Query),
+    get, path = "/v1/reports/{id}", tag = "reports", params(("id" = inline(Id), Path), ReportQuery),
     responses((status = 200, content((Object = "application/json"), (String = "text/html"))))
 )]
 async fn get(

@@ -50,7 +50,7 @@ fn yes() -> bool {
 /// them.
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/similar", tag = "ships",
-    params(("ship" = inline(Name), Path), Query),
+    params(("ship" = inline(Name), Path), SimilarQuery),
     responses((status = 200, body = Object, description = "`target`, `definition`, `vector` and \
         `ranking`, as `sistership similar --json`"))
 )]

@@ -81,7 +81,7 @@ impl TrialView {
 }
 
 /// List the trials of a ship, in the order of their upload
-#[utoipa::path(get, path = "/v1/trials", tag = "trials", params(Query),
+#[utoipa::path(get, path = "/v1/trials", tag = "trials", params(TrialQuery),
     responses((status = 200, body = Listing<TrialView>)))]
 async fn list(
     State(app): State<App>,

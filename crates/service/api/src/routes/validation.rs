@@ -44,7 +44,7 @@ enum ValidationFormat {
 /// and of its turning circles and zigzags that neither the version nor one before it was fitted to.
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/validation", tag = "models",
-    params(("model" = inline(Name), Path), ("number" = inline(Number), Path), Query),
+    params(("model" = inline(Name), Path), ("number" = inline(Number), Path), ValidationQuery),
     responses((status = 200, content((Validation = "application/json"), (String = "text/html"))))
 )]
 async fn validation(

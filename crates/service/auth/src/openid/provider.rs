@@ -5,7 +5,7 @@ use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::secret;
+use crate::random_secret;
 use reqwest::{Client, RequestBuilder, StatusCode, Url, header};
 use serde::Deserialize;
 use serde_json::{Map, Value};

@@ -2,7 +2,7 @@
 //! which state, nonce and verifier are derived, and the target afterwards, sealed so that its age
 //! cannot be forged.
 
-use crate::{constant_time_eq, hash_text, secret, sign_message, to_hex};
+use crate::{constant_time_eq, hash_text, random_secret, sign_message, to_hex};
 use base64::Engine as _;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD;
 use serde::{Deserialize, Serialize};

@@ -8,7 +8,7 @@ use serde_json::Value;
 use sistership_store::testing::TestDatabase;
 use sistership_store::{ExpectedRevision, NewReport, NewShip, NewTrial, NewVersion};
 
-use super::{Bundle, BundleError, SigningKey, check_signer, gather, take};
+use super::{Bundle, BundleError, SigningKey, check_signer, collect_bundle, import_bundle};
 use crate::archive::Archive;
 use crate::line::{CHAMPION, server_move};
 use crate::verify::verify_version;

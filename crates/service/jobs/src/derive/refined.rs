@@ -61,7 +61,7 @@ pub(super) async fn load_inputs(
         None => {
             let name = named.as_deref().ok_or_else(missing_law)?;
             let law = inputs.read_law(name, law_sha256).await?;
-            (blank_model(&law, &target, &trials, &settings)?, law, None)
+            (blank_target(&law, &target, &trials, &settings)?, law, None)
         }
     };
     let population = population_members(inputs, population).await?;
@@ -86,7 +86,7 @@ fn missing_law() -> DeriveError {
 }
 
 /// Returns a model without coefficients, with the approach speed of the fitted trials.
-fn blank_model(
+fn blank_target(
     law: &Law,
     target: &Vessel,
     trials: &[Trial],

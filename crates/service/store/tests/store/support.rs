@@ -15,14 +15,14 @@ macro_rules! on_both_databases {
         mod sqlite {$(
             #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
             async fn $name() {
-                super::$name(&$crate::support::TestDatabase::sqlite().open().await).await;
+                super::$name(&$crate::support::TestDatabase::new_sqlite().open().await).await;
             }
         )*}
 
         mod postgres {$(
             #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
             async fn $name() {
-                let Some(database) = $crate::support::TestDatabase::postgres().await else { return };
+                let Some(database) = $crate::support::TestDatabase::new_postgres().await else { return };
                 super::$name(&database.open().await).await;
             }
         )*}

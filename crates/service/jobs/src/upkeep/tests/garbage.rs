@@ -8,7 +8,7 @@ use sistership_store::{ObjectStorage, sha256_hex};
 
 use super::{Place, archive, found, places, trial};
 use crate::archive::Archive;
-use crate::upkeep::{UnreferencedObjects, gc};
+use crate::upkeep::{UnreferencedObjects, collect_garbage};
 
 #[tokio::test(flavor = "multi_thread")]
 async fn garbage_goes_when_it_is_old_and_nobodys() {

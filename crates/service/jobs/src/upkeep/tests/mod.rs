@@ -6,7 +6,7 @@ use bytes::Bytes;
 use sistership_store::testing::{TestDatabase, TestS3};
 use sistership_store::{NewTrial, Store, SystemClock};
 
-use super::{Findings, fsck};
+use super::{Findings, check_archive};
 use crate::archive::Archive;
 use crate::catalogue::ZooCache;
 use crate::seed;
