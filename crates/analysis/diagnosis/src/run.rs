@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 use super::DiagnosisInputs;
 use super::choose::{ConvergedChoice, choose_effects};
 use super::dependence::remainder_dependence;
+use super::findings::{
+    collect_remarks, describe_method, found_with_confounded, refitted_parameters, report_hypotheses,
+};
 use super::judge::{SimulatedErrors, simulate_errors};
 use super::limits::{excluding, undetectable_effects};
 use super::linearised_trials::LinearisedTrials;
 use super::origin::remainder_origins;
 use super::outcome::{Diagnosis, MissingEffect, NextTrial, UnexplainedSegment, Verdict};
 use super::refit::{RefittedModel, refit_alternatives};
-use super::said::{
-    collect_remarks, describe_method, found_with_confounded, refitted_parameters, report_hypotheses,
-};
 use super::search::HypothesisSearch;
 use super::select::{SelectedEffects, select_effects};
 use super::series::{discrepancy_levels, residual_series};

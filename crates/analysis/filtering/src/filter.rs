@@ -8,7 +8,7 @@ use super::gram::GramMatrix;
 use super::kalman_filter::KalmanFilter;
 use super::linearised::LinearisedPart;
 use super::noise::InstrumentNoise;
-use sistership_simulation::wide::{SimdKernel, dispatch_simd};
+use sistership_simulation::simd::{SimdKernel, dispatch_simd};
 
 /// Rows of prediction errors, and the sum of the logarithms of their predicted variances.
 pub type WhitenedRows = (Vec<f64>, f64);

@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 use sistership_identification::refine::RefineError;
-use sistership_simulation::wide::{SimdKernel, dispatch_simd};
+use sistership_simulation::simd::{SimdKernel, dispatch_simd};
 
 use super::discrepancies::AxisDiscrepancies;
 use super::filter::prediction_errors;

@@ -6,7 +6,7 @@
 //! the same to the last bit.
 
 use nalgebra::DMatrix;
-use sistership_simulation::wide::{SimdKernel, dispatch_fused};
+use sistership_simulation::simd::{SimdKernel, dispatch_fused};
 
 /// Number of readings in a block: that of `matrixmultiply`, whose sums these are.
 const READINGS: usize = 256;

@@ -16,8 +16,8 @@ use sistership_simulation::manoeuvre::{
 
 use crate::extremes::extreme_trials;
 use crate::foundation::CorrectionBase;
-use crate::sailed::simulation_fault;
 use crate::scatter::scatter_ratio;
+use crate::simulation_check::simulation_fault;
 
 /// A kind of correction that was best on held-out trials.
 pub(super) struct Correction<'a> {

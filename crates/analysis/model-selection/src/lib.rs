@@ -7,27 +7,27 @@
 //! is refined by an explicit request with its source, law and method. If that gives no model that
 //! completes the required manoeuvres, the next one is chosen.
 
-mod branch;
+mod candidate;
 mod choice;
 mod correction;
-mod entrant;
+mod correction_choice;
+mod evaluation;
 mod extremes;
 mod foundation;
-mod ladder;
 mod population;
-mod sailed;
 mod scatter;
 mod search;
+mod selection;
+mod selection_report;
+mod simulation_check;
 mod start;
-mod taken;
 mod thresholds;
-mod tried;
 
+pub use candidate::{AdditionalPriors, CandidatePrior, SelectionCandidate, list_candidates};
 pub use choice::{choose_candidate, standard_error};
-pub use entrant::{AdditionalPriors, CandidatePrior, SelectionCandidate, list_candidates};
-pub use ladder::{ReportLine, SelectionReport, SelectionStage};
+pub use evaluation::CandidateSearch;
 pub use population::similar_population;
 pub use search::{calibration_samples, search_candidates};
+pub use selection::SelectedCandidate;
+pub use selection_report::{ReportLine, SelectionReport, SelectionStage};
 pub use start::{StartRequest, StartSelection, best_start};
-pub use taken::SelectedCandidate;
-pub use tried::CandidateSearch;

@@ -6,7 +6,7 @@ use sistership_model::{Model, Vessel, Zoo};
 use sistership_priors::similarity::RankedSource;
 use sistership_priors::source::{SimilarityRanking, rank_similar};
 
-use crate::entrant::POPULATION_LAW;
+use crate::candidate::POPULATION_LAW;
 use crate::thresholds::SEARCH;
 
 /// Returns other ships of the zoo with their published models, by rank of similarity, of all

@@ -8,14 +8,14 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::entrant::{CandidatePrior, SelectionCandidate};
-use crate::ladder::SelectionStage;
-use crate::taken::{SelectedCandidate, select_candidate};
-use crate::thresholds::SEARCH;
-use crate::tried::{
+use crate::candidate::{CandidatePrior, SelectionCandidate};
+use crate::evaluation::{
     CandidateSearch, EvaluatedCandidate, candidate_request, chosen_place, evaluate_candidate,
     last_ridge, stage_evaluation, stage_settings,
 };
+use crate::selection::{SelectedCandidate, select_candidate};
+use crate::selection_report::SelectionStage;
+use crate::thresholds::SEARCH;
 use sistership_assessment::uncertainty::Sampling;
 use sistership_identification::refine::{
     CandidateEvaluation, MonotoneProgress, Progress, RefineError, RefinementSettings,

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use sistership_model::trial::Trial;
 use sistership_model::{Model, Vessel, Zoo};
 
-use crate::branch::choose_correction;
-use crate::entrant::{AdditionalPriors, CandidatePrior, SelectionCandidate, list_candidates};
+use crate::candidate::{AdditionalPriors, CandidatePrior, SelectionCandidate, list_candidates};
+use crate::correction_choice::choose_correction;
+use crate::evaluation::{CandidateSearch, candidate_request};
 use crate::foundation::CorrectionBase;
-use crate::ladder::SelectionReport;
 use crate::population::{envelope_source, similar_population};
 use crate::search::search_candidates;
+use crate::selection_report::SelectionReport;
 use crate::thresholds::SEARCH;
-use crate::tried::{CandidateSearch, candidate_request};
 use sistership_identification::refine::{
     PopulationShip, Progress, RefineError, Refinement, RefinementSettings,
 };

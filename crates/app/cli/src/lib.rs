@@ -6,16 +6,16 @@
 
 mod allocator;
 mod arguments;
-mod close;
 mod commands;
 mod demo;
 mod failure;
 mod files;
-mod folder;
-mod named;
 mod output;
+mod resolve;
+mod suggestions;
 mod table;
 mod track;
+mod track_files;
 mod trials;
 mod values;
 mod weights;

@@ -20,9 +20,9 @@ use crate::equations::{
 };
 use crate::integrate::Method;
 use crate::plant::check_inputs;
+use crate::simd::{SimdKernel, dispatch_simd};
 use crate::state::{StateVector, at};
 use crate::tape::{LaneValues, Tape, TapeResults};
-use crate::wide::{SimdKernel, dispatch_simd};
 
 const STATES_3DOF: [usize; 4] = [at::U, at::V, at::R, at::PSI];
 const STATES_4DOF: [usize; 6] = [at::U, at::V, at::R, at::P, at::PHI, at::PSI];

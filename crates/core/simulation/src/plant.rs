@@ -1,6 +1,6 @@
 //! Model prepared for simulation: its law and coefficients on one tape.
 
-mod listed;
+mod listing;
 mod rate;
 
 use nalgebra::{LU, Matrix4};
@@ -12,7 +12,7 @@ use sistership_model::law::Law;
 use crate::equations::{CoefficientBinding, EquationLowering, EquationsOfMotion, PlantError};
 use crate::tape::Tape;
 
-pub use listed::PlantListing;
+pub use listing::PlantListing;
 pub use rate::PlantWorkspace;
 
 /// Inputs at an instant, in the order of the law's inputs.

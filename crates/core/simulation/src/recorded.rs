@@ -1,23 +1,23 @@
 //! Simulation of a recorded trial: the recorded rudder and revolutions drive the model, and the
 //! simulated motion is compared with the recorded one.
 
+mod instrument_correction;
 mod part;
 mod rates;
 mod record;
-mod replayed;
-mod truth;
+mod replay_result;
 
 use sistership_model::trial::Trial;
 
 use crate::integrate::Method;
 use crate::lockstep;
 use crate::ship::Ship;
+pub use instrument_correction::correct_instrument_errors;
 use part::TrialPart;
 pub use rates::instants_along;
 pub use record::MissingChannel;
 use record::TrialRecord;
-pub use replayed::TrialReplay;
-pub use truth::correct_instrument_errors;
+pub use replay_result::TrialReplay;
 
 /// Settings of the simulation of a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]

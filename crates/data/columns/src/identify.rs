@@ -3,7 +3,7 @@
 use crate::data::RecordingSample;
 use crate::hypothesis::{Assignment, Hypothesis};
 use crate::outcome::{AlternativeReading, Identification, IdentifiedColumn};
-use crate::own::OwnEvidence;
+use crate::own_evidence::OwnEvidence;
 use crate::physics::PhysicalEvidence;
 use crate::relation::ColumnRelation;
 use crate::role::Role;

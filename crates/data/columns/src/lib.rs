@@ -6,13 +6,14 @@
 //! assignment that is likeliest by all three, the probability of each column, and the alternative
 //! where two hypotheses are nearly as likely.
 
+mod cooccurrence;
 mod data;
 mod faults;
 mod header;
 mod hypothesis;
 mod identify;
 mod outcome;
-mod own;
+mod own_evidence;
 mod physics;
 mod relation;
 mod role;
@@ -25,7 +26,6 @@ mod thrusters;
 mod time;
 mod track;
 mod vocabulary;
-mod whole;
 mod words;
 
 pub use data::{ColumnData, RecordingSample};

@@ -1,10 +1,10 @@
 //! Search for the assignment with the highest log odds of headers, values and relations together.
 
+use crate::cooccurrence;
 use crate::hypothesis::{Assignment, Hypothesis};
-use crate::own::OwnEvidence;
+use crate::own_evidence::OwnEvidence;
 use crate::physics::PhysicalEvidence;
 use crate::role::{QuantityKind, Role, Unit};
-use crate::whole;
 
 /// Log odds of a column alone below which a hypothesis is not considered.
 const HOPELESS: f64 = -9.0;
@@ -76,7 +76,8 @@ impl<'a> AssignmentSearch<'a> {
         });
         // A prohibitive penalty for each settled column that the assignment contradicts.
         let kept = self.settled.iter().filter(|one| of.columns[one.column] != one.what).count();
-        each.sum::<f64>() + self.physics.total_odds(of) + whole::set_odds(of) - 1e3 * kept as f64
+        each.sum::<f64>() + self.physics.total_odds(of) + cooccurrence::set_odds(of)
+            - 1e3 * kept as f64
     }
 
     /// Improves an assignment by single columns, signs, pairs of columns and exchanges until

@@ -2,7 +2,7 @@
 
 use crate::hypothesis::Assignment;
 use crate::outcome::ThrusterPair;
-use crate::own::OwnEvidence;
+use crate::own_evidence::OwnEvidence;
 use crate::role::{Role, Side};
 use crate::rudder::lagged_correlation;
 use crate::signals::RecordingSignals;

@@ -1,7 +1,7 @@
 //! The column of time and its unit.
 
 use crate::data::ColumnData;
-use crate::own::OwnEvidence;
+use crate::own_evidence::OwnEvidence;
 use crate::role::{QuantityKind, Role, Unit};
 
 /// Usual interval between samples, s, and the standard deviation of its natural logarithm: from

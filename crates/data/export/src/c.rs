@@ -3,11 +3,11 @@
 use sistership_formula::Function;
 
 use crate::error::ExportError;
+use crate::export_plan::{ExportCoefficient, ExportPlan, STATES};
 use crate::expression::{TargetLanguage, function_name};
+use crate::external_input::ExternalInput;
 use crate::format::ModelFormat;
-use crate::outside::ExternalInput;
-use crate::plan::{ExportCoefficient, ExportPlan, STATES};
-use crate::{header, range, rates, wrapped};
+use crate::{header, line_wrapping, range, rates};
 
 /// C99 source file.
 #[derive(Debug)]
@@ -71,7 +71,7 @@ impl TargetLanguage for CFormat {
     fn write_assignment(&self, name: &str, terms: &[String]) -> String {
         // Rates are members of a structure; all other names are defined here.
         let kind = if name.starts_with("rate->") { "" } else { "const double " };
-        wrapped::wrap_sum(&format!("    {kind}{name} = "), terms, "\n       ") + ";"
+        line_wrapping::wrap_sum(&format!("    {kind}{name} = "), terms, "\n       ") + ";"
     }
 
     fn write_solution(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
@@ -103,7 +103,7 @@ fn source_text(plan: &ExportPlan) -> String {
     let lines = header::header_lines(plan);
     // The end mark of a comment inside the text would end the comment.
     let comment =
-        lines.iter().flat_map(|line| wrapped::wrap_comment(" *", &line.replace("*/", "* /")));
+        lines.iter().flat_map(|line| line_wrapping::wrap_comment(" *", &line.replace("*/", "* /")));
     let mut text =
         format!("/*\n{}\n */\n#include <math.h>\n\n", comment.collect::<Vec<_>>().join("\n"));
     text.push_str(&type_definitions(plan));
@@ -203,7 +203,7 @@ fn range_function(plan: &ExportPlan) -> String {
     else {
         return String::new();
     };
-    let meaning = wrapped::wrap_comment(" *", range::MEANING).join("\n");
+    let meaning = line_wrapping::wrap_comment(" *", range::MEANING).join("\n");
     format!(
         "/* As a number:\n{meaning} */\ndouble @_{name}(const @_state *s, const @_inputs *in)\n{{\n    \
          (void)in;\n{statements}\n    return {result};\n}}\n\n",

@@ -3,8 +3,8 @@
 use sistership_formula::{Comparison, Function};
 use sistership_simulation::tape::{ResultSlot, TapeInstruction, TapeOp};
 
-use crate::outside::ExternalInput;
-use crate::plan::{ExportCoefficient, ExportPlan, TapeOperand};
+use crate::export_plan::{ExportCoefficient, ExportPlan, TapeOperand};
+use crate::external_input::ExternalInput;
 
 /// Syntax of a language for the operations of a tape. Operands are names or numbers, never sums.
 pub trait TargetLanguage {

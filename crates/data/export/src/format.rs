@@ -1,7 +1,7 @@
 //! Trait of the export formats; each format has its own file.
 
 use crate::error::ExportError;
-use crate::plan::ExportPlan;
+use crate::export_plan::ExportPlan;
 
 /// Format of an exported model.
 pub trait ModelFormat: std::fmt::Debug + Send + Sync {

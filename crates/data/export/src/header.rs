@@ -1,7 +1,7 @@
 //! Header of every export: provenance, units, signs and sources.
 
-use crate::outside::ExternalInput;
-use crate::plan::{ExportCoefficient, ExportPlan, STATES};
+use crate::export_plan::{ExportCoefficient, ExportPlan, STATES};
+use crate::external_input::ExternalInput;
 
 /// Lines that a reader needs before the code: provenance, units, signs, inputs, coefficients.
 pub fn header_lines(plan: &ExportPlan) -> Vec<String> {

@@ -4,11 +4,11 @@
 use sistership_formula::Function;
 
 use crate::error::ExportError;
+use crate::export_plan::{ExportCoefficient, ExportPlan, STATES};
 use crate::expression::{TargetLanguage, function_name};
+use crate::external_input::ExternalInput;
 use crate::format::ModelFormat;
-use crate::outside::ExternalInput;
-use crate::plan::{ExportCoefficient, ExportPlan, STATES};
-use crate::{header, range, rates, wrapped};
+use crate::{header, line_wrapping, range, rates};
 
 /// Function file for MATLAB R2016b and later, Octave 6 and later.
 #[derive(Debug)]
@@ -62,7 +62,7 @@ impl TargetLanguage for MatlabFormat {
     }
 
     fn write_assignment(&self, name: &str, terms: &[String]) -> String {
-        wrapped::wrap_sum(&format!("{name} = "), terms, " ...\n   ") + ";"
+        line_wrapping::wrap_sum(&format!("{name} = "), terms, " ...\n   ") + ";"
     }
 
     fn write_solution(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
@@ -89,7 +89,7 @@ fn source_text(plan: &ExportPlan) -> String {
     help.push(format!("{}: {}", range::NAME, range::MEANING));
     let help: Vec<String> = help
         .iter()
-        .flat_map(|line| wrapped::wrap_comment("%", line))
+        .flat_map(|line| line_wrapping::wrap_comment("%", line))
         .map(|line| line.trim_end().to_owned())
         .collect();
     TEMPLATE

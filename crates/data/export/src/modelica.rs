@@ -3,11 +3,11 @@
 use sistership_formula::Function;
 
 use crate::error::ExportError;
+use crate::export_plan::{ExportCoefficient, ExportPlan, STATES};
 use crate::expression::{TargetLanguage, function_name};
+use crate::external_input::ExternalInput;
 use crate::format::ModelFormat;
-use crate::outside::ExternalInput;
-use crate::plan::{ExportCoefficient, ExportPlan, STATES};
-use crate::{header, range, rates, wrapped};
+use crate::{header, line_wrapping, range, rates};
 
 /// Model file for Modelica 3.4, without any library.
 #[derive(Debug)]
@@ -72,7 +72,7 @@ impl TargetLanguage for ModelicaFormat {
     }
 
     fn write_assignment(&self, name: &str, terms: &[String]) -> String {
-        wrapped::wrap_sum(&format!("  {name} = "), terms, "\n     ") + ";"
+        line_wrapping::wrap_sum(&format!("  {name} = "), terms, "\n     ") + ";"
     }
 
     fn write_solution(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
@@ -95,7 +95,7 @@ impl TargetLanguage for ModelicaFormat {
 fn source_text(plan: &ExportPlan) -> String {
     let comment: Vec<String> = header::header_lines(plan)
         .iter()
-        .flat_map(|line| wrapped::wrap_comment("  //", line))
+        .flat_map(|line| line_wrapping::wrap_comment("  //", line))
         .collect();
     let parts = [
         format!("model {} \"Ship manoeuvring model {}\"", plan.identifier, plan.name),

@@ -4,11 +4,11 @@
 use sistership_formula::Function;
 
 use crate::error::ExportError;
+use crate::export_plan::{ExportCoefficient, ExportPlan, STATES};
 use crate::expression::{TargetLanguage, function_name};
+use crate::external_input::ExternalInput;
 use crate::format::ModelFormat;
-use crate::outside::ExternalInput;
-use crate::plan::{ExportCoefficient, ExportPlan, STATES};
-use crate::{header, range, rates, wrapped};
+use crate::{header, line_wrapping, range, rates};
 
 /// Module for Python 3.8 and later.
 #[derive(Debug)]
@@ -81,12 +81,12 @@ impl TargetLanguage for PythonFormat {
     }
 
     fn write_assignment(&self, name: &str, terms: &[String]) -> String {
-        let one = wrapped::wrap_sum(&format!("    {name} = "), terms, "");
+        let one = line_wrapping::wrap_sum(&format!("    {name} = "), terms, "");
         // Brackets are only needed to continue a line.
         if one.len() <= 96 {
             return one;
         }
-        wrapped::wrap_sum(&format!("    {name} = ("), terms, "\n       ") + ")"
+        line_wrapping::wrap_sum(&format!("    {name} = ("), terms, "\n       ") + ")"
     }
 
     fn write_solution(&self, mass: &[[String; 4]; 4], forces: &[String; 4]) -> Vec<String> {
@@ -109,7 +109,7 @@ fn source_text(plan: &ExportPlan) -> String {
     let lines = header::header_lines(plan);
     let lines: Vec<String> = lines
         .iter()
-        .flat_map(|line| wrapped::wrap_comment("#", line))
+        .flat_map(|line| line_wrapping::wrap_comment("#", line))
         .map(|l| l.trim_end().to_owned())
         .collect();
     let body = TEMPLATE
@@ -139,7 +139,7 @@ fn range_function(plan: &ExportPlan) -> String {
     else {
         return String::new();
     };
-    let meaning = wrapped::wrap_comment("    #", range::MEANING).join("\n");
+    let meaning = line_wrapping::wrap_comment("    #", range::MEANING).join("\n");
     format!(
         "def {name}(state, inputs=INPUTS, coefficients=COEFFICIENTS):\n{meaning}\n    \
          u, v, r, p, phi, psi, x, y, delta = state\n{unpack}\n{statements}\n    \

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use sistership_simulation::tape::{ResultSlot, Tape, TapeInstruction};
 
+use crate::export_plan::ExportPlan;
 use crate::expression::{TargetLanguage, instruction_terms, operand_text};
-use crate::plan::ExportPlan;
 
 /// Name of the output.
 pub const NAME: &str = "outside_range";

@@ -2,8 +2,8 @@
 
 use sistership_simulation::tape::ResultSlot;
 
+use crate::export_plan::ExportPlan;
 use crate::expression::{TargetLanguage, instruction_terms, operand_text};
-use crate::plan::ExportPlan;
 use crate::range;
 
 /// Indices in the state vector of the velocities of the axes X, Y, K, N, and names of their

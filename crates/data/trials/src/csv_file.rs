@@ -15,9 +15,9 @@ use crate::mapping::Mapping;
 use crate::metered::{MeteredReader, RowMeter};
 use crate::number::{CellFault, parse_number};
 use crate::resolve::{HeaderRows, resolve_heading};
+use crate::row_sink::{RowSink, RowSource, time_column};
 use crate::stream;
 use crate::table::{ColumnTarget, Table, TableColumn, memory_columns};
-use crate::taker::{RowSink, RowSource, time_column};
 
 /// Number of bytes that are read at a time in the search for the header.
 const CHUNK: u64 = 4096;

@@ -13,7 +13,7 @@ use crate::mat_file;
 use crate::nmea_file;
 use crate::parquet_file;
 use crate::samples::GROUP_ROWS;
-use crate::source::{InputContent, TrialFile};
+use crate::trial_file::{InputContent, TrialFile};
 
 /// Bytes in memory for each byte of the footer of a Parquet file: a conservative assumption, since
 /// numbers of a few bytes become fields of eight.

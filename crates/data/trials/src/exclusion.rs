@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use sistership_model::manifest::FileTime;
 use sistership_model::trial::Finding;
 
+use crate::file_segments::FileSegment;
 use crate::findings::Findings;
-use crate::stretches::FileSegment;
 use crate::table::{ColumnTarget, Table};
 
 /// Values that are excluded as faulty.

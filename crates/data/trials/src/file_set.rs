@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::shape::ColumnSet;
+use crate::column_set::ColumnSet;
 
 /// A file of a set.
 #[derive(Debug, Clone)]

@@ -15,7 +15,7 @@ use crate::manifest::read_local_manifest;
 use crate::mapping::Mapping;
 use crate::outcome::{CheckOutcome, Refusal};
 use crate::read::{CheckedRecording, SegmentRequest, examine_source, read_segments};
-use crate::source::TrialFile;
+use crate::trial_file::TrialFile;
 
 /// Trials read from a path, with the manifest.
 #[derive(Debug)]

@@ -6,10 +6,10 @@ use sistership_model::FileError;
 use sistership_model::manifest::Manifest;
 
 use crate::declarations::{Declarations, North, SensorFile};
+use crate::file_segments::{self, same_file};
 use crate::manifest_file::{ManifestFile, Written};
 use crate::resolve::{channel_names, unit_factor};
 use crate::smoothing;
-use crate::stretches::{self, same_file};
 use crate::table::ColumnTarget;
 use crate::units::UnitKind;
 
@@ -98,7 +98,7 @@ fn trial_problems(manifest: &Manifest) -> impl Iterator<Item = ManifestProblem> 
     });
     let each = manifest.trials.iter().enumerate().filter_map(|(index, trial)| {
         let earlier = &manifest.trials[..index];
-        if let Some((field, message)) = stretches::segment_problem(trial, earlier) {
+        if let Some((field, message)) = file_segments::segment_problem(trial, earlier) {
             let (field, near) = (format!("trials[{index}].{field}"), trial.file.clone());
             return Some(ManifestProblem { field, near, message });
         }

@@ -4,8 +4,8 @@ use sistership_model::manifest::{ColumnMapping, Manifest, ManifestTrial, TrialCo
 
 use crate::declarations::{Declarations, SensorFile};
 use crate::exclusion::Exclusion;
+use crate::file_segments::FileSegment;
 use crate::limits::FileLimits;
-use crate::stretches::FileSegment;
 
 /// Mapping of columns to channels, with signs and limits on the size of the file.
 ///

@@ -9,9 +9,9 @@ use crate::limits::FileLimits;
 use crate::mapping::Mapping;
 use crate::number::CellFault;
 use crate::resolve::resolve_headers;
+use crate::row_sink::RowSink;
 use crate::rows::TableBuilder;
 use crate::table::{ColumnTarget, Table, TableColumn, memory_columns};
-use crate::taker::RowSink;
 use crate::workbook::ReadSeek;
 
 /// Largest number of columns of a matrix, and of columns of a file.

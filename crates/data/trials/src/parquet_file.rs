@@ -17,9 +17,9 @@ use crate::number::CellFault;
 use crate::parquet_cells::{BATCH, ColumnCells, group_rows};
 use crate::parquet_footer::{FileRefusal, catch_panics, checked_metadata, schema_names};
 use crate::resolve::resolve_headers;
+use crate::row_sink::{RowSink, RowSource, time_column};
 use crate::stream;
 use crate::table::{Table, TableColumn, memory_columns};
-use crate::taker::{RowSink, RowSource, time_column};
 
 /// Reads the mapped columns; returns `None` after errors that prevent any check.
 ///

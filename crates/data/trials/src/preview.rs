@@ -11,8 +11,8 @@ use crate::limits::FileLimits;
 use crate::mat_file;
 use crate::nmea_file;
 use crate::parquet_footer;
-use crate::source::{InputContent, TrialFile};
 use crate::table::ColumnTarget;
+use crate::trial_file::{InputContent, TrialFile};
 use crate::workbook;
 
 /// Largest number of bytes and of rows that are examined.

@@ -8,13 +8,13 @@ use sistership_model::manifest::{
     Manifest, ManifestTrial, MissingValues, RudderSign, TrialConventions, TrialsKind,
 };
 
+use crate::column_set::ColumnSet;
 use crate::declarations::{Declarations, Derivable, SensorFile};
 use crate::file_set::{ClockSpan, FileRole, SetFile, classify_files};
 use crate::guess::ColumnGuess;
 use crate::manifest_file::ManifestFile;
 use crate::preview::preview_file;
 use crate::sampling::{FileSample, sample_file};
-use crate::shape::ColumnSet;
 
 /// Proposed manifest and its evidence.
 #[derive(Debug, Clone, PartialEq)]

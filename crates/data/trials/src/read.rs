@@ -13,14 +13,14 @@ use crate::findings::Findings;
 use crate::mapping::Mapping;
 use crate::outcome::{CheckOutcome, Refusal, TrialReading};
 use crate::parquet_file::ParquetRows;
-use crate::parts::{self, LabelledMapping};
 use crate::recording::Recording;
+use crate::row_sink::RowSource;
+use crate::segment_tables::{self, LabelledMapping};
 use crate::series::{join_series, offset_s, table_series};
 use crate::smoothing::smooth_recording;
-use crate::source::{InputContent, SensorInput, TrialFile};
 use crate::stream::TableRows;
 use crate::table::Table;
-use crate::taker::RowSource;
+use crate::trial_file::{InputContent, SensorInput, TrialFile};
 use crate::{
     csv_file, derived, ground, mat_file, nmea_file, parquet_file, position, water, workbook,
 };
@@ -139,7 +139,7 @@ impl RowsVisitor for SegmentsVisitor<'_> {
     type Output = Vec<(Option<Table>, Findings)>;
 
     fn visit_rows(self, file: impl RowSource, header: &Findings) -> Self::Output {
-        parts::read_tables(file, self.0, header)
+        segment_tables::read_tables(file, self.0, header)
     }
 }
 

@@ -4,8 +4,8 @@ use sistership_model::manifest::MissingValues;
 
 use crate::findings::Findings;
 use crate::number::CellFault;
+use crate::row_sink::RowSink;
 use crate::table::{ColumnTarget, Table, TableColumn};
-use crate::taker::RowSink;
 
 /// Run of consecutive excluded rows.
 struct FaultyRun {

@@ -12,10 +12,10 @@ use crate::limits::FileLimits;
 use crate::mapping::{Mapping, WrittenTime};
 use crate::preview::FilePreview;
 use crate::read::{RowsVisitor, each_row};
-use crate::source::{InputContent, TrialFile};
+use crate::row_sink::RowSource;
 use crate::stream;
 use crate::table::{ColumnTarget, Table, TimeOrigin};
-use crate::taker::RowSource;
+use crate::trial_file::{InputContent, TrialFile};
 use crate::written_time::written_time;
 
 /// Size of text, bytes, beyond which only pieces are read, and the size and number of these.

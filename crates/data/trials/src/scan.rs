@@ -7,15 +7,15 @@ use sistership_model::manifest::RudderSign;
 use sistership_model::trial::{Channel, Finding};
 
 use crate::clock::ColumnClock;
+use crate::file_segments::SegmentFault;
 use crate::findings::Findings;
 use crate::mapping::Mapping;
 use crate::number::CellFault;
 use crate::outcome::Refusal;
 use crate::read::{RowsVisitor, each_row};
-use crate::source::TrialFile;
-use crate::stretches::SegmentFault;
+use crate::row_sink::{RowSink, RowSource};
 use crate::table::{ColumnTarget, RawQuantity, Table, TableColumn};
-use crate::taker::{RowSink, RowSource};
+use crate::trial_file::TrialFile;
 
 /// Steering and motion of a ship at one time, in SI units and radians; NaN where not measured.
 #[derive(Debug, Clone, Copy, PartialEq)]

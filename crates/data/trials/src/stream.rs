@@ -4,9 +4,9 @@ use crate::clock::ColumnClock;
 use crate::findings::Findings;
 use crate::mapping::Mapping;
 use crate::number::CellFault;
+use crate::row_sink::{RowSink, RowSource, time_column};
 use crate::rows::TableBuilder;
 use crate::table::{Table, TableColumn};
-use crate::taker::{RowSink, RowSource, time_column};
 
 /// Reads all rows into one table.
 pub(crate) fn read_whole(

@@ -1,6 +1,7 @@
 //! Jobs of Sistership: derivation and verification of versions, calibration, search for ships,
 //! bundles, and maintenance of an archive. Servers, workers and the command line share them.
 
+pub mod aliases;
 pub mod archive;
 pub mod budget;
 pub mod bundle;
@@ -9,14 +10,13 @@ pub mod champions;
 pub mod comparison;
 pub mod condition;
 pub mod derive;
+pub mod environment;
 pub mod error;
-pub mod exported;
 pub mod fleet;
 pub mod input;
 pub mod inputs;
 pub mod leases;
 pub mod library;
-pub mod line;
 pub mod memory;
 pub mod predictions;
 pub mod promotion;
@@ -26,14 +26,14 @@ pub mod request;
 pub mod schema;
 pub mod search;
 pub mod seed;
-pub mod sorted;
+pub mod sorted_json;
 pub mod start;
-pub mod surroundings;
 pub mod training;
 pub mod upkeep;
-pub mod validated;
+pub mod validation;
 pub mod verify;
 pub mod version;
+pub mod version_export;
 pub mod webhooks;
 
 pub use archive::Archive;

@@ -13,10 +13,10 @@ use sistership_simulation::Ship;
 use sistership_simulation::error::{SquaredError, standard_deviations, standardised_mse};
 use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 
+use crate::aliases::{CHAMPION, find_alias};
 use crate::archive::{Archive, version_document};
 use crate::derive::RefinementRun;
 use crate::error::DeriveError;
-use crate::line::{CHAMPION, find_alias};
 use crate::version::VersionDocument;
 
 /// Prior strength that leaves the coefficients of a source unchanged.

@@ -4,12 +4,12 @@ use sistership_model::version::sha256_hex;
 use sistership_model::{Vessel, Zoo};
 use sistership_store::{Alias, AliasMove, ExpectedRevision, NewVersion, Store, StoreError};
 
+use crate::aliases::{
+    CHAMPION, VersionHistory, expect_unchanged, find_alias, published_alias, server_move,
+};
 use crate::archive::version_document;
 use crate::derive::published_document;
 use crate::error::DeriveError;
-use crate::line::{
-    CHAMPION, VersionHistory, expect_unchanged, find_alias, published_alias, server_move,
-};
 use crate::version::VersionDocument;
 
 type Result<T> = std::result::Result<T, DeriveError>;

@@ -14,13 +14,13 @@ use sistership_model_selection::{SelectionReport, StartRequest, best_start, simi
 use sistership_priors::source::{SimilarityRanking, best_ranked};
 use sistership_store::{Law, Ship, Version};
 
+use crate::aliases::{find_alias, published_alias};
 use crate::archive::Archive;
 use crate::champions::SourceModels;
 use crate::derive::ProgressCallback;
 use crate::error::DeriveError;
 use crate::library::{self, EffectLibrary, embedded_library};
-use crate::line::{find_alias, published_alias};
-use crate::sorted::sort_keys;
+use crate::sorted_json::sort_keys;
 
 type Result<T> = std::result::Result<T, DeriveError>;
 

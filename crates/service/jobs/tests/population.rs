@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use archive::archive;
 use sistership_identification::refine::{EstimationMethod, Prior, RefinementSettings, TermFamily};
+use sistership_jobs::aliases::server_move;
 use sistership_jobs::archive::{Archive, parse_vessel};
 use sistership_jobs::derive::{DerivedVersion, derive};
 use sistership_jobs::error::DeriveError;
-use sistership_jobs::line::server_move;
 use sistership_jobs::recipe::DerivationRecipe;
 use sistership_jobs::start::RefinementStart;
 use sistership_jobs::upkeep::check_archive;

@@ -15,9 +15,9 @@ use sistership_store::testing::TestDatabase;
 use sistership_store::{ExpectedRevision, NewVersion, VersionHead};
 
 use archive::archive;
+use sistership_jobs::aliases::server_move;
 use sistership_jobs::archive::Archive;
 use sistership_jobs::derive::{DerivedVersion, derive};
-use sistership_jobs::line::server_move;
 use sistership_jobs::recipe::DerivationRecipe;
 use sistership_jobs::training::{choose_kind, foundation_number, training_recipe};
 use sistership_jobs::upkeep::{Findings, check_archive, collect_garbage};

@@ -12,7 +12,7 @@ use http_body_util::BodyExt as _;
 use hyper::body::{Body as HttpBody, Frame, Incoming, SizeHint};
 use tokio::time::{Instant, Sleep, sleep_until};
 
-use crate::pace::ConnectionProgress;
+use crate::progress::ConnectionProgress;
 
 /// Maximum size, and maximum time, for discarding the rest of a body that is refused before its
 /// end. Otherwise a client that still sends would find the connection reset instead of the answer:

@@ -19,10 +19,10 @@ use tokio::net::TcpStream;
 use crate::address::counted_address;
 use crate::body::{RequestBody, ResponseBody, UnreadBody};
 use crate::limits::ConnectionLimits;
-use crate::pace::ConnectionProgress;
 use crate::peer::{PeerInfo, is_health};
-use crate::seats::{ConnectionSlots, Permit};
-use crate::stopping::StopSignal;
+use crate::progress::ConnectionProgress;
+use crate::slots::{ConnectionSlots, Permit};
+use crate::stop_signal::StopSignal;
 use crate::stream::WatchedStream;
 
 /// Maximum number of headers of a request.

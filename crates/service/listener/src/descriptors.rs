@@ -1,7 +1,7 @@
 //! File descriptors of the process: as many as its connections need, else fewer connections.
 
 use crate::limits::ConnectionLimits;
-use crate::seats::RESERVE;
+use crate::slots::RESERVE;
 
 /// Descriptors other than those of connections: database, samples, uploads, the log.
 const OTHER_DESCRIPTORS: usize = 128;

@@ -3,8 +3,8 @@
 use std::net::IpAddr;
 use std::sync::Arc;
 
-use crate::pace::ConnectionProgress;
-use crate::seats::Permit;
+use crate::progress::ConnectionProgress;
+use crate::slots::Permit;
 
 /// Paths that are answered even without a permit.
 const HEALTH: [&str; 2] = ["/healthz", "/readyz"];

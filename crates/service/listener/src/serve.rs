@@ -10,8 +10,8 @@ use tokio::net::{TcpListener, TcpStream};
 
 use crate::connection::ClientConnection;
 use crate::limits::ConnectionLimits;
-use crate::seats::ConnectionSlots;
-use crate::stopping::StopSignal;
+use crate::slots::ConnectionSlots;
+use crate::stop_signal::StopSignal;
 
 /// Bytes of an answer that the system accepts beyond those in flight. Answers that are not read are
 /// produced no further: otherwise 600 connections with 400 requests each would have had the work of

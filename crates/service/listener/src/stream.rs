@@ -9,7 +9,7 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 use tokio::time::{Instant, Sleep, sleep_until};
 
-use crate::pace::ConnectionProgress;
+use crate::progress::ConnectionProgress;
 
 /// A socket that reports the progress of its other end, and fails if there is none.
 pub(super) struct WatchedStream {

@@ -1,8 +1,8 @@
 //! Resolution of version names: `ship`, `ship/number`, `ship/alias`.
 
 use sistership_jobs::Archive;
+use sistership_jobs::aliases::{CHAMPION, find_alias};
 use sistership_jobs::archive::version_document;
-use sistership_jobs::line::{CHAMPION, find_alias};
 use sistership_jobs::version::VersionDocument;
 use sistership_model::Law;
 use sistership_store::{StoreError, Version, VersionHead};

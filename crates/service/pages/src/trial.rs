@@ -3,8 +3,8 @@
 use askama::Template;
 use serde::Deserialize;
 use sistership_jobs::Archive;
+use sistership_jobs::aliases::{CHAMPION, find_alias};
 use sistership_jobs::archive::version_document;
-use sistership_jobs::line::{CHAMPION, find_alias};
 use sistership_model::trial::{Channel, Finding, Trial as Samples};
 use sistership_model::version::RecipeTrial;
 use sistership_model::{Law, Model};

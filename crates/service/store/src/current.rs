@@ -6,11 +6,11 @@
 
 use tokio::sync::oneshot;
 
+use crate::alias_lookups::{AliasLookup, BATCH_SIZE, CurrentVersion};
 use crate::arguments::{Arg, args};
 use crate::checks;
 use crate::connections::ReadConnection;
 use crate::error::Result;
-use crate::questions::{AliasLookup, BATCH_SIZE, CurrentVersion};
 use crate::statements::{same, statements};
 use crate::store::Store;
 

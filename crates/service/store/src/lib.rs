@@ -8,6 +8,7 @@
 //! are one transaction, see [`Store::commit_refinement`] and [`Store::commit_diagnosis`].
 
 mod actor;
+mod alias_lookups;
 mod aliases;
 mod arguments;
 mod audit;
@@ -28,6 +29,7 @@ mod entry;
 mod error;
 mod families;
 mod folders;
+mod free_space;
 mod garbage;
 mod grants;
 mod group;
@@ -44,20 +46,18 @@ mod object_list;
 mod objects;
 mod objects_error;
 mod objects_place;
+mod overviews;
 mod page;
 mod postgres_pool;
-mod questions;
 mod record;
 mod reports;
 mod reserve;
-mod room;
 mod search;
 mod search_index;
 mod sessions;
 mod settings;
 mod ships;
 mod staged;
-mod standings;
 mod statements;
 mod statistics;
 mod store;
@@ -74,6 +74,7 @@ mod webhooks;
 mod work;
 
 pub use actor::Actor;
+pub use alias_lookups::CurrentVersion;
 pub use aliases::{Alias, AliasChange, AliasMove, AliasRepository, ExpectedRevision};
 pub use audit::{AuditFilter, AuditLog};
 pub use backup::{BackupManifest, DatabaseKind, FileHead, TableHead};
@@ -105,8 +106,8 @@ pub use object_list::{ObjectHead, ObjectName};
 pub use objects::{ObjectStorage, sha256_hex};
 pub use objects_error::ObjectsError;
 pub use objects_place::{ObjectsPlace, S3Place, provide_cryptography};
+pub use overviews::ShipOverview;
 pub use page::{ListPage, MAX_LIMIT, PageRequest};
-pub use questions::CurrentVersion;
 pub use reports::{NewReport, Report, ReportHead, ReportRepository};
 pub use search::{
     FactRange, FoundShip, MAX_RANGES, ShipKey, ShipSearch, ShipVectors, VectorsState,
@@ -116,7 +117,6 @@ pub use sessions::{Session, SessionRepository};
 pub use settings::StoreSettings;
 pub use ships::{NewShip, Ship, ShipRepository, ShipRevision};
 pub use staged::StagedObject;
-pub use standings::ShipOverview;
 pub use statistics::TrialStatistics;
 pub use store::Store;
 pub use tags::MAX_TAGS;

@@ -42,9 +42,9 @@ mod prepare {
     use crate::error::{Result, StoreError};
     use crate::store::Store;
     use crate::{
-        aliases, audit, bulks, chain, current, diagnoses, effects, families, garbage, grants,
-        idempotency, identities, integrity, jobs, keys, laws, notes, reports, room, search,
-        search_index, sessions, settings, ships, standings, statistics, store, tags, trials, users,
+        aliases, audit, bulks, chain, current, diagnoses, effects, families, free_space, garbage,
+        grants, idempotency, identities, integrity, jobs, keys, laws, notes, overviews, reports,
+        search, search_index, sessions, settings, ships, statistics, store, tags, trials, users,
         version, versions, webhooks, work,
     };
 
@@ -69,13 +69,13 @@ mod prepare {
         ("laws", laws::STATEMENTS),
         ("notes", notes::STATEMENTS),
         ("reports", reports::STATEMENTS),
-        ("room", room::STATEMENTS),
+        ("room", free_space::STATEMENTS),
         ("search", search::STATEMENTS),
         ("search_index", search_index::STATEMENTS),
         ("sessions", sessions::STATEMENTS),
         ("settings", settings::STATEMENTS),
         ("ships", ships::STATEMENTS),
-        ("standings", standings::STATEMENTS),
+        ("standings", overviews::STATEMENTS),
         ("statistics", statistics::STATEMENTS),
         ("store", store::STATEMENTS),
         ("tags", tags::STATEMENTS),

@@ -4,11 +4,11 @@
 use std::fmt;
 use std::sync::Arc;
 
+use crate::alias_lookups::LookupQueue;
 use crate::clock::{Clock, IdGenerator, UuidIds};
 use crate::connect;
 use crate::database::{AuditedTransaction, Database};
 use crate::error::Result;
-use crate::questions::LookupQueue;
 use crate::record::record;
 use crate::reserve;
 use crate::statements::{same, statements};

@@ -3,13 +3,13 @@
 use serde_json::json;
 
 use crate::actor::Actor;
+use crate::alias_lookups::CurrentVersion;
 use crate::aliases::{self, AliasMove};
 use crate::arguments::args;
 use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::objects::{ObjectStorage, sha256_hex};
 use crate::page::{ListPage, PageRequest};
-use crate::questions::CurrentVersion;
 use crate::record::record;
 use crate::statements::{same, statements};
 use crate::store::Store;

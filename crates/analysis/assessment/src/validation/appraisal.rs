@@ -11,7 +11,7 @@ use sistership_simulation::metrics::TurningMetrics;
 use sistership_simulation::{PlantError, Ship};
 
 use crate::validation::comparison::{FigureComparison, compare_published};
-use crate::validation::standing::ValidationStatus;
+use crate::validation::validation_status::ValidationStatus;
 
 /// A model's standard manoeuvres, the published trials of its ship, and what follows.
 #[derive(Debug, Clone, Serialize)]

@@ -15,8 +15,8 @@ mod published;
 mod quantity;
 mod recorded;
 mod review;
-mod standing;
 mod trial_of_ship;
+mod validation_status;
 
 pub use appraisal::{ModelAppraisal, appraise_model, appraise_vessel};
 pub use comparison::{FigureComparison, compare_published};
@@ -25,5 +25,5 @@ pub use finding::{ReviewFinding, Severity};
 pub use procedure::{Validation, validate};
 pub use quantity::{QuantityEvidence, ValidatedQuantity, Verdict};
 pub use review::{ShipReview, review_ship};
-pub use standing::ValidationStatus;
 pub use trial_of_ship::TrialOfShip;
+pub use validation_status::ValidationStatus;

@@ -6,8 +6,8 @@
 //! all of them. Coefficients and the effects that are already present may adjust within their
 //! uncertainty.
 
-mod of_trial;
 mod source;
+mod trial_changes;
 mod windows;
 
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
 
-use of_trial::ChangeSearch;
+use trial_changes::ChangeSearch;
 
 /// Returns the changes of one effect that explain the remainder, the most evident first: of the
 /// effect that explains most trials by the most evidence. Returns none where it explains fewer than

@@ -7,7 +7,7 @@
 //! minimum detectable value of a test with given error probabilities (Currie 1968, Anal Chem 40,
 //! 586-593). The model alone competes, too, with any other level of the random accelerations.
 
-mod weighed;
+mod expected_evidence;
 
 use std::collections::BTreeMap;
 
@@ -21,9 +21,9 @@ use super::outcome::{DetectionLimit, LimitedBy};
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use super::values::form_target;
+use expected_evidence::{InformationView, WeighedCandidate};
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
-use weighed::{InformationView, WeighedCandidate};
 
 /// Returns the limits of every listed effect and of each of its parameters whose absence is zero,
 /// from a base without effects at one of its levels.

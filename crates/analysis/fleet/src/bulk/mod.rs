@@ -2,24 +2,24 @@
 //! prior over the full path of strengths, selected by the errors on held-out trials, without
 //! reading samples.
 
-mod chosen;
 mod group;
+mod manoeuvre_check;
 mod outcome;
 mod prior;
 mod refine;
 mod report;
 mod request;
-mod sails;
+mod ridge_path;
 mod settings;
-mod solved;
+mod strength_selection;
 
+pub use manoeuvre_check::{ManoeuvreFigures, simulate_check};
 pub use outcome::{AxisOutcome, BulkRefinement, CoefficientOutcome};
 pub use prior::{AxisPrior, BulkPrior};
 pub use refine::{refine_ship, refined_model, with_balance};
 pub use request::BulkRequest;
-pub use sails::{ManoeuvreFigures, simulate_check};
+pub use ridge_path::{ShipRidgePath, solve_path};
 pub use settings::BulkSettings;
-pub use solved::{ShipRidgePath, solve_path};
 
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use sistership_model::coefficient::Axis;
 
-use super::sails::ManoeuvreFigures;
+use super::manoeuvre_check::ManoeuvreFigures;
 
 /// Result of a refinement from statistics, with the errors before and after.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -6,11 +6,11 @@ use sistership_model::quantity::Quantity;
 use sistership_model::vessel::Status;
 use sistership_model::{Law, Model};
 
+use super::manoeuvre_check::simulate_check;
 use super::outcome::BulkRefinement;
 use super::report::refinement_outcome;
 use super::request::BulkRequest;
-use super::sails::simulate_check;
-use super::solved::solve_path;
+use super::ridge_path::solve_path;
 use sistership_identification::refine::{FittedCoefficient, RefineError};
 use sistership_propulsion::{PropulsionEvidence, model_balance, needs_balance};
 

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::manoeuvre_check::ManoeuvreFigures;
 use super::outcome::{AxisOutcome, BulkRefinement, CoefficientOutcome};
 use super::request::BulkRequest;
-use super::sails::ManoeuvreFigures;
-use super::solved::ShipRidgePath;
+use super::ridge_path::ShipRidgePath;
 use crate::statistics::TrialStatistics;
 use sistership_identification::refine::{FittedCoefficient, RefineError};
 

@@ -7,7 +7,7 @@ use sistership_model::quantity::Quantity;
 use sistership_model::version::sha256_hex;
 use sistership_model::{Law, Model};
 
-use super::beside::CorrectedLaw;
+use super::correction_additions::CorrectedLaw;
 
 /// Format of [`TrialStatistics`](super::TrialStatistics).
 pub const FORMAT: &str = "sistership-statistics/1";

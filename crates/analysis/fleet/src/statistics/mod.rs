@@ -5,7 +5,7 @@
 //! parameters, names of the coefficients and the time over which accelerations are differenced. The
 //! key of a frame is a hash over all of it.
 
-mod beside;
+mod correction_additions;
 mod frame;
 mod packed;
 mod trial_statistics;

@@ -12,8 +12,8 @@ use sistership_simulation::error::{SquaredError, standardised_mse};
 use sistership_simulation::recorded::{RecordedTrial, ReplaySettings, TrialReplay, replay_trials};
 use sistership_simulation::state::{RECORDED_CHANNELS, StateVector};
 
-use super::helm::{RudderOrder, rudder_records};
 use super::problem::RefinementProblem;
+use super::rudder_orders::{RudderOrder, rudder_records};
 use super::simulated::sister_coefficients;
 use super::thresholds::HELM;
 use sistership_priors::transfer::prepare_sister_ships;

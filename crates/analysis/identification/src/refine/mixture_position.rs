@@ -3,9 +3,9 @@
 
 use rayon::prelude::*;
 
+use super::evaluation::CandidateEvaluation;
 use super::outcome::RefineError;
 use super::settings::RefinementSettings;
-use super::weighed::CandidateEvaluation;
 
 /// Returns the chosen position; `None` if there is no choice.
 ///

@@ -10,12 +10,11 @@ mod equations;
 mod errors;
 mod estimator;
 mod estimators;
+mod evaluation;
 mod family;
 mod finish;
 mod fold_variance;
-mod gathered;
-mod helm;
-mod longer;
+mod longer_restarts;
 mod manoeuvres;
 mod measure;
 mod mixture;
@@ -27,32 +26,33 @@ mod posterior;
 mod problem;
 mod progress;
 mod published;
+mod refinement_result;
 mod replayed_trials;
 mod request;
 mod ridge;
 mod ridge_candidates;
 mod rows;
+mod rudder_orders;
 mod selection;
 mod settings;
 mod settings_check;
 mod simulated;
-mod smoothed;
-mod starting;
+mod smoothing;
+mod starting_point;
 mod steps;
 mod thresholds;
 mod trajectory;
 mod unrecorded;
 mod variant;
 mod weak;
-mod weighed;
 
 pub use crate::constraints::{Bound, ConstraintError, Constraints, LimitError, StraightLine};
 pub use across::SourceEnvelopes;
 pub use alternatives::{AlternativeFit, alternative_fits};
 pub use blocks::{RegressionBlock, RegressionBlocks};
 pub use cma_es::{CmaEs, SearchReport};
+pub use evaluation::{CandidateEvaluation, FoldModel, RefinementExtent};
 pub use family::TermFamily;
-pub use helm::{RecordStart, RudderOrder, rudder_record, rudder_records};
 pub use outcome::{
     CoefficientChange, HeldOut, MeasuredManoeuvre, RefineError, Refinement, RefinementManoeuvres,
     StepOption,
@@ -65,8 +65,8 @@ pub use ridge::{
     CoefficientFit, FittedCoefficient, RegressionFold, RidgeChoices, fit_regressions, tune_choices,
 };
 pub use rows::{RegressionTable, trial_moments, trial_tables};
+pub use rudder_orders::{RecordStart, RudderOrder, rudder_record, rudder_records};
 pub use selection::{evaluate_candidates, fit_model, refine, refine_if_wanted, refine_watched};
 pub use settings::{EstimationMethod, Prior, RefinementSettings, TRIALS_ALONE, TuningRange};
 pub use settings_check::SettingFault;
 pub use weak::{WindowSpacing, weak_moments, weak_tables};
-pub use weighed::{CandidateEvaluation, FoldModel, RefinementExtent};

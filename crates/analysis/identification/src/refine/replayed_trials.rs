@@ -8,7 +8,7 @@ use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::recorded::ReplaySettings;
 
 use super::settings::RefinementSettings;
-use super::smoothed::{ReadingsAbout, is_motion};
+use super::smoothing::{ReadingsAbout, is_motion};
 use super::steps::step_s;
 use sistership_priors::transfer::trial_approach;
 

@@ -1,12 +1,12 @@
 //! Loss of one sequence and its gradient: on positions and velocities that the network simulates
 //! (Wakita 2022, Eq. 24), or on accelerations (Eq. 17).
 
-use super::blame::LossGradient;
+use super::loss_gradient::LossGradient;
 use super::motion::RecordedMotion;
 use super::network::{NetworkMemory, RecurrentNetwork, UnrolledNetwork};
 use super::scales::MotionScales;
 use super::sequence::{LossKind, SequenceTraining};
-use super::simulated::SimulatedMotion;
+use super::simulated_motion::SimulatedMotion;
 
 /// Network in training, with the settings of its loss.
 pub struct SequenceLoss<'a> {

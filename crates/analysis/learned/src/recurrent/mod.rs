@@ -5,16 +5,16 @@
 //! instant, without the past.
 
 mod adam;
-mod blame;
 mod cell;
 mod head;
 mod loss;
+mod loss_gradient;
 mod motion;
 mod network;
-mod sail;
 mod scales;
 mod sequence;
-mod simulated;
+mod simulate;
+mod simulated_motion;
 mod training;
 mod windows;
 

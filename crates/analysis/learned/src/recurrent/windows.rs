@@ -11,7 +11,7 @@
 use super::cell::{RecurrentCell, activate_neuron};
 use super::head;
 use super::network::{NetworkMemory, NetworkShape, RecurrentNetwork};
-use sistership_simulation::wide::{SimdKernel, dispatch_simd};
+use sistership_simulation::simd::{SimdKernel, dispatch_simd};
 
 /// Number of cells that are computed together.
 const LANES: usize = 4;

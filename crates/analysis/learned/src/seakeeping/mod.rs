@@ -3,6 +3,7 @@
 //! from samples, after thinning out the common ones. The learned factor is in series: it maps the
 //! output of the responses.
 
+mod balance;
 mod factor;
 mod heave_pitch;
 mod hull;
@@ -10,11 +11,10 @@ mod response;
 mod roll;
 mod spectrum;
 mod table;
-mod thinned;
 
+pub use balance::balance_samples;
 pub use factor::fit_factor;
 pub use hull::WaveHull;
 pub use response::{ResponseOperator, WaveMotion};
 pub use spectrum::DirectionalSpectrum;
 pub use table::{ResponseGrid, ResponseTable, TableFault, TableFaults};
-pub use thinned::balance_samples;

@@ -8,9 +8,9 @@ use sistership_simulation::manoeuvre::FurtherManoeuvres;
 use super::coefficients::CoefficientReport;
 use super::input::RefinementInput;
 use super::manoeuvres::ManoeuvreComparison;
+use super::measured_figures::{self, MeasuredFigure};
 use super::options::StepOptions;
 use super::provenance::ModelProvenance;
-use super::sailed::{self, MeasuredFigure};
 use super::summary::{HeldOutErrors, ReportHeadline};
 use crate::replayed::{ReplaySummary, ReplayedTrial};
 
@@ -51,7 +51,7 @@ impl<'a> RefinementContent<'a> {
             options: StepOptions::from_input(input),
             manoeuvres: ManoeuvreComparison::from_input(input),
             further,
-            sailed: sailed::collect_figures(input),
+            sailed: measured_figures::collect_figures(input),
             similarity: input.similarity,
             ladder: input.ladder,
             wide: input.refinement.manoeuvres.wide_band(),

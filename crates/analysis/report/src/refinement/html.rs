@@ -8,7 +8,7 @@ use sistership_model_selection::SelectionReport;
 use super::coefficients::CoefficientReport;
 use super::content::RefinementContent;
 use super::summary::method_text;
-use super::{further, ladder, moved, similarity, tables};
+use super::{coefficient_shifts, further, selection_table, similarity, tables};
 use crate::numbers::{format_significant, format_stated, join_words};
 use crate::plots::{self, SvgPlot};
 use crate::rendered::ReportError;
@@ -93,7 +93,7 @@ pub(crate) fn render_page(
             .zip(replayed)
             .map(|(shown, replayed)| RefinementTrialPlots::from_replay(shown, replayed))
             .collect(),
-        moved: moved::shift_plots(&content.coefficients),
+        moved: coefficient_shifts::shift_plots(&content.coefficients),
         coefficients: tables::coefficient_table(&content.coefficients),
         groups: group_lines(&content.coefficients),
         condition: format_significant(provenance.condition_number, 2),
@@ -106,7 +106,7 @@ pub(crate) fn render_page(
             .map_or_else(Vec::new, |lpp_m| further::further_remarks(&content.further, lpp_m)),
         sailed: tables::measured_table(&content.sailed),
         why: source_choice(content),
-        ladder: content.ladder.map(ladder::selection_report_table),
+        ladder: content.ladder.map(selection_table::selection_report_table),
         reference: content.ladder.map(SelectionReport::reference_summary),
         branch: content.ladder.and_then(|ladder| Some(ladder.branch.as_ref()?.reason.as_str())),
         wide: content.wide.clone(),

@@ -5,18 +5,18 @@
 //! measured figures, similarity, provenance, replays); JSON is that content, the page shows it with
 //! tables and plots. Nothing depends on the clock.
 
+mod coefficient_shifts;
 mod coefficients;
 mod content;
 mod further;
 mod html;
 mod input;
-mod ladder;
 mod manoeuvres;
-mod moved;
+mod measured_figures;
 mod options;
 mod provenance;
 mod replays;
-mod sailed;
+mod selection_table;
 mod similarity;
 mod summary;
 mod tables;

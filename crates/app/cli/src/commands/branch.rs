@@ -14,10 +14,10 @@ use sistership_model::{Law, Model, Trial, Zoo};
 
 use super::branch_document::BranchDocument;
 use super::branch_text;
-use super::written::{WrittenFiles, check_outputs, model_file, output_file};
+use super::written_files::{WrittenFiles, check_outputs, model_file, output_file};
 use crate::failure::{Failure, combine_results};
-use crate::named;
 use crate::output::{self, format_count, print_note};
+use crate::resolve;
 use crate::trials;
 use crate::values::positive;
 use crate::weights::{self, CorrectionSummary};
@@ -140,7 +140,7 @@ pub fn run(zoo: &Zoo, arguments: &BranchArguments) -> Result<(), Failure> {
     );
     let asked = combine_results(
         branch_settings(arguments),
-        named::resolve_foundation(zoo, &arguments.model),
+        resolve::resolve_foundation(zoo, &arguments.model),
     );
     let read = combine_results(files, trials::read_trials(&arguments.trials));
     let ((settings, (model, law)), ((out, beside_file), read)) = combine_results(asked, read)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 use sistership_learned::{BranchChoice, CorrectionEvaluation, CorrectionTraining};
 
-use super::written::WrittenFiles;
+use super::written_files::WrittenFiles;
 use crate::weights::CorrectionSummary;
 
 /// Output document.

@@ -11,7 +11,7 @@ use sistership_model::trial::{Channel, Trial};
 
 use crate::failure::{Failure, collect_results, combine_results};
 use crate::table::{TextTable, format_number, format_optional};
-use crate::{named, output, trials};
+use crate::{output, resolve, trials};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -45,7 +45,7 @@ pub fn run(zoo: &Zoo, asked: &CompareArguments) -> Result<(), Failure> {
     let names: Vec<&str> = asked.models.iter().map(String::as_str).collect();
     check_names(&names).map_err(|error| Failure::Call(error.to_string()))?;
     // All unknown names and faulty trials are reported together.
-    let models = collect_results(names.iter().map(|name| named::resolve_model(zoo, name)));
+    let models = collect_results(names.iter().map(|name| resolve::resolve_model(zoo, name)));
     let (models, read) = combine_results(models, trials::read_trials(&asked.trials))?;
     let compared: Vec<ComparisonModel<'_>> = names
         .iter()

@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::files::OutputFile;
 use crate::table::TextTable;
 use crate::zoo::read_text_file;
-use crate::{named, output};
+use crate::{output, resolve};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -60,7 +60,7 @@ pub fn run(zoo: &Zoo, asked: &DeriveArguments) -> Result<(), Failure> {
         .map(|out| OutputFile::new(out, std::slice::from_ref(path)))
         .transpose()?;
     let text = read_text_file(path)?;
-    named::check_kind(path, &text, "hybrid", "a declaration")?;
+    resolve::check_kind(path, &text, "hybrid", "a declaration")?;
     let derived = derive_law(&path.display().to_string(), &text)?;
     let unknowns =
         derived.count_unknowns(zoo).map_err(|(field, message)| file_error(path, field, message))?;

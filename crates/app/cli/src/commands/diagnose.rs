@@ -12,11 +12,11 @@ use sistership_model::{Effect, Law, Model, Zoo};
 use sistership_report::{DiagnosisInput, render_diagnosis};
 
 use super::diagnose_text;
-use super::written::{WrittenFiles, check_outputs, model_file, output_file};
+use super::written_files::{WrittenFiles, check_outputs, model_file, output_file};
 use crate::failure::{Failure, combine_results};
 use crate::files::OutputFile;
-use crate::named;
 use crate::output::{self, format_count, print_note};
+use crate::resolve;
 use crate::trials::{self, ReadTrial};
 use crate::values::{odds, positive};
 use crate::weights;
@@ -99,7 +99,7 @@ pub fn run(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<(), Failure> {
     );
     let asked = combine_results(
         diagnosis_settings(zoo, arguments),
-        named::resolve_model(zoo, &arguments.model),
+        resolve::resolve_model(zoo, &arguments.model),
     );
     let read = combine_results(files, trials::read_trials(&arguments.trials));
     let ((settings, (model, law)), (((out, beside), report), read)) = combine_results(asked, read)?;

@@ -11,7 +11,7 @@ use sistership_report::{change_words, dependence_sentence, distinct_hypotheses, 
 
 use super::channels::TABLE_CHANNELS;
 use super::describe_status;
-use super::written::WrittenFiles;
+use super::written_files::WrittenFiles;
 use crate::table::{TextTable, format_number, format_optional};
 
 /// Largest number of hypotheses that are listed.

@@ -18,10 +18,10 @@ use sistership_priors::estimates::{
 };
 use sistership_simulation::manoeuvre::{NamedFigure, StandardManoeuvres};
 
-use super::written::{model_file, output_file};
+use super::written_files::{model_file, output_file};
 use crate::failure::Failure;
 use crate::table::{TextTable, format_number};
-use crate::{named, output};
+use crate::{output, resolve};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -79,7 +79,7 @@ struct EstimateDocument<'a> {
 /// # Errors
 /// Returns an error that names the missing particulars, or if the model cannot be written.
 pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
-    let vessel = named::resolve_ship(zoo, &asked.ship)?;
+    let vessel = resolve::resolve_ship(zoo, &asked.ship)?;
     // Before the estimate: the regressions need a speed.
     let vessel = with_speed(&vessel, asked.speed_m_s);
     let inputs = [PathBuf::from(&asked.ship)];
@@ -226,7 +226,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("pcc.yaml");
         run(&zoo, &asked("pcc", Some(out.clone()))).unwrap();
-        let (model, _) = named::resolve_model(&zoo, out.to_str().unwrap()).unwrap();
+        let (model, _) = resolve::resolve_model(&zoo, out.to_str().unwrap()).unwrap();
         assert_eq!(model.status, Status::Estimated);
         assert!(model.valid_posterior().is_some());
     }

@@ -12,7 +12,7 @@ use super::store::{StoreArguments, with_archive};
 use crate::failure::{Failure, about_file};
 use crate::files::OutputFile;
 use crate::values::{ExportFormat, export_format};
-use crate::{named, output};
+use crate::{output, resolve};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -63,7 +63,7 @@ pub fn run(zoo: &Zoo, asked: &ExportArguments) -> Result<(), Failure> {
         }
         ExportFormat::Model(format) => format,
     };
-    let (model, law) = named::resolve_model(zoo, &asked.model)?;
+    let (model, law) = resolve::resolve_model(zoo, &asked.model)?;
     let file = OutputFile::new(&asked.out, &[PathBuf::from(&asked.model)])?;
     let refused = |error: &dyn std::fmt::Display| Failure::Refused(error.to_string());
     // The hash identifies the model in the exported file; a model outside a store has no version.

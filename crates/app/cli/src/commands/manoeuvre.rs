@@ -12,12 +12,12 @@ use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_further_manoe
 
 use super::manoeuvre_document::ManoeuvreDocument;
 use super::manoeuvre_further::FurtherArguments;
-use super::sailed::simulate_requested;
+use super::requested_manoeuvres::simulate_requested;
 use super::{build_ship, manoeuvre_text, set_depth};
 use crate::failure::Failure;
 use crate::files::OutputFile;
 use crate::values::{IntegrationMethod, positive, rudder_deg, zigzag_deg};
-use crate::{named, output, track};
+use crate::{output, resolve, track};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -89,7 +89,7 @@ pub struct ManoeuvreArguments {
 /// Returns an error if the model is refused, or if a manoeuvre leaves the physical range.
 pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     check_single(manoeuvre)?;
-    let (mut model, law) = named::resolve_model(zoo, &manoeuvre.model)?;
+    let (mut model, law) = resolve::resolve_model(zoo, &manoeuvre.model)?;
     let inputs = [PathBuf::from(&manoeuvre.model)];
     let file = manoeuvre.out.as_ref().map(|path| OutputFile::new(path, &inputs)).transpose()?;
     let mut remarks = adapt_to_speed(manoeuvre, &mut model, &law);

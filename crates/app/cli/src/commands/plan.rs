@@ -15,7 +15,7 @@ use super::plan_text;
 use crate::failure::{Failure, combine_results};
 use crate::trials::{self, ReadTrial};
 use crate::values::positive;
-use crate::{named, output};
+use crate::{output, resolve};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -65,13 +65,13 @@ pub fn run(zoo: &Zoo, asked: &PlanArguments) -> Result<(), Failure> {
 
 /// Returns the model with this name; for a ship without a model, an estimate.
 fn model_or_estimate(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Failure> {
-    match named::resolve_ship(zoo, name) {
+    match resolve::resolve_ship(zoo, name) {
         Ok(vessel) if vessel.file.models.is_empty() => {
             let vessel = with_speed(&vessel, None);
             let (estimate, law) = estimate_model(zoo, &vessel, None)?;
             Ok((estimate.model, law))
         }
-        _ => named::resolve_model(zoo, name),
+        _ => resolve::resolve_model(zoo, name),
     }
 }
 

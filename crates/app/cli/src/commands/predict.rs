@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 use sistership_api::Limits;
-use sistership_jobs::line::{CHAMPION, find_alias};
+use sistership_jobs::aliases::{CHAMPION, find_alias};
 use sistership_jobs::predictions::{PredictionRequest, predict};
 use sistership_model::{Law, Model, Zoo};
 
@@ -15,7 +15,7 @@ use super::store::{StoreArguments, with_archive};
 use crate::failure::Failure;
 use crate::files::OutputFile;
 use crate::values::{not_negative, number, positive};
-use crate::{named, output};
+use crate::{output, resolve};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -154,7 +154,7 @@ fn horizon_request(asked: &PredictArguments, orders: &[OrderRow]) -> Value {
 
 /// Returns a model of the zoo or of a file; else one of the store, if that exists.
 fn find_model(zoo: &Zoo, asked: &PredictArguments) -> Result<(Model, Law), Failure> {
-    match named::resolve_model(zoo, &asked.model) {
+    match resolve::resolve_model(zoo, &asked.model) {
         Ok((model, law)) => Ok((model, (*law).clone())),
         Err(unknown) if !asked.store.exists() => Err(unknown),
         // The fault of a file that exists is more useful than a search in the store.

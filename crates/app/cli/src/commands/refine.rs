@@ -22,10 +22,10 @@ use super::refine_branch::RefinementCorrection;
 use super::refine_search::{SelectedStart, select_start};
 use super::refine_settings::{resolve_held_out, settings_file};
 use super::refine_text;
-use super::written::{WrittenFiles, check_outputs, model_file, output_file};
+use super::written_files::{WrittenFiles, check_outputs, model_file, output_file};
 use crate::failure::{Failure, combine_results};
-use crate::named;
 use crate::output::{self, format_count, print_note};
+use crate::resolve;
 use crate::trials::{self, ReadTrial};
 use crate::values::{method, positive, prior};
 use crate::weights;
@@ -156,7 +156,7 @@ struct RefineDocument<'a> {
 pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     // Everything that may be refused by the call alone is collected in `all` before any work.
     let named = arguments.source.as_deref().filter(|source| *source != "auto");
-    let given = named.map(|source| named::resolve_foundation(zoo, source)).transpose();
+    let given = named.map(|source| resolve::resolve_foundation(zoo, source)).transpose();
     let law = arguments.law.as_deref().map(|name| find_law(zoo, name)).transpose();
     let inputs = named_files(arguments);
     let beside = arguments.out.as_deref().map(weights::weights_path);
@@ -168,8 +168,10 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
         ),
         output_file(arguments.report.as_deref(), &inputs),
     );
-    let target =
-        combine_results(named::resolve_ship(zoo, &arguments.ship), refinement_settings(arguments));
+    let target = combine_results(
+        resolve::resolve_ship(zoo, &arguments.ship),
+        refinement_settings(arguments),
+    );
     let read = combine_results(files, trials::read_trials(&arguments.trials));
     let all = combine_results(combine_results(target, combine_results(given, law)), read)?;
     let (((target, mut settings), (given, law)), (((out, weights), report), read)) = all;
@@ -181,7 +183,7 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     settings.held_out = resolve_held_out(&settings.held_out, &read)?;
     let started = refinement_start(zoo, arguments, (given, law), &target, &mut settings, &read)?;
     let SelectedStart { source, law, similarity, ladder, made } = started;
-    let source_law = named::law_of(zoo, &source)?;
+    let source_law = resolve::law_of(zoo, &source)?;
     // Without a named law the coefficients of the source are refined in its own law.
     let law = law.unwrap_or_else(|| source_law.clone());
     let laws = (&*source_law, &*law);
@@ -275,7 +277,7 @@ fn report_html(
     (similarity, ladder): (Option<&SimilarityRanking>, Option<&SelectionReport>),
     read: &[ReadTrial],
 ) -> Result<Vec<u8>, Failure> {
-    let law = named::law_of(zoo, &refinement.model)?;
+    let law = resolve::law_of(zoo, &refinement.model)?;
     let trials = trials::trial_refs(read);
     let input = RefinementInput {
         refinement,

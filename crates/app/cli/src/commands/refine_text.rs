@@ -12,7 +12,7 @@ use sistership_priors::similarity::RankedSource;
 use sistership_simulation::manoeuvre::NamedFigure;
 
 use super::channels::TABLE_CHANNELS;
-use super::written::WrittenFiles;
+use super::written_files::WrittenFiles;
 use super::{describe_status, similar};
 use crate::table::{TextTable, format_number, format_optional};
 

@@ -16,7 +16,7 @@ use super::store::{StoreArguments, with_archive};
 use crate::failure::{Failure, combine_results};
 use crate::table::{TextTable, format_number};
 use crate::values::definition;
-use crate::{named, output, trials};
+use crate::{output, resolve, trials};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -58,7 +58,7 @@ pub fn run(zoo: &Zoo, similar_to: &SimilarArguments) -> Result<(), Failure> {
         return rank_store(zoo, similar_to);
     }
     let asked = combine_results(
-        named::resolve_ship(zoo, &similar_to.ship),
+        resolve::resolve_ship(zoo, &similar_to.ship),
         trials::read_trials(&similar_to.trials),
     );
     let (target, read) = asked?;
@@ -91,7 +91,7 @@ async fn stored_ship(zoo: &Zoo, archive: &Archive, name: &str) -> Result<Vessel,
     match archive.store.ships().get(name).await {
         Ok(ship) => parse_vessel(&ship.name, &ship.document).map_err(error_text),
         // A ship that is not in the store may be compared with those that are.
-        Err(StoreError::NotFound { .. }) => named::resolve_ship(zoo, name)
+        Err(StoreError::NotFound { .. }) => resolve::resolve_ship(zoo, name)
             .map(|vessel| Vessel::clone(&vessel))
             .map_err(|failure| failure.message().unwrap_or_default().to_owned()),
         Err(error) => Err(error_text(error)),

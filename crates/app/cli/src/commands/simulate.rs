@@ -9,14 +9,14 @@ use sistership_model::{Law, Model, Zoo};
 use sistership_simulation::error::standard_deviations;
 use sistership_simulation::recorded::{ReplaySettings, TrialReplay};
 
-use crate::commands::simulated::{SimulatedTrial, TrialSimulator, total_errors};
+use crate::commands::trial_simulation::{SimulatedTrial, TrialSimulator, total_errors};
 use crate::failure::{Failure, combine_results};
 use crate::output::{self, format_count, print_note};
 use crate::table::{TextTable, format_number};
 use crate::trials::{self, ReadTrial};
 use crate::values::{IntegrationMethod, positive};
 use crate::weights::CorrectionSummary;
-use crate::{commands::model_line, folder, named, track};
+use crate::{commands::model_line, resolve, track, track_files};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -74,7 +74,7 @@ struct SimulateDocument<'a> {
 /// leaves the physical range.
 pub fn run(zoo: &Zoo, simulate: &SimulateArguments) -> Result<(), Failure> {
     let asked = combine_results(
-        named::resolve_model(zoo, &simulate.model),
+        resolve::resolve_model(zoo, &simulate.model),
         trials::read_trials(&simulate.trials),
     );
     let ((model, law), read) = asked?;
@@ -99,10 +99,10 @@ pub fn run(zoo: &Zoo, simulate: &SimulateArguments) -> Result<(), Failure> {
 fn track_files(
     simulate: &SimulateArguments,
     read: &[ReadTrial],
-) -> Result<Vec<folder::TrackFile>, Failure> {
+) -> Result<Vec<track_files::TrackFile>, Failure> {
     let Some(out) = &simulate.out else { return Ok(Vec::new()) };
     let names: Vec<&str> = read.iter().map(|read| read.trial.name.as_str()).collect();
-    folder::prepare_files(out, &names, &trials::input_paths(read, &simulate.trials))
+    track_files::prepare_files(out, &names, &trials::input_paths(read, &simulate.trials))
 }
 
 fn simulate_all(
@@ -126,7 +126,7 @@ fn simulate_all(
 /// Writes the states of each trial, if an output folder is given.
 fn write_tracks(
     runs: Vec<(SimulatedTrial, TrialReplay)>,
-    files: Vec<folder::TrackFile>,
+    files: Vec<track_files::TrackFile>,
     law: &Law,
     read: &[ReadTrial],
 ) -> Result<Vec<SimulatedTrial>, Failure> {

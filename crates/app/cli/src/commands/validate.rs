@@ -11,7 +11,7 @@ use sistership_report::render_validation;
 use crate::failure::{Failure, combine_results};
 use crate::files::OutputFile;
 use crate::table::{TextTable, format_number, format_optional};
-use crate::{named, output, trials};
+use crate::{output, resolve, trials};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -57,8 +57,8 @@ pub fn run(zoo: &Zoo, asked: &ValidateArguments) -> Result<(), Failure> {
     let sampling = Sampling { samples: asked.draws, ..Sampling::default() };
     let checked = sampling.check().map_err(|message| Failure::Call(format!("--draws: {message}")));
     let model = combine_results(
-        named::resolve_model(zoo, &asked.model),
-        named::resolve_ship(zoo, &asked.ship),
+        resolve::resolve_model(zoo, &asked.model),
+        resolve::resolve_ship(zoo, &asked.ship),
     );
     let given = combine_results(combine_results(page, checked), trials::read_trials(&asked.trials));
     let (((model, law), vessel), ((page, ()), read)) = combine_results(model, given)?;

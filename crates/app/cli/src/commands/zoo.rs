@@ -14,7 +14,7 @@ use super::zoo_text;
 use crate::failure::{Failure, about_file};
 use crate::files::OutputFile;
 use crate::zoo::read_text_file;
-use crate::{named, output};
+use crate::{output, resolve};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -98,7 +98,7 @@ fn cite_sources(zoo: &Zoo, ships: &[String], json: bool) -> Result<(), Failure> 
 fn select_vessels(zoo: &Zoo, ships: &[String]) -> Result<Vec<Arc<Vessel>>, Failure> {
     match ships {
         [] => Ok(zoo.vessels().cloned().collect()),
-        names => names.iter().map(|name| named::resolve_ship(zoo, name)).collect(),
+        names => names.iter().map(|name| resolve::resolve_ship(zoo, name)).collect(),
     }
 }
 
@@ -134,7 +134,7 @@ fn add_ship(
 ) -> Result<(), Failure> {
     // The page is written also for a refused ship: it says what to change.
     let page = page.map(|path| OutputFile::new(path, &[file.to_owned()])).transpose()?;
-    let vessel = named::vessel_file(zoo, file)?;
+    let vessel = resolve::vessel_file(zoo, file)?;
     // A file that cannot be parsed never gets here; the review is about its content.
     let review = review_ship(zoo, &vessel)?;
     if let Some(page) = page {

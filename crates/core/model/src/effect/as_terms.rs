@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use indexmap::IndexMap;
 
 use super::applied::AppliedEffect;
-use super::dress::qualified_name;
+use super::effect_application::qualified_name;
 use super::probe::{FormulaProbe, SEEDS};
 use crate::Model;
 use crate::coefficient::Axis;

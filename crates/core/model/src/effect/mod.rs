@@ -2,7 +2,7 @@
 
 mod applied;
 mod as_terms;
-mod dress;
+mod effect_application;
 mod file;
 mod form;
 mod form_reader;
@@ -16,8 +16,8 @@ mod term;
 
 pub use applied::AppliedEffect;
 pub use as_terms::EffectsAsTerms;
-pub(crate) use dress::apply_effects;
-pub use dress::{TIME_INPUT, input_channel, qualified_name};
+pub(crate) use effect_application::apply_effects;
+pub use effect_application::{TIME_INPUT, input_channel, qualified_name};
 pub use file::{
     ActsOn, EffectFile, EffectParameterFile, FormFile, GrammarFile, Mirror, PriorFile,
     PriorOddsFile,

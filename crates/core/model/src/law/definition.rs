@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
 
+use super::additions::LawAdditions;
 use super::dimension::{STATES, axis_dimension};
-use super::dressing::LawAdditions;
 use super::error::TermError;
 use crate::coefficient::{Axis, CoefficientName, split_submodel};
 use crate::particulars;

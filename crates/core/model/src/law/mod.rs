@@ -1,8 +1,8 @@
 //! Laws of motion: definition, reading and checks.
 
+mod additions;
 mod definition;
 mod dimension;
-mod dressing;
 mod error;
 mod file;
 pub(crate) mod limits;
@@ -10,9 +10,9 @@ mod read;
 mod submodel;
 mod symmetry;
 
+pub use additions::{LawAdditions, StraightAhead};
 pub use definition::{AxisLaw, Law, LawInput, LawParameter, LawSubmodel, indicator_name};
 pub use dimension::{STATES, acceleration_dimension, axis_dimension};
-pub use dressing::{LawAdditions, StraightAhead};
 pub use error::TermError;
 pub use file::{AxisFile, InputFile, LawFile, LawKind, ParameterFile, SubmodelFile, TermFile};
 pub use limits::{MAX_COEFFICIENTS, MAX_EFFECTS, MAX_SIZE, MAX_TERMS};

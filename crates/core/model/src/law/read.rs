@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
 
+use super::additions::LawAdditions;
 use super::definition::{AxisLaw, Law, LawInput, LawParameter};
 use super::dimension::{STATES, acceleration_dimension, axis_dimension};
-use super::dressing::LawAdditions;
 use super::file::{AxisFile, LawFile, ParameterFile, ParameterRole, TermFile};
 use super::submodel::read_submodels;
 use super::{limits, symmetry};

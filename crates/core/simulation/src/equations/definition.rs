@@ -9,7 +9,7 @@ use sistership_model::coefficient::Axis;
 use sistership_model::law::{Law, STATES};
 use sistership_model::particulars;
 
-use super::refusal::PlantError;
+use super::plant_error::PlantError;
 use crate::state::at;
 use crate::tape::NameBinding;
 

@@ -4,7 +4,7 @@ use sistership_formula::Expr;
 use sistership_model::coefficient::Axis;
 
 use super::definition::EquationsOfMotion;
-use super::refusal::PlantError;
+use super::plant_error::PlantError;
 use crate::tape::{Tape, TapeBuilder, UnboundName};
 
 /// Builder of the tape for one view of the equations of motion. Outputs are numbered in the order

@@ -3,7 +3,7 @@
 use nalgebra::Matrix4;
 
 use super::definition::EquationsOfMotion;
-use super::refusal::PlantError;
+use super::plant_error::PlantError;
 use crate::tape::Tape;
 
 /// Returns the accelerations that unit forces cause; all NaN if the matrix is singular.

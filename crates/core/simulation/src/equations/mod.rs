@@ -12,12 +12,12 @@
 mod definition;
 mod lowering;
 mod mobility;
-mod refusal;
+mod plant_error;
 
 pub use definition::{AxesAttitude, CoefficientBinding, EquationsOfMotion};
 pub use lowering::EquationLowering;
 pub(crate) use mobility::{constant_mobility, solve_mobility};
-pub use refusal::PlantError;
+pub use plant_error::PlantError;
 
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,7 @@
 
 use super::ManoeuvreSettings;
 use crate::envelope::SimulationStop;
-use crate::sailing::{HeldOrder, OrderedRun, simulate_runs};
+use crate::ordered_runs::{HeldOrder, OrderedRun, simulate_runs};
 use crate::ship::{HelmOrder, Ship};
 use crate::state::{StateVector, Trajectory, at, straight_state};
 
@@ -64,14 +64,15 @@ pub fn simulate_manoeuvre_batch(
     });
     let sailings = sailings.collect();
     let sailed = simulate_runs(ship, settings.method, sailings);
-    let one = |(helm, sailed): (ManoeuvreHelm, crate::sailing::RunOutcome)| match sailed.stopped {
-        Some(stopped) => Err(stopped),
-        None => {
-            // The track includes the approach, the metrics start at the execution.
-            let after = track_after(&sailed.track, settings.run_in_s);
-            Ok(SimulatedManoeuvre { after, track: sailed.track, reversals_s: helm.reversals_s })
-        }
-    };
+    let one =
+        |(helm, sailed): (ManoeuvreHelm, crate::ordered_runs::RunOutcome)| match sailed.stopped {
+            Some(stopped) => Err(stopped),
+            None => {
+                // The track includes the approach, the metrics start at the execution.
+                let after = track_after(&sailed.track, settings.run_in_s);
+                Ok(SimulatedManoeuvre { after, track: sailed.track, reversals_s: helm.reversals_s })
+            }
+        };
     helms.into_iter().zip(sailed).map(one).collect()
 }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::record::TrialRecord;
-use super::replayed::TrialReplay;
+use super::replay_result::TrialReplay;
 use crate::envelope::SimulationStop;
 use crate::integrate::StepStage;
 use crate::lockstep::SimulationTask;

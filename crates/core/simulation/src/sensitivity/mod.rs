@@ -9,9 +9,9 @@
 //! section I.14). The stages are small matrices, evaluated for a block of lanes at once; only `P S`
 //! and the last sum are as wide as the number of coefficients.
 
+mod row_sums;
 mod run;
-mod small;
-mod sums;
+mod small_matrix;
 mod system;
 
 pub use run::SensitiveRun;

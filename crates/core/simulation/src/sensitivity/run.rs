@@ -1,12 +1,12 @@
 //! Simulation of a block of lanes with their sensitivities; no step allocates memory.
 
-use super::small::SmallMatrix;
-use super::sums::{COLUMN_BLOCK, RowSums};
+use super::row_sums::{COLUMN_BLOCK, RowSums};
+use super::small_matrix::SmallMatrix;
 use super::system::{SensitiveSystem, WithGradient};
 use crate::integrate::Method;
+use crate::simd::{SimdKernel, dispatch_simd};
 use crate::state::{StateVector, at};
 use crate::tape::{LaneValues, TapeResults};
-use crate::wide::{SimdKernel, dispatch_simd};
 
 /// Runs in lockstep, with the states and sensitivities of each lane.
 #[derive(Debug)]

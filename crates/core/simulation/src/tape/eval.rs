@@ -3,7 +3,7 @@
 use sistership_formula::Function;
 
 use super::{LaneValues, ResultSlot, Tape, TapeInstruction, TapeOp, TapeResults};
-use crate::wide::{SimdKernel, dispatch_simd};
+use crate::simd::{SimdKernel, dispatch_simd};
 
 impl Tape {
     /// Evaluates every operation; `work` is reused from call to call and holds the results.

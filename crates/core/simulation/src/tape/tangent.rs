@@ -5,7 +5,7 @@ use sistership_formula::Function;
 
 use super::eval::{map_lanes, zip_lanes};
 use super::{LaneValues, ResultSlot, Tape, TapeInstruction, TapeOp, TapeResults};
-use crate::wide::{SimdKernel, dispatch_simd};
+use crate::simd::{SimdKernel, dispatch_simd};
 
 /// Input along which a tape is differentiated, and the derivatives.
 #[derive(Debug, Clone)]

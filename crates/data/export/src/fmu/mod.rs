@@ -12,8 +12,8 @@ mod version3;
 mod xml;
 
 use crate::error::ExportError;
+use crate::export_plan::ExportPlan;
 use crate::format::ModelFormat;
-use crate::plan::ExportPlan;
 use archive::{ArchiveEntry, SOURCES, pack_archive};
 
 /// FMU for FMI 2.0.

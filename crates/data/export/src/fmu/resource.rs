@@ -6,7 +6,7 @@ use sistership_formula::{Comparison, Function};
 use sistership_simulation::tape::{ResultSlot, TapeInstruction, TapeOp};
 
 use super::variables::{self, FIRST_OUTSIDE, FIRST_STATE, distance_reference};
-use crate::plan::{ExportPlan, TapeOperand};
+use crate::export_plan::{ExportPlan, TapeOperand};
 
 /// Content of the file: whole numbers, and the bits of doubles.
 pub fn resource_text(plan: &ExportPlan) -> String {

@@ -1,7 +1,7 @@
 //! Variables of an FMU, in the order of their value references.
 
+use crate::export_plan::{DELTA, ExportCoefficient, ExportPlan, STATES};
 use crate::header::coefficient_remark;
-use crate::plan::{DELTA, ExportCoefficient, ExportPlan, STATES};
 use crate::range;
 
 /// Value reference of the first state; that of time is zero.

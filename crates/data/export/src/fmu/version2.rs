@@ -4,7 +4,7 @@ use sistership_model::version::code_revision;
 
 use super::variables::{FmuVariable, VariableRole, fmu_variables};
 use super::xml::{escape_xml, model_summary, unit_elements, variable_attributes};
-use crate::plan::ExportPlan;
+use crate::export_plan::ExportPlan;
 
 /// Returns the model description.
 pub fn model_description(plan: &ExportPlan) -> String {

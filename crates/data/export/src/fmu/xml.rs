@@ -1,8 +1,8 @@
 //! XML elements that both versions have.
 
 use super::variables::{FmuVariable, UNITS};
+use crate::export_plan::ExportPlan;
 use crate::header;
-use crate::plan::ExportPlan;
 
 /// Text escaped for an attribute or content, on one line.
 pub fn escape_xml(text: &str) -> String {

@@ -7,8 +7,8 @@ use crate::segmentation::blocks::LogBlocks;
 use crate::segmentation::cells::LogCells;
 use crate::segmentation::level::SteadyLevels;
 use crate::segmentation::sample::LogSample;
+use crate::segmentation::segment::ManoeuvreSegment;
 use crate::segmentation::spans::TimeSpan;
-use crate::segmentation::stretch::ManoeuvreSegment;
 use crate::segmentation::thresholds::{SegmentThresholds, THRESHOLDS};
 
 /// Finder of the segments of a log, which takes its rows in order.

@@ -14,13 +14,13 @@ mod finder;
 mod kind;
 mod level;
 mod sample;
+mod segment;
 mod spans;
-mod stretch;
 mod thresholds;
 
 pub use excitation::Excitation;
 pub use finder::{SegmentFinder, SegmentationError, SegmentationResult};
 pub use kind::SegmentKind;
 pub use sample::LogSample;
+pub use segment::ManoeuvreSegment;
 pub use spans::TimeSpan;
-pub use stretch::ManoeuvreSegment;

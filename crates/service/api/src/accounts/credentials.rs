@@ -7,7 +7,7 @@ use sistership_auth::openid::OpenIdProvider;
 use sistership_jobs::budget;
 use sistership_store::Store;
 use sistership_web_support::api_key::ApiKey;
-use sistership_web_support::known::CredentialCache;
+use sistership_web_support::credential_cache::CredentialCache;
 use sistership_web_support::problem::{Problem, Result};
 use tokio::sync::Semaphore;
 

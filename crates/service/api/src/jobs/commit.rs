@@ -17,8 +17,8 @@ use sistership_store::{
 use super::outcome::{JobError, Result, permanent_failure};
 use super::prepared::PreparedRefinement;
 use crate::app::App;
+use sistership_jobs::aliases::{CANDIDATE, CHAMPION, VersionHistory, server_move};
 use sistership_jobs::derive::{DerivedVersion, RefinementRun};
-use sistership_jobs::line::{CANDIDATE, CHAMPION, VersionHistory, server_move};
 use sistership_jobs::promotion::{ChampionComparison, compare_with_champion};
 use sistership_jobs::request::{BRANCH_JOB_KIND, BranchJob};
 use sistership_report::{self as report, RenderedReport, VersionLabel};

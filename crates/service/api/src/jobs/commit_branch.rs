@@ -3,8 +3,8 @@
 
 use bytes::Bytes;
 use serde_json::{Value, json};
+use sistership_jobs::aliases::{CANDIDATE, VersionHistory, server_move};
 use sistership_jobs::derive::DerivedVersion;
-use sistership_jobs::line::{CANDIDATE, VersionHistory, server_move};
 use sistership_learned::{BranchChoice, CorrectionEvaluation};
 use sistership_model::branch::CorrectionDocument;
 use sistership_model::version::sha256_hex;

@@ -13,10 +13,10 @@ use sistership_store::{
 
 use super::outcome::{JobError, Result, permanent_failure};
 use crate::app::App;
+use sistership_jobs::aliases::{CANDIDATE, VersionHistory, server_move};
 use sistership_jobs::condition::RecentDrift;
 use sistership_jobs::derive::DiagnosisRun;
 use sistership_jobs::fleet::Drift;
-use sistership_jobs::line::{CANDIDATE, VersionHistory, server_move};
 use sistership_report::{DiagnosisInput, RenderedReport, VersionLabel, render_diagnosis};
 
 /// Kind of the reports, and method of the versions.

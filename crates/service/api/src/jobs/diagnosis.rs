@@ -16,7 +16,7 @@ use sistership_jobs::derive::run_diagnosis;
 use sistership_jobs::memory::job_bytes;
 use sistership_jobs::recipe::{DiagnosisKind, DiagnosisRecipe};
 use sistership_jobs::request::DiagnosisJob;
-use sistership_jobs::sorted::sort_keys;
+use sistership_jobs::sorted_json::sort_keys;
 use sistership_jobs::start::stored_library;
 use sistership_model::version::code_revision;
 

@@ -19,7 +19,7 @@ use crate::web::field::{EntityTags, Remark, VersionNumber};
 use crate::web::{
     DocumentBody, Listing, Name, PageQuery, PathParams, QueryParams, RequestConditions,
 };
-use sistership_jobs::line::{CHAMPION, find_alias, is_reserved};
+use sistership_jobs::aliases::{CHAMPION, find_alias, is_reserved};
 
 pub(super) fn alias_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, put)).routes(routes!(history))

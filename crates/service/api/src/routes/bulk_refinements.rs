@@ -21,8 +21,8 @@ use crate::web::{
     DocumentBody, Id, IdempotencyKey, Listing, Name, PathParams, QueryParams, StoredReply, Word,
     page,
 };
+use sistership_jobs::aliases::CHAMPION;
 use sistership_jobs::fleet::{BulkProgress, BulkRefinementRequest, order_refinement};
-use sistership_jobs::line::CHAMPION;
 
 pub(super) fn bulk_routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()

@@ -18,8 +18,8 @@ use crate::problem::{Problem, Result};
 use crate::web::conditions::entity_tag;
 use crate::web::field::EntityTags;
 use crate::web::{Name, PathParams, QueryParams, RequestConditions, accept};
+use sistership_jobs::aliases::CHAMPION;
 use sistership_jobs::archive::version_document;
-use sistership_jobs::line::CHAMPION;
 use sistership_web_support::answers::CachedAnswer;
 
 const JSON: &str = "application/json";

@@ -5,7 +5,7 @@ use sistership_store::{Store, StoreError, Version};
 use crate::problem::{Problem, Result};
 use crate::rights::check_ship_role;
 use sistership_auth::Role;
-use sistership_jobs::line::{CHAMPION, find_alias};
+use sistership_jobs::aliases::{CHAMPION, find_alias};
 
 /// Returns the version that a name in a request refers to; `field` is named in errors.
 pub(super) async fn resolve_version(store: &Store, field: &str, name: &str) -> Result<Version> {

@@ -4,7 +4,7 @@ use axum::extract::State;
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
-use sistership_jobs::validated::{Validation, ValidationInputs};
+use sistership_jobs::validation::{Validation, ValidationInputs};
 use sistership_report::render_validation;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;

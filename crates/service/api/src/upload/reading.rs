@@ -4,7 +4,7 @@ use sistership_model::trial::Trial;
 use sistership_trials::{CheckOutcome, Refusal, check_source, read_trial};
 use sistership_web_support::upload::TrialUpload;
 
-use super::room::reserve_memory;
+use super::memory::reserve_memory;
 use crate::app::App;
 use crate::problem::Result;
 

@@ -12,8 +12,8 @@ use super::content::{
 };
 use super::error::BundleError;
 use super::history::{optional, ship_revisions};
+use crate::aliases::{LATEST, server_move};
 use crate::archive::Archive;
-use crate::line::{LATEST, server_move};
 
 type Result<T> = std::result::Result<T, BundleError>;
 

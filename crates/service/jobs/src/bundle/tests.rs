@@ -9,8 +9,8 @@ use sistership_store::testing::TestDatabase;
 use sistership_store::{ExpectedRevision, NewReport, NewShip, NewTrial, NewVersion};
 
 use super::{Bundle, BundleError, SigningKey, check_signer, collect_bundle, import_bundle};
+use crate::aliases::{CHAMPION, server_move};
 use crate::archive::Archive;
-use crate::line::{CHAMPION, server_move};
 use crate::verify::verify_version;
 
 const SHIP: &str = "demo-ship";

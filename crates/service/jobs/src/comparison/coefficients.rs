@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::compared::ComparisonModel;
+use super::comparison_model::ComparisonModel;
 
 /// Value of a coefficient in one model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]

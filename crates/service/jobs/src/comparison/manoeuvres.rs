@@ -7,7 +7,7 @@ use sistership_simulation::manoeuvre::{
 };
 use utoipa::ToSchema;
 
-use super::compared::ComparisonModel;
+use super::comparison_model::ComparisonModel;
 
 /// Figure of one model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]

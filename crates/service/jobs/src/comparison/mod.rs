@@ -2,18 +2,18 @@
 //! and criteria.
 
 mod coefficients;
-mod compared;
+mod compare;
+mod comparison_model;
 mod manoeuvres;
-mod side_by_side;
 pub mod stored;
 #[cfg(test)]
 mod tests;
 mod trials;
 
 pub use coefficients::{ComparedCoefficient, Estimate};
-pub use compared::ComparisonModel;
-pub use manoeuvres::{ComparedFigure, FigureValue};
-pub use side_by_side::{
+pub use compare::{
     Column, Comparison, ComparisonError, MODEL_COUNT_LIMITS, MOST_TRIALS, check_names, compare,
 };
+pub use comparison_model::ComparisonModel;
+pub use manoeuvres::{ComparedFigure, FigureValue};
 pub use trials::{ComparedTrial, TrialError};

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use sistership_model::version::RecipeTrial;
 use sistership_model::{Law, Model, Trial};
 
-use super::compared::ComparisonModel;
-use super::side_by_side::{Comparison, ComparisonError, compare};
+use super::compare::{Comparison, ComparisonError, compare};
+use super::comparison_model::ComparisonModel;
 use crate::memory::trial_bytes;
 
 /// Inputs of a comparison.

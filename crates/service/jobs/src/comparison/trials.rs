@@ -9,7 +9,7 @@ use sistership_simulation::error::{SquaredError, standard_deviations, standardis
 use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 use utoipa::ToSchema;
 
-use super::compared::ComparisonModel;
+use super::comparison_model::ComparisonModel;
 
 /// Error of a model's simulation of a trial.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]

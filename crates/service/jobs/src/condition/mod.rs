@@ -1,10 +1,10 @@
 //! Validity of a ship's model: all diagnoses of its champion and the drift since it was fitted,
 //! combined.
 
+mod description;
 mod evidence;
-mod gathered;
+mod joint_trials;
 mod recent_drift;
-mod words;
 
 use std::collections::BTreeSet;
 
@@ -13,9 +13,9 @@ use sistership_store::{DiagnosisRow, MAX_LIMIT, PageRequest, Store, StoreError, 
 use utoipa::ToSchema;
 
 use self::evidence::{ConditionEvidence, DiagnosisVerdict, EvidenceLimits};
-use crate::line::{CHAMPION, find_alias};
+use crate::aliases::{CHAMPION, find_alias};
 
-pub use gathered::{MAX_JOINT_TRIALS, fitted_samples, trials_to_diagnose};
+pub use joint_trials::{MAX_JOINT_TRIALS, fitted_samples, trials_to_diagnose};
 pub use recent_drift::{DRIFT_LIMIT, RecentDrift};
 
 /// Validity of the champion of a ship, by all its diagnoses and its drift.

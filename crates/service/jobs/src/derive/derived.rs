@@ -11,7 +11,7 @@ use sistership_model::{Law, Model, Vessel};
 use crate::error::DeriveError;
 use crate::library::EffectLibrary;
 use crate::recipe::DerivationRecipe;
-use crate::sorted::sort_keys;
+use crate::sorted_json::sort_keys;
 use crate::version::VersionDocument;
 
 /// Callback with the progress of a derivation (0 to 1) and its present step; returns `false` to

@@ -13,7 +13,7 @@ use crate::error::DeriveError;
 use crate::inputs::DerivationInputs;
 use crate::library::EffectLibrary;
 use crate::recipe::{DerivationRecipe, DiagnosisRecipe};
-use crate::sorted::sort_keys;
+use crate::sorted_json::sort_keys;
 use crate::version::VersionDocument;
 
 /// Diagnosis with its inputs.

@@ -17,7 +17,7 @@ use crate::error::DeriveError;
 use crate::inputs::DerivationInputs;
 use crate::library::FIRST_SHA256;
 use crate::recipe;
-use crate::sorted::sort_keys;
+use crate::sorted_json::sort_keys;
 use crate::version::VersionDocument;
 
 /// Loads the inputs that a recipe names, each by its hash.

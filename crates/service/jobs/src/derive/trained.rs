@@ -16,7 +16,7 @@ use crate::error::DeriveError;
 use crate::inputs::DerivationInputs;
 use crate::library::EffectLibrary;
 use crate::recipe::{DerivationRecipe, TrainingRecipe};
-use crate::sorted::sort_keys;
+use crate::sorted_json::sort_keys;
 use crate::version::VersionDocument;
 
 /// Trains the learned correction that a recipe describes.

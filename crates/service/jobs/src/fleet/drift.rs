@@ -9,10 +9,10 @@ use sistership_model::version::RecipeTrial;
 use sistership_store::{MAX_LIMIT, PageRequest, StoreError, Trial};
 use utoipa::ToSchema;
 
-use super::kept::trial_statistics;
+use super::stored_statistics::trial_statistics;
+use crate::aliases::CHAMPION;
 use crate::archive::{Archive, version_document};
 use crate::error::DeriveError;
-use crate::line::CHAMPION;
 use crate::version::VersionDocument;
 
 /// Unexplained force of a champion on its ship's trials over time.

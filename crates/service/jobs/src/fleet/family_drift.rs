@@ -8,7 +8,7 @@ use super::drift::Drift;
 use crate::archive::Archive;
 use crate::condition::{Condition, ModelValidity};
 use crate::error::DeriveError;
-use crate::search::standing::UrgencyClass;
+use crate::search::urgency::UrgencyClass;
 
 /// Members of a family, the one with the least valid model first.
 #[derive(Debug, Serialize, ToSchema)]

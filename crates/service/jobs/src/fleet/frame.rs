@@ -7,10 +7,10 @@ use sistership_store::Version;
 
 use super::choices::Start;
 use super::order::LoadedOrder;
+use crate::aliases::CHAMPION;
 use crate::archive::{Archive, parse_vessel, version_document};
 use crate::error::DeriveError;
 use crate::inputs::DerivationInputs;
-use crate::line::CHAMPION;
 use crate::recipe::FamilyRecipe;
 
 /// Source of the starting models of a family's members.

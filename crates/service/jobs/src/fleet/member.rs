@@ -6,14 +6,14 @@ use sistership_fleet::statistics::RegressionFrame;
 use sistership_identification::refine::RefineError;
 use sistership_store::{AliasMove, ExpectedRevision, NewOutcome, NewVersion, StoreError};
 
+use super::family_prior::recipe_trials;
 use super::frame::StartingModels;
-use super::kept::trial_statistics;
-use super::learned::recipe_trials;
 use super::order::LoadedOrder;
 use super::refined::{MemberInputs, refine_member};
+use super::stored_statistics::trial_statistics;
+use crate::aliases::{CANDIDATE, CHAMPION, VersionHistory, server_move};
 use crate::archive::Archive;
 use crate::error::DeriveError;
-use crate::line::{CANDIDATE, CHAMPION, VersionHistory, server_move};
 use crate::version::VersionDocument;
 
 type Result<T> = std::result::Result<T, DeriveError>;

@@ -13,12 +13,12 @@ use sistership_model::version::FORMAT;
 
 use super::choices::{Rule, Start};
 use super::frame::recorded_start;
-use super::kept::compute_statistics;
 use super::order::{BulkOrder, LoadedOrder};
+use super::stored_statistics::compute_statistics;
 use crate::error::DeriveError;
 use crate::inputs::DerivationInputs;
 use crate::recipe::{DerivationRecipe, FamilyRecipe};
-use crate::sorted::sort_keys;
+use crate::sorted_json::sort_keys;
 use crate::version::VersionDocument;
 
 /// Inputs of the refinement of a member.

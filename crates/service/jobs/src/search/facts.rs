@@ -14,10 +14,10 @@ use sistership_store::{Ship, ShipFacts, StaleShip, StoreError, Version};
 
 use super::metrics;
 use super::query::fact_name;
-use super::standing;
+use super::urgency;
+use crate::aliases::CHAMPION;
 use crate::archive::{Archive, parse_vessel, version_document};
 use crate::error::DeriveError;
-use crate::line::CHAMPION;
 use crate::publish::publish_models;
 use crate::version::VersionDocument;
 
@@ -82,7 +82,7 @@ async fn read_content(
     // Publication comes first: it may make the champion that the next line reads.
     publish_missing(archive, laws, &vessel, &ship).await?;
     let champion = read_champion(archive, &ship.name).await?;
-    let standing = standing::urgency_facts(archive, &ship.name, champion.as_ref()).await?;
+    let standing = urgency::urgency_facts(archive, &ship.name, champion.as_ref()).await?;
     Ok(ShipContent { waiting, category: ship.category, vessel: Some(vessel), champion, standing })
 }
 

@@ -7,7 +7,7 @@ mod known_vectors;
 mod metrics;
 mod query;
 mod similar;
-pub mod standing;
+pub mod urgency;
 
 pub use index::{update_index, write_facts};
 pub use known_vectors::VectorCache;

@@ -5,7 +5,7 @@ use sistership_model::version::sha256_hex;
 use sistership_store::{Job, JobFilter, PageRequest, Result, StoreError, Version};
 
 use super::findings::Findings;
-use super::reading::{PAGE_ROWS, describe_fault, describe_store_fault, object_exists};
+use super::lookup::{PAGE_ROWS, describe_fault, describe_store_fault, object_exists};
 use crate::archive::{Archive, version_document};
 use crate::error::DeriveError;
 use crate::version::VersionDocument;

@@ -7,7 +7,7 @@ use futures::TryStreamExt as _;
 use serde::Serialize;
 use sistership_store::{ObjectHead, ObjectName, PageRequest, Result};
 
-use super::reading::PAGE_ROWS;
+use super::lookup::PAGE_ROWS;
 use crate::archive::{Archive, version_document};
 
 /// Number of keys in one transaction, during which uploads wait.

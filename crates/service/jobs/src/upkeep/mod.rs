@@ -5,8 +5,8 @@ mod documents;
 mod findings;
 mod fsck;
 mod gc;
+mod lookup;
 mod objects;
-mod reading;
 #[cfg(test)]
 mod tests;
 

@@ -6,7 +6,7 @@ use futures::TryStreamExt as _;
 use sistership_store::{ObjectHead, ObjectName, PageRequest, Result};
 
 use super::findings::{Findings, UnreferencedObjects};
-use super::reading::{PAGE_ROWS, describe_store_fault, object_exists};
+use super::lookup::{PAGE_ROWS, describe_store_fault, object_exists};
 use crate::archive::Archive;
 
 /// Reads every object, then checks the object of every trial. Objects come before rows: a trial

@@ -2,7 +2,7 @@
 //! intervals. It is independent of the routes of the API.
 
 mod addresses;
-mod sent;
+mod attempt;
 
 use std::time::Duration;
 
@@ -78,7 +78,7 @@ async fn deliver(
     delivery: &Delivery,
     webhook: &Webhook,
 ) -> sistership_store::Result<()> {
-    match sent::send_once(delivery, webhook, store.now_us(), telling.private).await {
+    match attempt::send_once(delivery, webhook, store.now_us(), telling.private).await {
         Ok(answer) => store.webhooks().record_arrival(&delivery.id, &answer).await,
         Err(reason) => {
             let due = retry_delay(delivery.attempts).map(|pause| store.now_us() + to_micros(pause));

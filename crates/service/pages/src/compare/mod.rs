@@ -1,13 +1,13 @@
 //! Comparison of two to five versions: coefficients, standard manoeuvres, criteria, tracks.
 
-mod sailed;
+mod simulations;
 mod tables;
 
 use askama::Template;
 use sistership_jobs::Archive;
 use sistership_report::plots::HullOutline;
 
-use self::sailed::VersionManoeuvres;
+use self::simulations::VersionManoeuvres;
 use self::tables::{ValueRow, coefficient_rows, criterion_rows, figure_rows};
 use crate::error::{PageError, Result};
 use crate::form::FormFields;

@@ -3,7 +3,7 @@
 use sistership_report::numbers::{format_fixed, format_significant};
 use sistership_simulation::manoeuvre::NamedFigure;
 
-use super::sailed::VersionManoeuvres;
+use super::simulations::VersionManoeuvres;
 use crate::named::NamedVersion;
 
 /// A row: name, unit, and the cell of each version.

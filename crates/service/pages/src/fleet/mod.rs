@@ -5,7 +5,7 @@ mod query;
 use askama::Template;
 use sistership_jobs::Archive;
 use sistership_jobs::condition::{Condition, diagnosed_trials};
-use sistership_jobs::search::standing::{ERROR_FACT, RESIDUAL_FACT_PREFIX, UrgencyClass};
+use sistership_jobs::search::urgency::{ERROR_FACT, RESIDUAL_FACT_PREFIX, UrgencyClass};
 use sistership_jobs::search::{self, SearchCriteria, VectorCache};
 use sistership_report::numbers::{format_significant, format_stated};
 use sistership_store::{FoundShip, ListPage, PageRequest, ShipKey, ShipOverview};

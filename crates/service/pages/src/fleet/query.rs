@@ -1,6 +1,6 @@
 //! The query of the fleet page.
 
-use sistership_jobs::search::standing::UrgencyClass;
+use sistership_jobs::search::urgency::UrgencyClass;
 use sistership_jobs::search::{self, SearchCriteria};
 use sistership_store::{FactRange, ShipKey, ShipSearch};
 

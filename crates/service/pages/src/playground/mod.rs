@@ -1,17 +1,17 @@
 //! The playground: a manoeuvre of a model, given in a form and simulated by the server.
 
 mod orders;
-mod sailed;
+mod simulation;
 
 use askama::Template;
 use sistership_jobs::Archive;
-use sistership_jobs::surroundings::steady_effect;
+use sistership_jobs::environment::steady_effect;
 use sistership_model::effect::AppliedEffect;
 use sistership_report::plots::HullOutline;
 use sistership_simulation::Ship;
 
 use self::orders::{ManoeuvreOrders, Surroundings};
-use self::sailed::{FigureList, simulate_orders};
+use self::simulation::{FigureList, simulate_orders};
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
 use crate::named::NamedVersion;

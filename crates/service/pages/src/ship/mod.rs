@@ -7,11 +7,11 @@ use std::sync::Arc;
 
 use askama::Template;
 use sistership_jobs::Archive;
+use sistership_jobs::aliases::CHAMPION;
 use sistership_jobs::archive::parse_vessel;
 use sistership_jobs::champions::most_similar_ships;
 use sistership_jobs::condition::{Condition, SinceTrial, WeighedDiagnosis};
-use sistership_jobs::line::CHAMPION;
-use sistership_jobs::search::standing::UrgencyClass;
+use sistership_jobs::search::urgency::UrgencyClass;
 use sistership_model::{Vessel, Zoo};
 use sistership_priors::similarity::RankedSource;
 use sistership_report::numbers::{format_significant, format_stated};

@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 use askama::Template;
 use sistership_jobs::Archive;
+use sistership_jobs::aliases::CHAMPION;
 use sistership_jobs::archive::version_document;
-use sistership_jobs::line::CHAMPION;
 use sistership_jobs::version::VersionDocument;
 use sistership_model::Law;
 use sistership_report::numbers::format_stated;

@@ -14,7 +14,7 @@
 mod autocovariance;
 mod equation;
 mod rows;
-mod spread;
+mod source_variance;
 mod thresholds;
 
 use nalgebra::{DMatrix, DVector};
@@ -29,7 +29,7 @@ use autocovariance::ResidualAutocovariance;
 use equation::RidgeEquation;
 pub(super) use rows::{SequencedRows, sequence_rows};
 use sistership_numerics::{PriorMetric, RegressionMoments, RidgeChoice};
-use spread::source_variances;
+use source_variance::source_variances;
 
 /// Returns the errors of the ridge at its choices; `rows` are the rows behind `moments`, `model` is
 /// the source.

@@ -6,7 +6,7 @@
 //! phi_i + rest` becomes `-int v d(b M)/dt dt = sum c_i int b phi_i dt + int b rest dt`: a linear
 //! regression with one row a window.
 
-mod averaged;
+mod averaging;
 mod bump;
 mod estimator;
 mod samples;
@@ -20,7 +20,7 @@ pub(super) use estimator::{WeakForm, resolve_windows, window_form};
 use super::blocks::{RegressionBlock, RegressionBlocks};
 use super::outcome::RefineError;
 use super::rows::RegressionTable;
-use averaged::average_samples;
+use averaging::average_samples;
 use bump::BumpFunction;
 use samples::{SampledRegression, sample_columns};
 use sistership_numerics::RegressionMoments;

@@ -1,12 +1,12 @@
 //! Routes of the pages for people, which `sistership_pages` renders.
 
-mod act;
 mod answer;
 mod draft;
-mod look;
+mod form_actions;
 mod new_ship;
 mod openid;
 mod people;
+mod views;
 
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -20,33 +20,33 @@ const FORM_BYTES: usize = 256 << 10;
 
 pub(super) fn page_routes(limits: &Limits) -> Router<App> {
     let forms = Router::new()
-        .route("/", get(look::fleet_page))
+        .route("/", get(views::fleet_page))
         .route("/new-ship", get(new_ship::new_ship_form))
         .route("/ships", post(new_ship::create_ship))
-        .route("/ships/{ship}", get(look::ship_page))
-        .route("/ships/{ship}/refine", post(act::refine_ship))
-        .route("/ships/{ship}/diagnose", post(act::diagnose_ship))
-        .route("/ships/{ship}/champion", post(act::promote_version))
-        .route("/ships/{ship}/note", post(act::add_note))
-        .route("/ships/{ship}/tag", post(act::add_tag))
-        .route("/ships/{ship}/untag", post(act::remove_tag))
-        .route("/ships/{ship}/versions/{number}", get(look::version_page))
+        .route("/ships/{ship}", get(views::ship_page))
+        .route("/ships/{ship}/refine", post(form_actions::refine_ship))
+        .route("/ships/{ship}/diagnose", post(form_actions::diagnose_ship))
+        .route("/ships/{ship}/champion", post(form_actions::promote_version))
+        .route("/ships/{ship}/note", post(form_actions::add_note))
+        .route("/ships/{ship}/tag", post(form_actions::add_tag))
+        .route("/ships/{ship}/untag", post(form_actions::remove_tag))
+        .route("/ships/{ship}/versions/{number}", get(views::version_page))
         .route(
             "/ships/{ship}/uploads/{draft}",
             get(draft::review_draft).post(draft::apply_corrections),
         )
-        .route("/trials/{id}", get(look::trial_page))
-        .route("/compare", get(look::compare_page))
-        .route("/playground", get(look::playground_page))
-        .route("/families", get(look::families_page))
-        .route("/families/{family}", get(look::family_page))
-        .route("/zoo", get(look::zoo_page))
-        .route("/zoo/laws/{law}", get(look::law_page))
-        .route("/zoo/effects/{effect}", get(look::effect_page))
-        .route("/jobs", get(look::jobs_page))
-        .route("/jobs/{id}", get(look::job_page))
-        .route("/jobs/{id}/cancel", post(act::cancel_job))
-        .route("/jobs/{id}/retry", post(act::retry_job))
+        .route("/trials/{id}", get(views::trial_page))
+        .route("/compare", get(views::compare_page))
+        .route("/playground", get(views::playground_page))
+        .route("/families", get(views::families_page))
+        .route("/families/{family}", get(views::family_page))
+        .route("/zoo", get(views::zoo_page))
+        .route("/zoo/laws/{law}", get(views::law_page))
+        .route("/zoo/effects/{effect}", get(views::effect_page))
+        .route("/jobs", get(views::jobs_page))
+        .route("/jobs/{id}", get(views::job_page))
+        .route("/jobs/{id}/cancel", post(form_actions::cancel_job))
+        .route("/jobs/{id}/retry", post(form_actions::retry_job))
         .route("/sign-in", get(people::sign_in_form).post(people::sign_in_user))
         .route("/sign-in/oidc", get(openid::begin_sign_in))
         .route("/sign-in/oidc/callback", get(openid::finish_sign_in))

@@ -1,10 +1,10 @@
 //! Providers for tests: one with configurable answers, and an independent implementation.
 
-mod hostile;
 mod real;
+mod scripted;
 
-pub use hostile::{CLIENT, ProviderScript, ScriptedProvider, now_s};
 pub use real::RealProvider;
+pub use scripted::{CLIENT, ProviderScript, ScriptedProvider, now_s};
 
 use crate::openid::settings::ProviderSettings;
 

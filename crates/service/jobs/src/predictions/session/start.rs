@@ -1,6 +1,6 @@
 //! Start of a session: the model in its environment, and the draws.
 
-use crate::surroundings::steady_effect;
+use crate::environment::steady_effect;
 use sistership_assessment::uncertainty::{Sampling, draw_from_posterior};
 use sistership_model::{Law, Model};
 use sistership_simulation::plant::PlantWorkspace;
@@ -8,7 +8,7 @@ use sistership_simulation::state::{at, horizontal_speed, straight_state};
 use sistership_simulation::{HelmOrder, Ship, ShipEnsemble, StateVector};
 
 use super::request::SessionRequest;
-use super::under_way::{PosteriorDraws, PredictionSession};
+use super::simulation::{PosteriorDraws, PredictionSession};
 use crate::predictions::error::{PredictionError, Result};
 use crate::predictions::track::STEP_S;
 

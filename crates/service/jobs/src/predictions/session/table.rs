@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use super::under_way::PredictionSession;
+use super::simulation::PredictionSession;
 use crate::predictions::error::{PredictionError, Result};
 
 /// Limits of sessions.

@@ -5,7 +5,7 @@ use sistership_store::testing::TestDatabase;
 use sistership_store::{ExpectedRevision, sha256_hex};
 
 use super::{Place, archive, found, places};
-use crate::line::server_move;
+use crate::aliases::server_move;
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_healthy_archive_is_clean() {

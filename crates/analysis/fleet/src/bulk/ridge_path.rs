@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::chosen::strongest_within_one_error;
 use super::group::{AxisGroup, axis_groups};
 use super::prior::BulkPrior;
 use super::settings::BulkSettings;
+use super::strength_selection::strongest_within_one_error;
 use crate::statistics::TrialStatistics;
 use sistership_identification::refine::{FittedCoefficient, RefineError};
 

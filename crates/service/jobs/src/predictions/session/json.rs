@@ -5,7 +5,7 @@ use sistership_simulation::{StateVector, Trajectory};
 
 use super::request::StepsRequest;
 use super::sample::{BAND_ENDS, SessionSample};
-use super::under_way::PredictionSession;
+use super::simulation::PredictionSession;
 use crate::predictions::error::Result;
 use crate::predictions::outside_trials::with_outside_trials;
 use crate::predictions::track::{STATE_COLUMNS, track_columns, with_share};

@@ -14,7 +14,7 @@ use tokio::sync::Notify;
 use tokio::time::Instant;
 
 use crate::limits::ConnectionLimits;
-use crate::pace::ConnectionProgress;
+use crate::progress::ConnectionProgress;
 
 /// Number of connections beyond the permits, for health checks and refusals.
 pub(super) const RESERVE: usize = 128;

@@ -7,8 +7,8 @@ use sistership_model::version::{RecipeTrial, SourceVersion};
 
 use super::choices::Start;
 use super::frame::StartingModels;
-use super::kept::trial_statistics;
 use super::members::member_names;
+use super::stored_statistics::trial_statistics;
 use crate::archive::{Archive, version_document};
 use crate::error::DeriveError;
 

@@ -1,13 +1,13 @@
 //! Reading of several segments of a file in one pass, each into a table of its own.
 
 use crate::clock::ColumnClock;
+use crate::file_segments::{FileSegment, SegmentFault, TimeWindow};
 use crate::findings::Findings;
 use crate::mapping::Mapping;
 use crate::number::CellFault;
+use crate::row_sink::{RowSink, RowSource};
 use crate::rows::TableBuilder;
-use crate::stretches::{FileSegment, SegmentFault, TimeWindow};
 use crate::table::{Table, TableColumn};
-use crate::taker::{RowSink, RowSource};
 
 /// Segment to be read: its label, and its mapping.
 pub(crate) struct LabelledMapping<'a> {

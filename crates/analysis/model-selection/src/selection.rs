@@ -6,15 +6,15 @@ use sistership_identification::refine::{
     FoldModel, Progress, RefineError, Refinement, RefinementSettings, SourceEnvelopes, refine,
 };
 
+use crate::candidate::CandidatePrior;
 use crate::choice::standard_error;
-use crate::entrant::CandidatePrior;
-use crate::ladder::{ReportLine, SelectionReport, SelectionStage};
-use crate::sailed::simulation_fault;
-use crate::thresholds::SEARCH;
-use crate::tried::{
+use crate::evaluation::{
     CandidateSearch, EvaluatedCandidate, candidate_request, chosen_place, evaluate_candidate,
     last_ridge, ridge_settings, stage_settings,
 };
+use crate::selection_report::{ReportLine, SelectionReport, SelectionStage};
+use crate::simulation_check::simulation_fault;
+use crate::thresholds::SEARCH;
 
 /// The selected candidate, with the settings that give its refinement explicitly.
 #[derive(Debug, Clone)]
@@ -226,7 +226,7 @@ fn report_line(
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::entrant::SelectionCandidate;
+    use crate::candidate::SelectionCandidate;
     use sistership_identification::refine::{
         CandidateEvaluation, EstimationMethod, RefinementSpec, TermFamily,
     };

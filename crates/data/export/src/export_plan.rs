@@ -16,8 +16,8 @@ use sistership_simulation::{Plant, PlantError, Ship};
 
 use crate::correction::with_correction;
 use crate::error::ExportError;
+use crate::external_input::{CURRENT, ExternalInput};
 use crate::identifier::{to_identifier, unique_identifiers};
-use crate::outside::{CURRENT, ExternalInput};
 use crate::subject::ExportSubject;
 
 /// Coefficient of the model.

@@ -1,7 +1,7 @@
 //! Simulation with a trained network.
 
 use super::motion::RecordedMotion;
-use super::simulated::SimulatedMotion;
+use super::simulated_motion::SimulatedMotion;
 use super::training::TrainedNetwork;
 use super::windows::ActiveWindows;
 

@@ -10,15 +10,15 @@ use sistership_trials::samples::{self, SamplesError};
 use sistership_trials::{ManifestFile, Refusal, read_trial};
 use tempfile::NamedTempFile;
 
+use super::memory::reserve_memory;
 use super::reading::read_failure;
-use super::room::reserve_memory;
 use crate::app::App;
 use crate::jobs::{DIAGNOSIS_JOB_KIND, DiagnosisJob};
 use crate::problem::{Problem, Result};
 use crate::rights::check_ship_role;
 use sistership_auth::Role;
+use sistership_jobs::aliases::{CHAMPION, find_alias};
 use sistership_jobs::budget;
-use sistership_jobs::line::{CHAMPION, find_alias};
 use sistership_web_support::spool::{SpoolFolder, temporary_file};
 use sistership_web_support::upload::{TrialUpload, UploadedTrial};
 

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use sistership_model::{FileError, Law, Model, Vessel, Zoo};
 
-use crate::close::close_names;
 use crate::failure::{Failure, about_file};
 use crate::output::print_note;
+use crate::suggestions::close_names;
 use crate::weights;
 use crate::zoo::read_text_file;
 

@@ -5,9 +5,9 @@ use std::time::Instant;
 use sistership_model::Vessel;
 use sistership_model::trial::Trial;
 
+use crate::candidate::{CandidatePrior, SelectionCandidate};
 use crate::choice::choose_candidate;
-use crate::entrant::{CandidatePrior, SelectionCandidate};
-use crate::ladder::SelectionStage;
+use crate::selection_report::SelectionStage;
 use crate::thresholds::SEARCH;
 use sistership_identification::refine::{
     CandidateEvaluation, PopulationShip, Progress, RefineError, Refinement, RefinementExtent,

@@ -11,7 +11,7 @@ use crate::problem::{Problem, Result};
 use crate::web::field::Remark;
 use crate::web::form::PageForm;
 use crate::web::{Id, Name, PathParams, Word};
-use sistership_jobs::line::CHAMPION;
+use sistership_jobs::aliases::CHAMPION;
 use sistership_store::ExpectedRevision;
 
 /// Queues a refinement, and leads to its job.

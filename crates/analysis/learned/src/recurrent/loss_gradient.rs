@@ -2,7 +2,7 @@
 
 use super::motion::RecordedMotion;
 use super::scales::MotionScales;
-use super::simulated::SimulatedMotion;
+use super::simulated_motion::SimulatedMotion;
 
 /// Loss and its derivatives with respect to each simulated state.
 pub struct LossGradient {

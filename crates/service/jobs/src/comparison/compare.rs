@@ -6,7 +6,7 @@ use sistership_simulation::{PlantError, Ship};
 use utoipa::ToSchema;
 
 use super::coefficients::{self, ComparedCoefficient};
-use super::compared::ComparisonModel;
+use super::comparison_model::ComparisonModel;
 use super::manoeuvres::{self, ComparedFigure};
 use super::trials::{self, ComparedTrial};
 

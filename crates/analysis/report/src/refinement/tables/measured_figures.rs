@@ -1,7 +1,7 @@
 //! Table of measured and simulated figures.
 
 use crate::numbers::{format_known, format_signed, format_significant};
-use crate::refinement::sailed::MeasuredFigure;
+use crate::refinement::measured_figures::MeasuredFigure;
 use crate::tables::{ReportTable, TableCell, TableColumn, TableRow};
 
 /// Table of the figures, under a heading for each trial.
