@@ -14,6 +14,7 @@ use sistership_model::{Law, Model, Trial, particulars};
 
 use crate::covered::{CoveredRange, covered_revolutions, covered_speed_ratios, covered_speeds};
 use crate::slope::{UncertainValue, surge_derivative};
+use crate::straight_surge::StraightSurge;
 use crate::thresholds::BALANCE;
 
 /// Evidence on a model's propulsion.
@@ -48,8 +49,9 @@ const CHOSEN: &str = "docs/evidence/propulsion.md";
 /// Returns the balance of a model; `None` if its speed or revolutions at the approach are not
 /// known.
 pub fn model_balance(of: &PropulsionEvidence<'_>) -> Option<Propulsion> {
-    let speed = of.model.speed_m_s.filter(|speed| *speed > 0.0)?;
+    let approach = of.model.speed_m_s.filter(|speed| *speed > 0.0)?;
     let n_rps = of.model.revolutions_rps.filter(|n_rps| *n_rps > 0.0)?;
+    let speed = steady_speed(of, [approach, n_rps]);
     let working = of.estimate.and_then(self_propulsion_point).unwrap_or(SelfPropulsionPoint {
         loading: BALANCE.loading,
         advance: BALANCE.advance,
@@ -79,8 +81,18 @@ pub fn model_balance(of: &PropulsionEvidence<'_>) -> Option<Propulsion> {
         add(name, Quantity::new(value, RANGE));
     }
     add_range(&mut parameters, 'n', range);
-    add_range(&mut parameters, 'u', covered_speeds(of.trials, speed));
+    add_range(&mut parameters, 'u', covered_speeds(of.trials, approach));
     Some(Propulsion { parameters })
+}
+
+/// Returns the speed at which the model is steady at the revolutions of the approach, within the
+/// speeds of the trials: trials at low speed need not begin in a steady motion. The speed of the
+/// approach if the model has none.
+fn steady_speed(of: &PropulsionEvidence<'_>, [approach_m_s, n_rps]: [f64; 2]) -> f64 {
+    let [_, from, to, _] = covered_speeds(of.trials, approach_m_s);
+    let surge = StraightSurge::new(of.model, of.law, n_rps).ok();
+    let steady = surge.and_then(|surge| surge.steady_speed([from.max(0.5 * approach_m_s), to]));
+    steady.unwrap_or(approach_m_s)
 }
 
 /// Returns true if only the trials determine the effect of the propeller: the law takes no

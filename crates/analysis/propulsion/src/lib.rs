@@ -6,6 +6,7 @@ mod check;
 mod context;
 mod covered;
 mod slope;
+mod straight_surge;
 mod thresholds;
 
 pub use balance::{PropulsionEvidence, model_balance, needs_balance};

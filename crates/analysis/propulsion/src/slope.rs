@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use sistership_model::coefficient::Axis;
 use sistership_model::{Law, Model};
-use sistership_simulation::equations::{EquationLowering, EquationsOfMotion, PlantError};
+use sistership_simulation::equations::PlantError;
+
+use crate::straight_surge::StraightSurge;
 
 /// A figure and its standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,28 +51,11 @@ fn coefficient_derivatives(
     law: &Law,
     [speed, n_rps]: [f64; 2],
 ) -> Result<CoefficientDerivatives, PlantError> {
-    let equations = EquationsOfMotion::from_foundation(model, law)?;
-    let names = equations.tape_input_names();
-    let mut lowering = EquationLowering::new(&equations, &names);
-    let coefficients: Vec<&String> = equations.axis_coefficients(Axis::X).collect();
-    for name in &coefficients {
-        lowering.add_output(&equations.scaled_regressor(name)?)?;
-    }
-    // The rest is the last output, after the regressors of the coefficients.
-    lowering.add_output(&equations.law().axes[&Axis::X].rest)?;
-    let tape = lowering.finish();
-    let defaults: BTreeMap<String, Option<f64>> = equations.law_inputs().into_iter().collect();
-    let given = |name: &String, u: f64| match name.as_str() {
-        "u" => u,
-        "n" => n_rps,
-        name => defaults.get(name).copied().flatten().unwrap_or(0.0),
-    };
-    let at =
-        |u: f64| tape.evaluate_point(&names.iter().map(|name| given(name, u)).collect::<Vec<_>>());
-    let (low, high) = (at((1.0 - STEP) * speed), at((1.0 + STEP) * speed));
+    let surge = StraightSurge::new(model, law, n_rps)?;
+    let (low, high) = (surge.terms((1.0 - STEP) * speed), surge.terms((1.0 + STEP) * speed));
     let by: Vec<f64> =
         low.iter().zip(&high).map(|(low, high)| (high - low) / (2.0 * STEP * speed)).collect();
     let rest = by.last().copied().unwrap_or(0.0);
-    let by_name = coefficients.into_iter().cloned().zip(by).collect();
+    let by_name = surge.coefficients.into_iter().zip(by).collect();
     Ok(CoefficientDerivatives { by_name, rest })
 }

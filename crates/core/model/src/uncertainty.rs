@@ -31,9 +31,8 @@ pub struct Uncertainty {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub instruments: BTreeMap<String, InstrumentFit>,
     /// Systematic errors of instruments that these trials show, with one size for all; later trials
-    /// are read with them, too. In documents the field is named `habits`, so that existing versions
-    /// keep their bytes.
-    #[serde(rename = "habits", default, skip_serializing_if = "Vec::is_empty")]
+    /// are read with them, too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub systematic_errors: Vec<AppliedEffect>,
     /// True if the prediction of later readings was learned from the rates that the filter expects;
     /// default: from those on the recorded path, whose noise is that of the readings. Later trials

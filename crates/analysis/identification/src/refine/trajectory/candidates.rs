@@ -303,7 +303,7 @@ impl TrajectoryDescent<'_> {
     }
 }
 
-/// Returns true if weaker pulls are not worth trying. The first error is that of the weak form.
+/// Returns true if weaker pulls cannot be better. The first error is that of the weak form.
 /// Either the last two pulls were no better than one before them, or the last is clearly worse than
 /// another pull that is better than the weak form.
 fn is_past_best(errors: &[f64]) -> bool {
