@@ -1,7 +1,7 @@
 //! Readings of a trial as a filter uses them.
 
-use sistership_model::effect::{TIME_INPUT, input_channel};
 use sistership_model::trial::{Channel, Trial};
+use sistership_model::trial_input::{TrialInput, find_input};
 
 use super::jumps::undisturbed_ranges;
 use sistership_identification::refine::RefineError;
@@ -72,26 +72,10 @@ impl<'a> TrialReadings<'a> {
     /// Returns an error that names the trial and the channel if there is neither a record nor a
     /// default.
     pub fn input(&self, name: &str, default: Option<f64>) -> Result<Vec<f64>, RefineError> {
-        let trial = self.trial;
-        if name == TIME_INPUT {
-            let start = trial.t_s.first().copied().unwrap_or_default();
-            return Ok(trial.t_s.iter().map(|t| t - start).collect());
-        }
-        let channel = input_channel(name);
-        if let Some(column) = channel.and_then(|channel| trial.channel(channel)) {
-            return Ok(column.to_vec());
-        }
-        let constant =
-            if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
-        match (constant, channel) {
-            (Some(value), _) => Ok(vec![value; trial.len()]),
-            (None, Some(channel)) => {
-                Err(RefineError::Channel { trial: trial.name.clone(), channel })
-            }
-            (None, None) => {
-                Err(RefineError::Law(format!("no trial can record the input `{name}`")))
-            }
-        }
+        Ok(match find_input(self.trial, name, default)? {
+            TrialInput::Samples(samples) => samples.into_owned(),
+            TrialInput::Constant(value) => vec![value; self.trial.len()],
+        })
     }
 }
 

@@ -7,9 +7,10 @@
 //! with a window of constant weight (decision 6).
 
 use sistership_model::trial::Trial;
+use sistership_model::trial_input::MissingInput;
 use sistership_simulation::Ship;
 use sistership_simulation::branch::CorrectionInstant;
-use sistership_simulation::recorded::{MissingChannel, instants_along};
+use sistership_simulation::recorded::instants_along;
 
 /// Means over one window.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,9 +24,9 @@ pub struct WindowRow {
 /// Error of preparing trials for training.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RowsError {
-    /// A channel is missing.
+    /// A channel or an input of the law is missing.
     #[error(transparent)]
-    Channel(#[from] MissingChannel),
+    Input(#[from] MissingInput),
     /// A recorded value, or the foundation's rate there, is not a finite number.
     #[error("trial `{trial}`, {t_s} s: the motion or the foundation's rate is no number")]
     NotANumber {

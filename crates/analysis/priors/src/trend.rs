@@ -2,10 +2,9 @@
 
 use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
+use sistership_model::trial_input::MissingInput;
 use sistership_model::{FileError, Model};
-use sistership_simulation::recorded::{
-    MissingChannel, RecordedTrial, ReplaySettings, replay_trials,
-};
+use sistership_simulation::recorded::{RecordedTrial, ReplaySettings, replay_trials};
 use sistership_simulation::state::at;
 use sistership_simulation::{PlantError, SimulationStop};
 
@@ -34,9 +33,9 @@ pub enum TrendError {
     /// The model cannot be prepared for simulation.
     #[error(transparent)]
     Model(#[from] PlantError),
-    /// A trial lacks a channel.
+    /// A trial lacks a channel, or cannot record an input of the law.
     #[error(transparent)]
-    Trial(#[from] MissingChannel),
+    Trial(#[from] MissingInput),
     /// The simulation left the physical range.
     #[error("{trial} {stopped}")]
     Stopped {

@@ -23,6 +23,7 @@ pub mod propulsion;
 pub mod quantity;
 pub mod source;
 pub mod trial;
+pub mod trial_input;
 pub mod triangle;
 pub mod uncertainty;
 pub mod validity;

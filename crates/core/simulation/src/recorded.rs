@@ -8,6 +8,7 @@ mod record;
 mod replay_result;
 
 use sistership_model::trial::Trial;
+use sistership_model::trial_input::MissingInput;
 
 use crate::integrate::Method;
 use crate::lockstep;
@@ -15,7 +16,6 @@ use crate::ship::Ship;
 pub use instrument_correction::correct_instrument_errors;
 use part::TrialPart;
 pub use rates::instants_along;
-pub use record::MissingChannel;
 use record::TrialRecord;
 pub use replay_result::TrialReplay;
 
@@ -50,13 +50,13 @@ pub struct RecordedTrial<'a> {
 /// Simulates a trial with its recorded inputs.
 ///
 /// # Errors
-/// Returns an error that names the channel that the trial lacks: velocities, rudder, or another
-/// input of the law without a default.
+/// Returns an error that names the channel that the trial lacks, velocities, rudder, or another
+/// input of the law without a default, or the input that no trial can record.
 pub fn replay_trial(
     ship: &Ship,
     trial: &Trial,
     settings: &ReplaySettings,
-) -> Result<TrialReplay, MissingChannel> {
+) -> Result<TrialReplay, MissingInput> {
     let mut all = replay_trials(ship, &[RecordedTrial { trial, coefficients: &[] }], settings)?;
     Ok(all.remove(0))
 }
@@ -69,7 +69,7 @@ pub fn replay_trials(
     ship: &Ship,
     trials: &[RecordedTrial<'_>],
     settings: &ReplaySettings,
-) -> Result<Vec<TrialReplay>, MissingChannel> {
+) -> Result<Vec<TrialReplay>, MissingInput> {
     let records = trials
         .iter()
         .map(|recorded| TrialRecord::new(ship, recorded.trial))

@@ -32,10 +32,9 @@ impl CorrectedLaw {
     /// Accelerations that the correction adds at each sample of a trial, m/s2 (rad/s2).
     ///
     /// # Errors
-    /// Returns an error that names the missing channel.
+    /// Returns an error that names the missing channel or input.
     pub fn additions_along(&self, trial: &Trial) -> Result<AddedAccelerations, RefineError> {
-        let instants = instants_along(&self.foundation, trial)
-            .map_err(|lacks| RefineError::Channel { trial: lacks.trial, channel: lacks.channel })?;
+        let instants = instants_along(&self.foundation, trial)?;
         Ok(AddedAccelerations(instants.iter().map(|at| self.learned.rate_additions(at)).collect()))
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use sistership_model::Model;
 use sistership_model::trial::Channel;
+use sistership_model::trial_input::MissingInput;
 use sistership_simulation::PlantError;
 use sistership_simulation::manoeuvre::{NamedFigure, StandardManoeuvres};
 use sistership_simulation::metrics::ManoeuvreMetrics;
@@ -70,6 +71,15 @@ fn join_distinct<'a>(reasons: impl Iterator<Item = &'a str>) -> String {
         }
     }
     told.join("; ")
+}
+
+impl From<MissingInput> for RefineError {
+    fn from(error: MissingInput) -> Self {
+        match error {
+            MissingInput::Channel { trial, channel } => Self::Channel { trial, channel },
+            MissingInput::Unrecordable(_) => Self::Law(error.to_string()),
+        }
+    }
 }
 
 impl From<UnknownParameter> for RefineError {

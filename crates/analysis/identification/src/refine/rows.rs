@@ -1,8 +1,10 @@
 //! Sufficient statistics of each regression from a trial: one-step differences against regressors.
 
+use std::borrow::Cow;
+
 use sistership_model::coefficient::Axis;
-use sistership_model::effect::input_channel;
 use sistership_model::trial::{Channel, Trial};
+use sistership_model::trial_input::{TrialInput, find_input};
 use sistership_simulation::tape::{LaneValues, TapeResults};
 
 use super::blocks::{RegressionBlock, RegressionBlocks};
@@ -109,8 +111,8 @@ fn difference_pairs(trial: &Trial, difference_s: Option<f64>) -> Vec<(usize, usi
 /// The channels of a trial that regressions read.
 pub(super) struct RegressionRecord<'a> {
     t_s: &'a [f64],
-    /// Inputs of the tape: a recorded column (`Ok`) or a constant (`Err`).
-    pub(super) columns: Vec<Result<&'a [f64], f64>>,
+    /// Inputs of the tape.
+    pub(super) columns: Vec<TrialInput<'a>>,
     /// Velocities by axis.
     velocities: [Option<&'a [f64]>; 4],
 }
@@ -119,31 +121,24 @@ impl<'a> RegressionRecord<'a> {
     /// Reads the channels that the regressions of a law need: velocities always, roll for laws with
     /// roll, inputs as recorded or at their defaults.
     pub(super) fn new(blocks: &RegressionBlocks, trial: &'a Trial) -> Result<Self, RefineError> {
-        let missing =
-            |channel: Channel| RefineError::Channel { trial: trial.name.clone(), channel };
-        let need = |channel: Channel| trial.channel(channel).ok_or_else(|| missing(channel));
+        let need = |channel: Channel| {
+            trial
+                .channel(channel)
+                .ok_or_else(|| RefineError::Channel { trial: trial.name.clone(), channel })
+        };
+        let recorded = |column: &'a [f64]| TrialInput::Samples(Cow::Borrowed(column));
+        let mut columns = vec![
+            recorded(need(Channel::U)?),
+            recorded(need(Channel::V)?),
+            recorded(need(Channel::R)?),
+        ];
         // Roll and heading are zero where a law does not need them; laws with roll check them
         // below.
-        let or_zero = |channel: Channel| trial.channel(channel).ok_or(0.0);
-        let mut columns = vec![Ok(need(Channel::U)?), Ok(need(Channel::V)?), Ok(need(Channel::R)?)];
+        let or_zero =
+            |channel: Channel| trial.channel(channel).map_or(TrialInput::Constant(0.0), recorded);
         columns.extend([Channel::P, Channel::Phi, Channel::Psi].map(or_zero));
         for (name, default) in &blocks.inputs {
-            let channel = input_channel(name);
-            let recorded = channel.and_then(|channel| trial.channel(channel));
-            // The depth is a property of the whole trial, not a channel.
-            let constant =
-                if channel == Some(Channel::Depth) { trial.depth_m.or(*default) } else { *default };
-            // A recorded channel has priority over the depth of the trial and over the default.
-            columns.push(match (recorded, constant, channel) {
-                (Some(column), ..) => Ok(column),
-                (None, Some(value), _) => Err(value),
-                (None, None, Some(channel)) => return Err(missing(channel)),
-                (None, None, None) => {
-                    return Err(RefineError::Law(format!(
-                        "no trial can record the input `{name}`"
-                    )));
-                }
-            });
+            columns.push(find_input(trial, name, *default)?);
         }
         let roll = blocks.blocks.iter().any(|block| block.columns.contains(&Axis::K));
         if roll {
@@ -161,7 +156,10 @@ impl<'a> RegressionRecord<'a> {
         for (lane, column) in lanes.iter_mut().zip(&self.columns) {
             *lane = std::array::from_fn(|i| {
                 let (k, _) = chunk[i.min(chunk.len() - 1)];
-                column.as_ref().map_or_else(|constant| *constant, |column| column[k])
+                match column {
+                    TrialInput::Samples(samples) => samples[k],
+                    TrialInput::Constant(value) => *value,
+                }
             });
         }
     }

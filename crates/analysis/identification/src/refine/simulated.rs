@@ -143,8 +143,7 @@ fn replay_runs(
         .collect();
     let settings = ReplaySettings { restart_s, step_s, ..ReplaySettings::default() };
     let together = |some: &[RecordedTrial<'_>]| {
-        replay_trials(&ship, some, &settings)
-            .map_err(|e| RefineError::Channel { trial: e.trial, channel: e.channel })
+        replay_trials(&ship, some, &settings).map_err(RefineError::from)
     };
     let runs: Vec<Vec<TrialReplay>> =
         // Chunks are simulated in parallel and keep their order.

@@ -1,13 +1,13 @@
 //! Errors of learning and prediction over a horizon.
 
-use sistership_simulation::recorded::MissingChannel;
+use sistership_model::trial_input::MissingInput;
 
 /// Error of learning or prediction over a horizon.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum HorizonError {
-    /// A channel is missing.
+    /// A channel or an input of the law is missing.
     #[error(transparent)]
-    Channel(#[from] MissingChannel),
+    Input(#[from] MissingInput),
     /// A recorded value, or the foundation's track from there, is not a finite number.
     #[error("trial `{trial}`, {t_s} s: what was recorded or the foundation's track is no number")]
     NotANumber {

@@ -1,8 +1,9 @@
 //! Correction of a recorded trial for known errors of the instruments.
 
 use sistership_model::trial::Trial;
+use sistership_model::trial_input::MissingInput;
 
-use super::record::{MissingChannel, TrialRecord};
+use super::record::TrialRecord;
 use crate::plant::PlantWorkspace;
 use crate::ship::Ship;
 use crate::state::RECORDED_CHANNELS;
@@ -13,7 +14,7 @@ use crate::state::RECORDED_CHANNELS;
 ///
 /// # Errors
 /// The errors of [`replay`](super::replay).
-pub fn correct_instrument_errors(ship: &Ship, trial: &Trial) -> Result<Trial, MissingChannel> {
+pub fn correct_instrument_errors(ship: &Ship, trial: &Trial) -> Result<Trial, MissingInput> {
     let record = TrialRecord::new(ship, trial)?;
     let (mut truth, mut work) = (trial.clone(), PlantWorkspace::default());
     for sample in 0..trial.len() {

@@ -1,8 +1,9 @@
 //! Rates of change that a model gives along a recorded trial.
 
 use sistership_model::trial::Trial;
+use sistership_model::trial_input::MissingInput;
 
-use super::record::{MissingChannel, TrialRecord};
+use super::record::TrialRecord;
 use crate::branch::CorrectionInstant;
 use crate::plant::PlantWorkspace;
 use crate::ship::Ship;
@@ -12,10 +13,7 @@ use crate::ship::Ship;
 ///
 /// # Errors
 /// The errors of [`replay`](super::replay).
-pub fn instants_along(
-    ship: &Ship,
-    trial: &Trial,
-) -> Result<Vec<CorrectionInstant>, MissingChannel> {
+pub fn instants_along(ship: &Ship, trial: &Trial) -> Result<Vec<CorrectionInstant>, MissingInput> {
     let record = TrialRecord::new(ship, trial)?;
     let mut work = PlantWorkspace::default();
     let mut at_sample = |sample: usize| {

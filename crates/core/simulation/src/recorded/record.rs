@@ -1,22 +1,12 @@
 //! Channels of a trial in the form that a simulation reads.
 
-use sistership_model::effect::{TIME_INPUT, input_channel};
 use sistership_model::trial::{Channel, Trial};
+use sistership_model::trial_input::{MissingInput, TrialInput, find_input};
 
 use crate::interpolate::{MonotoneCubic, apply_dead_band, apply_lag};
 use crate::plant::{LawInputs, MAX_INPUTS};
 use crate::ship::Ship;
 use crate::state::{RECORDED_CHANNELS, StateVector, at};
-
-/// Error of a trial that cannot be simulated.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("trial `{trial}` has no channel `{channel}`, which the simulation needs")]
-pub struct MissingChannel {
-    /// The trial.
-    pub trial: String,
-    /// The missing channel.
-    pub channel: Channel,
-}
 
 /// Channels of a trial that a simulation reads.
 pub struct TrialRecord<'a> {
@@ -29,11 +19,11 @@ pub struct TrialRecord<'a> {
 }
 
 impl<'a> TrialRecord<'a> {
-    pub fn new(ship: &Ship, trial: &'a Trial) -> Result<Self, MissingChannel> {
+    pub fn new(ship: &Ship, trial: &'a Trial) -> Result<Self, MissingInput> {
         let need = |channel| {
             trial
                 .channel(channel)
-                .ok_or_else(|| MissingChannel { trial: trial.name.clone(), channel })
+                .ok_or_else(|| MissingInput::Channel { trial: trial.name.clone(), channel })
         };
         // Velocities must be known at the start of a part; heading and position start at zero if
         // they were not recorded.
@@ -80,40 +70,48 @@ impl<'a> TrialRecord<'a> {
     }
 }
 
-/// Returns an input of the law on a trial: time, its channel, the trial's constant depth, or the
-/// law's default.
+/// Returns an input of the law on a trial as the ship follows it: samples after its lag and dead
+/// band, or a constant.
 fn law_input<'a>(
     trial: &'a Trial,
     name: &str,
     default: Option<f64>,
     (lag_s, band): (f64, f64),
-) -> Result<Result<MonotoneCubic<'a>, f64>, MissingChannel> {
-    if name == TIME_INPUT {
-        // Time counts from the first sample of the trial.
-        let start = trial.t_s.first().copied().unwrap_or_default();
-        return Ok(Ok(MonotoneCubic::new(
-            &trial.t_s,
-            trial.t_s.iter().map(|t| t - start).collect::<Vec<f64>>(),
-        )));
-    }
-    let channel = input_channel(name);
-    if let Some(column) = channel.and_then(|channel| trial.channel(channel)) {
-        // The lag acts before the dead band.
-        let late = (lag_s > 0.0).then(|| apply_lag(&trial.t_s, column, lag_s));
-        let held = (band > 0.0).then(|| apply_dead_band(late.as_deref().unwrap_or(column), band));
-        return Ok(Ok(match held.or(late) {
-            Some(followed) => MonotoneCubic::new(&trial.t_s, followed),
-            None => MonotoneCubic::new(&trial.t_s, column),
-        }));
-    }
-    // Precedence: recorded channel, constant depth of the trial, default of the law.
-    let constant =
-        if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
-    match (constant, channel) {
-        (Some(value), _) => Ok(Err(value)),
-        (None, channel) => Err(MissingChannel {
-            trial: trial.name.clone(),
-            channel: channel.unwrap_or(Channel::Delta),
-        }),
+) -> Result<Result<MonotoneCubic<'a>, f64>, MissingInput> {
+    let column = match find_input(trial, name, default)? {
+        TrialInput::Samples(column) => column,
+        TrialInput::Constant(value) => return Ok(Err(value)),
+    };
+    // The lag acts before the dead band.
+    let late = (lag_s > 0.0).then(|| apply_lag(&trial.t_s, &column, lag_s));
+    let held = (band > 0.0).then(|| apply_dead_band(late.as_deref().unwrap_or(&column), band));
+    Ok(Ok(match held.or(late) {
+        Some(followed) => MonotoneCubic::new(&trial.t_s, followed),
+        None => MonotoneCubic::new(&trial.t_s, column),
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_formula::units::Dimension;
+    use sistership_model::Zoo;
+    use sistership_model::law::LawInput;
+
+    use super::*;
+
+    #[test]
+    fn an_input_that_no_trial_can_record_is_not_reported_as_the_rudder() {
+        let zoo = Zoo::load_embedded().unwrap();
+        let model = zoo.find_model("mariner").unwrap();
+        let mut law = zoo.law(&model.law).unwrap().as_ref().clone();
+        law.inputs.insert("ballast".into(), LawInput { dimension: Dimension::NONE, default: None });
+        let ship = Ship::new(&model, &law).unwrap();
+        let mut trial = Trial { t_s: vec![0.0, 1.0], ..Trial::default() };
+        for channel in Channel::all_channels() {
+            trial.channels.insert(channel, vec![0.0; 2]);
+        }
+        let missing = TrialRecord::new(&ship, &trial).err();
+        assert_eq!(missing, Some(MissingInput::Unrecordable("ballast".into())));
     }
 }

@@ -1,10 +1,12 @@
 //! Segments of trials: initial states, inputs along them, and the measured states.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use sistership_model::effect::input_channel;
 use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
+use sistership_model::trial_input::{MissingInput, TrialInput, find_input};
 use sistership_simulation::error::wrap_angle;
 use sistership_simulation::interpolate::MonotoneCubic;
 use sistership_simulation::state::{RECORDED_CHANNELS, StateVector, at};
@@ -52,7 +54,7 @@ pub(in super::super) struct ComparisonPlan {
 /// Divides trials into segments; a rest of at least a third of a segment is kept.
 ///
 /// # Errors
-/// Returns an error with the channel that a trial lacks.
+/// Returns an error with the channel that a trial lacks, or the input that none can record.
 pub(in super::super) fn divide_into_segments(
     trials: &[&Trial],
     law: &Law,
@@ -94,7 +96,20 @@ struct SegmentRecord<'a> {
 /// An input of a segment.
 enum SegmentInput<'a> {
     Constant(f64),
-    Recorded { column: &'a [f64], cubic: MonotoneCubic<'a>, angle: bool },
+    Recorded { column: Cow<'a, [f64]>, cubic: MonotoneCubic<'a>, angle: bool },
+}
+
+impl<'a> SegmentInput<'a> {
+    fn new(trial: &'a Trial, law: &Law, name: &str) -> Result<Self, MissingInput> {
+        let default = law.inputs.get(name).and_then(|input| input.default);
+        let column = match find_input(trial, name, default)? {
+            TrialInput::Samples(column) => column,
+            TrialInput::Constant(value) => return Ok(Self::Constant(value)),
+        };
+        let cubic = MonotoneCubic::new(&trial.t_s, column.clone());
+        let angle = input_channel(name) == Some(Channel::WindFrom);
+        Ok(Self::Recorded { column, cubic, angle })
+    }
 }
 
 impl<'a> SegmentRecord<'a> {
@@ -103,30 +118,11 @@ impl<'a> SegmentRecord<'a> {
         law: &Law,
         input_names: &[String],
         plan: &'a ComparisonPlan,
-    ) -> Result<Self, RefineError> {
-        let input = |name: &String| {
-            let channel = input_channel(name);
-            if let Some((channel, column)) =
-                channel.and_then(|channel| Some((channel, trial.channel(channel)?)))
-            {
-                let cubic = MonotoneCubic::new(&trial.t_s, column);
-                return Ok(SegmentInput::Recorded {
-                    column,
-                    cubic,
-                    angle: channel == Channel::WindFrom,
-                });
-            }
-            let default = law.inputs.get(name.as_str()).and_then(|input| input.default);
-            let constant =
-                if channel == Some(Channel::Depth) { trial.depth_m.or(default) } else { default };
-            // An input without a channel of its own is reported as the rudder.
-            let missing = || RefineError::Channel {
-                trial: trial.name.clone(),
-                channel: channel.unwrap_or(Channel::Delta),
-            };
-            constant.map(SegmentInput::Constant).ok_or_else(missing)
-        };
-        let inputs = input_names.iter().map(input).collect::<Result<_, _>>()?;
+    ) -> Result<Self, MissingInput> {
+        let inputs = input_names
+            .iter()
+            .map(|name| SegmentInput::new(trial, law, name))
+            .collect::<Result<_, _>>()?;
         let states: Vec<(usize, &[f64])> = RECORDED_CHANNELS
             .iter()
             .filter_map(|&(c, place)| Some((place, trial.channel(c)?)))
@@ -241,4 +237,28 @@ pub(in super::super) fn compared_states(
 /// circle.
 pub(super) fn state_difference(place: usize, simulated: f64, measured: f64) -> f64 {
     if place == at::PSI { wrap_angle(simulated - measured) } else { simulated - measured }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_formula::units::Dimension;
+    use sistership_model::law::LawInput;
+
+    use super::*;
+    use crate::testing::{mariner_model, simulated_trials};
+
+    #[test]
+    fn an_input_that_no_trial_can_record_is_not_reported_as_the_rudder() {
+        let (model, law) = mariner_model();
+        let trials = simulated_trials(&model, &law, 0.0);
+        let mut law = law.as_ref().clone();
+        law.inputs.insert("ballast".into(), LawInput { dimension: Dimension::NONE, default: None });
+        let names: Vec<String> = law.inputs.keys().cloned().collect();
+        let cut = SegmentLengths { segment_s: 60.0, residual_s: 5.0, step_s: 1.0 };
+        let plan = ComparisonPlan { compared: Vec::new(), stride: 5, step_s: 1.0 };
+        let divided = divide_into_segments(&[&trials[0]], &law, &names, cut, &plan);
+        let Err(RefineError::Law(message)) = divided else { panic!("{divided:?}") };
+        assert!(message.contains("`ballast`"), "{message}");
+    }
 }
