@@ -322,42 +322,141 @@ impl CorrectionRecipe {
     }
 }
 
+/// Check of one setting of a learner.
+struct SettingCheck {
+    holds: bool,
+    field: &'static str,
+    /// The permitted range.
+    range: &'static str,
+}
+
+impl SettingCheck {
+    fn new(holds: bool, field: &'static str, range: &'static str) -> Self {
+        Self { holds, field, range }
+    }
+
+    fn tree_count(trees: usize) -> Self {
+        Self::new((1..=1000).contains(&trees), "learner.trees", "should be from 1 to 1000")
+    }
+
+    fn leaf_size(leaf: usize) -> Self {
+        Self::new((1..=1 << 20).contains(&leaf), "learner.leaf", "should be from 1 to 1048576")
+    }
+
+    fn tree_depth(depth: usize) -> Self {
+        Self::new((1..=30).contains(&depth), "learner.depth", "should be from 1 to 30")
+    }
+
+    /// A number above 0, at most 1.
+    fn share(value: f64, field: &'static str) -> Self {
+        Self::new(value > 0.0 && value <= 1.0, field, "should be above 0 and at most 1")
+    }
+
+    fn positive(value: f64, field: &'static str) -> Self {
+        Self::new(value > 0.0 && value.is_finite(), field, "should be a finite number above 0")
+    }
+}
+
 impl Learner {
     /// Returns the first setting that is out of range, with the permitted range.
     fn first_invalid_setting(&self) -> Option<(&'static str, &'static str)> {
-        let few = |n: usize, most: usize| (1..=most).contains(&n);
-        let share = |x: f64| x > 0.0 && x <= 1.0;
-        let wrong = match self {
-            Self::RandomForest { trees, tried, leaf, depth } => [
-                (few(*trees, 1000), "learner.trees", "should be from 1 to 1000"),
-                (few(*leaf, 1 << 20), "learner.leaf", "should be at least 1"),
-                (few(*depth, 30), "learner.depth", "should be from 1 to 30"),
-                (few(*tried, 16), "learner.tried", "should be from 1 to 16"),
+        let invalid = self.setting_checks().into_iter().find(|check| !check.holds)?;
+        Some((invalid.field, invalid.range))
+    }
+
+    /// Checks of all settings, each under its own field.
+    fn setting_checks(&self) -> Vec<SettingCheck> {
+        match self {
+            Self::RandomForest { trees, tried, leaf, depth } => vec![
+                SettingCheck::tree_count(*trees),
+                SettingCheck::leaf_size(*leaf),
+                SettingCheck::tree_depth(*depth),
+                SettingCheck::new(
+                    (1..=16).contains(tried),
+                    "learner.tried",
+                    "should be from 1 to 16",
+                ),
             ],
-            Self::BoostedTrees { trees, leaf, depth, rate, sampled } => [
-                (few(*trees, 1000), "learner.trees", "should be from 1 to 1000"),
-                (few(*leaf, 1 << 20), "learner.leaf", "should be at least 1"),
-                (few(*depth, 30), "learner.depth", "should be from 1 to 30"),
-                (share(*rate) && share(*sampled), "learner.rate", "rate, sampled: up to 1"),
+            Self::BoostedTrees { trees, leaf, depth, rate, sampled } => vec![
+                SettingCheck::tree_count(*trees),
+                SettingCheck::leaf_size(*leaf),
+                SettingCheck::tree_depth(*depth),
+                SettingCheck::share(*rate, "learner.rate"),
+                SettingCheck::share(*sampled, "learner.sampled"),
             ],
-            Self::KernelRidge { centres, length, ridge } => [
-                (few(*centres, 2000), "learner.centres", "should be from 1 to 2000"),
-                (*length > 0.0 && length.is_finite(), "learner.length", "should be above 0"),
-                (*ridge > 0.0 && ridge.is_finite(), "learner.ridge", "should be above 0"),
-                // Fills the array to the length of the others.
-                (true, "", ""),
+            Self::KernelRidge { centres, length, ridge } => vec![
+                SettingCheck::new(
+                    (1..=2000).contains(centres),
+                    "learner.centres",
+                    "should be from 1 to 2000",
+                ),
+                SettingCheck::positive(*length, "learner.length"),
+                SettingCheck::positive(*ridge, "learner.ridge"),
             ],
-            Self::Perceptron { hidden, epochs, batch, rate, decay } => [
-                (
-                    few(hidden.len(), 4) && hidden.iter().all(|width| few(*width, 256)),
+            Self::Perceptron { hidden, epochs, batch, rate, decay } => vec![
+                SettingCheck::new(
+                    (1..=4).contains(&hidden.len())
+                        && hidden.iter().all(|width| (1..=256).contains(width)),
                     "learner.hidden",
                     "give one to four layers of 1 to 256 neurons",
                 ),
-                (few(*epochs, 10_000), "learner.epochs", "should be from 1 to 10000"),
-                (few(*batch, 1 << 16), "learner.batch", "should be from 1 to 65536"),
-                (share(*rate) && (0.0..=1.0).contains(decay), "learner.rate", "up to 1"),
+                SettingCheck::new(
+                    (1..=10_000).contains(epochs),
+                    "learner.epochs",
+                    "should be from 1 to 10000",
+                ),
+                SettingCheck::new(
+                    (1..=1 << 16).contains(batch),
+                    "learner.batch",
+                    "should be from 1 to 65536",
+                ),
+                SettingCheck::share(*rate, "learner.rate"),
+                SettingCheck::new(
+                    (0.0..=1.0).contains(decay),
+                    "learner.decay",
+                    "should be from 0 to 1",
+                ),
             ],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn invalid_field(learner: &Learner) -> Option<&'static str> {
+        learner.first_invalid_setting().map(|(field, _)| field)
+    }
+
+    #[test]
+    fn a_setting_out_of_range_is_reported_under_its_own_field() {
+        let boosted = |rate: f64, sampled: f64| Learner::BoostedTrees {
+            trees: 10,
+            leaf: 5,
+            depth: 3,
+            rate,
+            sampled,
         };
-        wrong.into_iter().find(|(holds, ..)| !holds).map(|(_, field, reason)| (field, reason))
+        assert_eq!(invalid_field(&boosted(0.05, 0.5)), None);
+        assert_eq!(invalid_field(&boosted(0.05, 1.5)), Some("learner.sampled"));
+        assert_eq!(invalid_field(&boosted(f64::NAN, 0.5)), Some("learner.rate"));
+        let perceptron = |rate: f64, decay: f64| Learner::Perceptron {
+            hidden: vec![8],
+            epochs: 10,
+            batch: 16,
+            rate,
+            decay,
+        };
+        assert_eq!(invalid_field(&perceptron(0.01, 0.0)), None);
+        assert_eq!(invalid_field(&perceptron(0.01, -0.1)), Some("learner.decay"));
+        assert_eq!(invalid_field(&perceptron(0.0, 0.0)), Some("learner.rate"));
+    }
+
+    #[test]
+    fn the_range_has_both_ends() {
+        let forest = Learner::RandomForest { trees: 10, tried: 2, leaf: (1 << 20) + 1, depth: 3 };
+        let range = forest.first_invalid_setting();
+        assert_eq!(range, Some(("learner.leaf", "should be from 1 to 1048576")));
     }
 }
