@@ -1,4 +1,9 @@
 //! Lowering of formulas to the tape: constant folding and shared subexpressions.
+//!
+//! A factor or numerator that is a constant 0 removes its term, whatever the other operand is: an
+//! effect without strength adds nothing in deep water either, where `0 * depth` would be no number,
+//! and a derivative keeps no terms of factors that are constant. [`Expr::value`] follows IEEE 754
+//! instead; it differs for operands that are infinite, not a number, or a denominator of 0.
 
 use std::collections::HashMap;
 
@@ -242,7 +247,7 @@ impl<'a> TapeBuilder<'a> {
     }
 
     /// Returns the operand to which an operation reduces: `x * 1`, `x + 0`, `x / 1` are the operand
-    /// itself; `x * 0` and `0 / x` are zero.
+    /// itself; `x * 0` and `0 / x` are zero for every `x`: the term is absent.
     fn neutral_result(&self, op: TapeOp) -> Option<ResultSlot> {
         let is = |slot: ResultSlot, value: f64| self.constant_value(slot) == Some(value);
         match op {
@@ -266,5 +271,33 @@ impl<'a> TapeBuilder<'a> {
             }
         }
         Some(op.apply_values(values))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_formula::parse;
+
+    use super::super::testing::parse_tape;
+
+    #[test]
+    fn a_constant_zero_removes_its_term_whatever_the_other_operand_is() {
+        for text in ["0*u + v", "u*0 + v", "0/u + v"] {
+            let (tape, expr) = (parse_tape(text), parse(text).unwrap());
+            for u in [2.0, 0.0, f64::INFINITY, f64::NAN] {
+                assert_eq!(tape.evaluate_point(&[u, 3.0])[0], 3.0, "{text} at {u}");
+            }
+            // By IEEE 754 the term is no number there.
+            let at = |name: &str| Some(if name == "u" { f64::NAN } else { 3.0 });
+            assert!(expr.value(&at).unwrap().is_nan(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_zero_that_is_not_constant_follows_ieee_754() {
+        let tape = parse_tape("u*v");
+        assert!(tape.evaluate_point(&[0.0, f64::INFINITY])[0].is_nan());
+        assert!(parse_tape("u/v").evaluate_point(&[0.0, 0.0])[0].is_nan());
     }
 }
