@@ -46,15 +46,8 @@ impl Exclusion {
 
     /// Adds the rows of another exclusion.
     pub(crate) fn add_rows(&mut self, other: &Self) {
-        // Merged row by row, since ranges of both may overlap.
-        let mut rows: Vec<u32> = [self, other]
-            .iter()
-            .filter_map(|one| one.rows.as_ref())
-            .flat_map(|rows| rows.0.iter().cloned().flatten())
-            .collect();
-        rows.sort_unstable();
-        rows.dedup();
-        self.rows = Some(RowRanges::from_rows(rows));
+        let ranges = [&self.rows, &other.rows].into_iter().flatten();
+        self.rows = Some(RowRanges::merge(ranges.flat_map(|rows| rows.0.iter().cloned())));
     }
 
     /// Returns the number of excluded values in words: `43 values of psi: spikes`.
@@ -120,14 +113,26 @@ impl fmt::Display for RowRanges {
 impl RowRanges {
     /// Returns the ranges of rows in ascending order.
     pub fn from_rows(rows: impl IntoIterator<Item = u32>) -> Self {
-        let mut ranges: Vec<RangeInclusive<u32>> = Vec::new();
-        for row in rows {
-            match ranges.last_mut().filter(|last| *last.end() + 1 == row) {
-                Some(last) => *last = *last.start()..=row,
-                None => ranges.push(row..=row),
+        Self::merge(rows.into_iter().map(|row| row..=row))
+    }
+
+    /// Merges ranges that overlap or follow each other. Rows are not counted one by one: a manifest
+    /// may name four billion.
+    fn merge(ranges: impl IntoIterator<Item = RangeInclusive<u32>>) -> Self {
+        let mut sorted: Vec<RangeInclusive<u32>> = ranges.into_iter().collect();
+        sorted.sort_unstable_by_key(|range| *range.start());
+        let mut merged: Vec<RangeInclusive<u32>> = Vec::new();
+        for range in sorted {
+            // The last row that can be written has none after it.
+            let continues = |last: &RangeInclusive<u32>| {
+                last.end().checked_add(1).is_none_or(|next| *range.start() <= next)
+            };
+            match merged.last_mut().filter(|last| continues(last)) {
+                Some(last) => *last = *last.start()..=*last.end().max(range.end()),
+                None => merged.push(range),
             }
         }
-        Self(ranges)
+        Self(merged)
     }
 
     /// Returns the number of rows.
@@ -183,8 +188,11 @@ fn excluded_samples(
 ) -> Result<Vec<std::ops::Range<usize>>, String> {
     if let Some(rows) = &exclusion.rows {
         // Row numbers of the file ascend, but rows may be missing: search instead of indexing.
-        let at = |row: u32| table.rows.partition_point(|&known| known < row);
-        return Ok(rows.0.iter().map(|range| at(*range.start())..at(range.end() + 1)).collect());
+        let samples = |range: &RangeInclusive<u32>| {
+            let first = table.rows.partition_point(|known| known < range.start());
+            first..table.rows.partition_point(|known| known <= range.end())
+        };
+        return Ok(rows.0.iter().map(samples).collect());
     }
     let stretch = FileSegment { from: exclusion.from.clone(), to: exclusion.to.clone() };
     let window = stretch.time_window(table.start.as_ref()).map_err(|fault| fault.to_string())?;
@@ -231,19 +239,38 @@ mod tests {
         assert!(RowRanges::try_from("5-3".to_owned()).unwrap_err().contains("204-209"));
     }
 
-    #[test]
-    fn values_become_gaps_and_rows_go() {
-        let mut one = test_table(&[(Channel::U, vec![1.0; 6]), (Channel::Psi, vec![0.0; 6])]);
-        let row = |k: usize| one.rows[k];
-        let rows = [RowRanges::from_rows([row(1)]), RowRanges::from_rows([row(4), row(5)])];
-        let exclusion = |channel: Option<&str>, rows: &RowRanges| Exclusion {
+    fn exclusion(channel: Option<&str>, rows: &RowRanges) -> Exclusion {
+        Exclusion {
             file: "a".into(),
             channel: channel.map(str::to_owned),
             rows: Some(rows.clone()),
             from: None,
             to: None,
             why: "spikes".into(),
-        };
+        }
+    }
+
+    #[test]
+    fn the_last_row_that_can_be_written_excludes_all_after_the_first() {
+        let mut one = test_table(&[(Channel::U, vec![1.0; 6])]);
+        let rows = RowRanges(vec![one.rows[1]..=u32::MAX]);
+        apply_exclusions(&mut one, &[exclusion(None, &rows)], &mut Findings::default());
+        assert_eq!(one.rows.len(), 1);
+    }
+
+    #[test]
+    fn added_rows_are_merged_by_ranges() {
+        let mut all = exclusion(None, &RowRanges(vec![5..=u32::MAX, 1..=2]));
+        all.add_rows(&exclusion(None, &RowRanges(vec![3..=3, 9..=12, u32::MAX..=u32::MAX])));
+        assert_eq!(all.rows, Some(RowRanges(vec![1..=3, 5..=u32::MAX])));
+        assert_eq!(RowRanges::from_rows([7, 3, 4, 4]).to_string(), "3-4, 7");
+    }
+
+    #[test]
+    fn values_become_gaps_and_rows_go() {
+        let mut one = test_table(&[(Channel::U, vec![1.0; 6]), (Channel::Psi, vec![0.0; 6])]);
+        let row = |k: usize| one.rows[k];
+        let rows = [RowRanges::from_rows([row(1)]), RowRanges::from_rows([row(4), row(5)])];
         let all = [exclusion(Some("psi"), &rows[0]), exclusion(None, &rows[1])];
         let mut findings = Findings::default();
         apply_exclusions(&mut one, &all, &mut findings);
