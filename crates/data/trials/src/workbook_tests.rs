@@ -73,6 +73,10 @@ fn what_would_fill_the_memory_is_refused_before_it_is_opened() {
     let canonical = Mapping::with_canonical_names();
     let huge = STRINGS.replace("\"2\"", "\"99999999999\"");
     assert!(run(book(&huge, ROWS), &canonical).1.contains("announces 99999999999 strings"));
+    // The blanks reach from one piece that is unpacked into the next.
+    let blanks = " ".repeat(100_000);
+    let spread = STRINGS.replace("uniqueCount=\"2\"", &format!("uniqueCount{blanks}=\"5000000\""));
+    assert!(run(book(&spread, ROWS), &canonical).1.contains("announces 5000000 strings"));
     let mut mapping = Mapping::with_canonical_names();
     mapping.limits.unpacked_bytes = 100_000;
     let bomb = " ".repeat(200_000);

@@ -4,16 +4,13 @@ use std::io::{Read, Seek};
 
 use zip::ZipArchive;
 
+use super::announced_strings::AnnouncedStrings;
+
 /// Largest number of files in an archive.
 const FILES: usize = 10_000;
 /// Largest number of unpacked bytes of styles; a reader builds a large description from each few of
 /// them.
 const STYLES: u64 = 2 << 20;
-/// Largest number of strings that a workbook may announce, since memory for them is allocated at
-/// once.
-const STRINGS: u64 = 4_000_000;
-/// XML attribute that announces the number of strings.
-const ANNOUNCES: &[u8] = b"uniqueCount";
 /// Number of bytes that are unpacked at a time.
 const PIECE: usize = 64 << 10;
 
@@ -58,11 +55,10 @@ pub fn check_archive(input: &mut (impl Read + Seek), most: u64) -> Result<(), St
 
 /// Returns the number of unpacked bytes of a file.
 fn count_unpacked(file: &mut impl Read, bound: u64, is_text: bool) -> Result<u64, String> {
-    let (mut piece, mut kept, mut bytes) = (vec![0; PIECE], 0, 0);
+    let (mut buffer, mut bytes) = (vec![0; PIECE], 0);
+    let mut announced = AnnouncedStrings::default();
     loop {
-        // The end of the previous piece is kept in front, so that an attribute across two pieces is
-        // found.
-        let read = file.read(&mut piece[kept..]).map_err(|error| error.to_string())?;
+        let read = file.read(&mut buffer).map_err(|error| error.to_string())?;
         bytes += read as u64;
         if bytes > bound {
             return Err(format!("more than the {bound} unpacked bytes that are read"));
@@ -70,35 +66,16 @@ fn count_unpacked(file: &mut impl Read, bound: u64, is_text: bool) -> Result<u64
         if read == 0 {
             return Ok(bytes);
         }
-        let text = &piece[..kept + read];
         if is_text {
-            check_text(text)?;
+            check_characters(&buffer[..read])?;
+            announced.read_piece(&buffer[..read])?;
         }
-        let keep = text.len().min(64);
-        piece.copy_within(kept + read - keep..kept + read, 0);
-        kept = keep;
     }
 }
 
-/// Refuses XML that announces too many strings. Text with control bytes is refused first: XML in
-/// UTF-8 (or another encoding that contains ASCII) has none, and in other encodings the attribute
-/// could not be found.
-fn check_text(text: &[u8]) -> Result<(), String> {
-    if text.iter().any(|&byte| byte < b' ' && !matches!(byte, b'\t' | b'\n' | b'\r')) {
-        return Err("is not XML in UTF-8".into());
-    }
-    let announced =
-        text.windows(ANNOUNCES.len()).enumerate().filter(|(_, part)| *part == ANNOUNCES);
-    for (at, _) in announced {
-        let value = &text[at + ANNOUNCES.len()..];
-        let digits = value.iter().skip_while(|byte| !byte.is_ascii_digit()).take(20);
-        let count = digits.take_while(|byte| byte.is_ascii_digit());
-        let count = count.fold(0_u64, |n, byte| n.saturating_mul(10) + u64::from(byte - b'0'));
-        if count > STRINGS {
-            return Err(format!(
-                "announces {count} strings, more than the {STRINGS} that are read"
-            ));
-        }
-    }
-    Ok(())
+/// Refuses text with control bytes: XML in UTF-8 (or another encoding that contains ASCII) has none,
+/// and in other encodings the number of strings could not be found.
+fn check_characters(text: &[u8]) -> Result<(), String> {
+    let control = |byte: &u8| *byte < b' ' && !matches!(byte, b'\t' | b'\n' | b'\r');
+    if text.iter().any(control) { Err("is not XML in UTF-8".into()) } else { Ok(()) }
 }
