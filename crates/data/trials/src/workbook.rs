@@ -175,7 +175,8 @@ impl<'a, 'b> SheetLines<'a, 'b> {
         let Some((row, ..)) = self.next else { return Ok(None) };
         let (mut line, mut column) = (String::new(), 0);
         while let Some((_, at, text)) = self.next.take_if(|(of, ..)| *of == self.row) {
-            if at < column {
+            // Two texts at one position would be read as one.
+            if at < column || (at == column && !line.is_empty()) {
                 return Err(out_of_order(self.row));
             }
             line.extend(std::iter::repeat_n('\t', at - column));
@@ -199,7 +200,7 @@ impl<'a, 'b> SheetLines<'a, 'b> {
 }
 
 fn out_of_order(row: usize) -> io::Error {
-    let message = format!("cells of row {} are out of order", row + 1);
+    let message = format!("cells of row {} are out of order or repeated", row + 1);
     io::Error::new(io::ErrorKind::InvalidData, message)
 }
 

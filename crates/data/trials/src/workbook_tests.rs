@@ -88,6 +88,16 @@ fn what_would_fill_the_memory_is_refused_before_it_is_opened() {
 }
 
 #[test]
+fn a_cell_that_is_written_twice_is_refused() {
+    for column in ["A", "B"] {
+        let cell = |value: u32| format!(r#"<c r="{column}6"><v>{value}</v></c>"#);
+        let rows = format!(r#"{ROWS}<row r="6">{}{}</row>"#, cell(1), cell(2));
+        let (_, text) = run(book(STRINGS, &rows), &Mapping::with_canonical_names());
+        assert!(text.contains("cells of row 6 are out of order or repeated"), "{column}: {text}");
+    }
+}
+
+#[test]
 fn damaged_workbooks_are_errors() {
     let bytes = book(STRINGS, ROWS);
     for at in (0..bytes.len()).step_by(7) {
