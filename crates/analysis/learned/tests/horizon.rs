@@ -90,5 +90,30 @@ fn what_cannot_be_learned_from_is_refused() {
     assert_eq!(nan.unwrap_err(), wanted);
     trials[1].channels.remove(&Channel::Delta);
     let none = how(OrderEncoding::End, 1).trial_examples(Some(&foundation), &trials[1], 1);
-    assert!(matches!(none, Err(HorizonError::Channel(_))), "{none:?}");
+    assert!(matches!(none, Err(HorizonError::Input(_))), "{none:?}");
+}
+
+#[test]
+fn settings_out_of_range_are_refused_by_field() {
+    let good = training(RecurrentCell::Rnn);
+    let field = |training: HorizonTraining| training.check_settings().unwrap_err().field;
+    assert_eq!(good.check_settings(), Ok(()));
+    assert_eq!(field(HorizonTraining { batch: 0, ..good }), "batch");
+    assert_eq!(field(HorizonTraining { width: 0, ..good }), "width");
+    assert_eq!(field(HorizonTraining { rate: 2.0, ..good }), "rate");
+    let refused = train_predictor(&[], &[], &HorizonTraining { batch: 0, ..good }, None);
+    assert!(matches!(refused, Err(HorizonError::Setting(_))), "{refused:?}");
+    let field = |one_shot: OneShotSettings, hop: usize| match one_shot.trial_examples(
+        None,
+        &Trial::default(),
+        hop,
+    ) {
+        Err(HorizonError::Setting(error)) => Some(error.field),
+        _ => None,
+    };
+    assert_eq!(field(how(OrderEncoding::End, 1), 1), None);
+    assert_eq!(field(how(OrderEncoding::End, 1), 0), Some("hop"));
+    assert_eq!(field(how(OrderEncoding::End, 0), 1), Some("memory"));
+    assert_eq!(field(how(OrderEncoding::Orders { parts: 0 }, 1), 1), Some("parts"));
+    assert_eq!(field(how(OrderEncoding::Orders { parts: STEPS + 1 }, 1), 1), Some("parts"));
 }

@@ -2,9 +2,14 @@
 
 use sistership_model::trial_input::MissingInput;
 
+use crate::setting_error::SettingError;
+
 /// Error of learning or prediction over a horizon.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum HorizonError {
+    /// A setting is out of range.
+    #[error(transparent)]
+    Setting(#[from] SettingError),
     /// A channel or an input of the law is missing.
     #[error(transparent)]
     Input(#[from] MissingInput),

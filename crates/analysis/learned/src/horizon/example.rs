@@ -9,6 +9,7 @@ use super::ahead::predict_tracks;
 use super::axes::ShipAxes;
 use super::error::HorizonError;
 use super::inputs::{OrderEncoding, end_state, mean_orders, present_inputs};
+use crate::setting_error::SettingError;
 
 /// Settings of one-shot prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -53,17 +54,34 @@ impl TrackExample {
 }
 
 impl OneShotSettings {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// Returns the first setting that is out of range, with the permitted range.
+    pub fn check_settings(&self) -> Result<(), SettingError> {
+        let of_steps = "should be from 1 to 10000";
+        SettingError::unless((1..=10_000).contains(&self.steps), "steps", of_steps)?;
+        SettingError::unless(self.memory >= 1, "memory", "should be at least 1")?;
+        let divides = match self.told {
+            OrderEncoding::Orders { parts } => (1..=self.steps).contains(&parts),
+            OrderEncoding::End | OrderEncoding::Nothing => true,
+        };
+        SettingError::unless(divides, "parts", "should be from 1 to the number of `steps`")
+    }
+
     /// Returns the examples of a trial, one every `hop` samples, none across a gap. Without a
     /// foundation the encoding by its end state adds no inputs.
     ///
     /// # Errors
-    /// Returns the errors of the foundation's prediction.
+    /// Returns a setting that is out of range, or the errors of the foundation's prediction.
     pub fn trial_examples(
         &self,
         foundation: Option<&Ship>,
         trial: &Trial,
         hop: usize,
     ) -> Result<Vec<TrackExample>, HorizonError> {
+        self.check_settings()?;
+        SettingError::unless(hop >= 1, "hop", "should be at least 1")?;
         let mut all = Vec::new();
         for segment in trial.segments() {
             // Instants with a full horizon within the segment.
@@ -79,8 +97,8 @@ impl OneShotSettings {
                 .map(|(k, drawn)| self.input_row(trial, *k, drawn))
                 .collect::<Result<_, _>>()?;
             // At the start of a segment the memory is shorter: inputs do not cross a gap.
-            for place in (0..known.len()).step_by(hop.max(1)) {
-                let seen = (place + 1).saturating_sub(self.memory.max(1))..=place;
+            for place in (0..known.len()).step_by(hop) {
+                let seen = (place + 1).saturating_sub(self.memory)..=place;
                 let inputs = rows[seen].to_vec();
                 all.push(self.example_at(trial, known[place], inputs, &drawn[place]));
             }

@@ -11,6 +11,7 @@ use crate::draws::RandomStream;
 use crate::recurrent::{
     AdamOptimizer, NetworkMemory, NetworkShape, RecurrentCell, RecurrentNetwork,
 };
+use crate::setting_error::SettingError;
 
 /// Settings of the training of a predictor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -32,6 +33,19 @@ pub struct HorizonTraining {
     pub seed: u64,
 }
 
+impl HorizonTraining {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// Returns the first setting that is out of range, with the permitted range.
+    pub fn check_settings(&self) -> Result<(), SettingError> {
+        SettingError::check_width(self.width)?;
+        SettingError::check_epochs(self.epochs)?;
+        SettingError::check_batch(self.batch)?;
+        SettingError::check_rate(self.rate)
+    }
+}
+
 /// Smallest number of examples.
 const FEWEST: usize = 20;
 
@@ -45,13 +59,15 @@ struct ScaledExample {
 /// scaling (pre-training: Kanazawa 2023, sec. 3.3.1). The same arguments give the same bytes.
 ///
 /// # Errors
-/// Returns an error if there are too few examples, or if their sizes do not match.
+/// Returns an error if a setting is out of range, if there are too few examples, or if their sizes
+/// do not match.
 pub fn train_predictor(
     seen: &[TrackExample],
     kept: &[TrackExample],
     training: &HorizonTraining,
     start: Option<&TrackPredictor>,
 ) -> Result<TrackPredictor, HorizonError> {
+    training.check_settings()?;
     if seen.len() < FEWEST || kept.is_empty() {
         return Err(HorizonError::Few { found: seen.len().min(kept.len()), wanted: FEWEST });
     }
@@ -113,7 +129,7 @@ fn minimize_error(
     // The starting network counts as the best so far, so pre-training is never made worse.
     let (mut best, mut last_gain) = (mean_square(&network, kept), 0);
     for epoch in 1..=training.epochs {
-        for batch in draws.sample_indices(seen.len(), seen.len()).chunks(training.batch.max(1)) {
+        for batch in draws.sample_indices(seen.len(), seen.len()).chunks(training.batch) {
             let gradient = batch_gradient(&network, seen, batch);
             adam.apply_gradient(&mut network.numbers, &gradient, training.rate);
         }

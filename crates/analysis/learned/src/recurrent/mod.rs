@@ -6,6 +6,7 @@
 
 mod adam;
 mod cell;
+mod error;
 mod head;
 mod loss;
 mod loss_gradient;
@@ -20,6 +21,7 @@ mod windows;
 
 pub(crate) use adam::AdamOptimizer;
 pub use cell::RecurrentCell;
+pub use error::SequenceError;
 pub use motion::RecordedMotion;
 pub use network::{NetworkMemory, NetworkShape, RecurrentNetwork};
 pub use scales::MotionScales;

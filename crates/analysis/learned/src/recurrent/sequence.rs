@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::network::NetworkShape;
+use super::network::{NetworkMemory, NetworkShape};
+use crate::setting_error::SettingError;
 
 /// Loss that is minimised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,4 +36,76 @@ pub struct SequenceTraining {
     pub rate: f64,
     /// Seed of the random numbers.
     pub seed: u64,
+}
+
+impl SequenceTraining {
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// Returns the first setting that is out of range, with the permitted range.
+    pub fn check_settings(&self) -> Result<(), SettingError> {
+        let of_steps = "should be from 1 to 10000";
+        SettingError::unless((1..=10_000).contains(&self.steps), "steps", of_steps)?;
+        SettingError::unless(self.hop >= 1, "hop", "should be at least 1")?;
+        SettingError::check_epochs(self.epochs)?;
+        SettingError::check_batch(self.batch)?;
+        SettingError::check_rate(self.rate)?;
+        self.check_shape()
+    }
+
+    fn check_shape(&self) -> Result<(), SettingError> {
+        SettingError::check_width(self.shape.width)?;
+        let of_outputs = "should be 3, the accelerations of surge, sway and yaw";
+        SettingError::unless(self.shape.outputs == 3, "outputs", of_outputs)?;
+        // The last step of a sequence must be one that the network sees with a full memory.
+        let fits = match self.shape.memory {
+            NetworkMemory::Steps(steps) => (1..=self.steps).contains(&steps),
+            NetworkMemory::All => true,
+        };
+        SettingError::unless(fits, "memory", "should be `all`, or from 1 to the number of `steps`")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::cell::RecurrentCell;
+    use super::*;
+
+    fn training() -> SequenceTraining {
+        let (cell, memory) = (RecurrentCell::Rnn, NetworkMemory::Steps(3));
+        SequenceTraining {
+            shape: NetworkShape { cell, memory, inputs: 0, width: 4, outputs: 3 },
+            loss: LossKind::States,
+            steps: 12,
+            hop: 5,
+            epochs: 2,
+            batch: 4,
+            rate: 0.01,
+            seed: 3,
+        }
+    }
+
+    /// Field under which the changed settings are refused.
+    fn refused_field(change: impl Fn(&mut SequenceTraining)) -> Option<&'static str> {
+        let mut changed = training();
+        change(&mut changed);
+        changed.check_settings().err().map(|error| error.field)
+    }
+
+    #[test]
+    fn settings_out_of_range_are_refused_by_field() {
+        assert_eq!(training().check_settings(), Ok(()));
+        assert_eq!(refused_field(|one| one.batch = 0), Some("batch"));
+        assert_eq!(refused_field(|one| one.hop = 0), Some("hop"));
+        assert_eq!(refused_field(|one| one.steps = 0), Some("steps"));
+        assert_eq!(refused_field(|one| one.rate = f64::NAN), Some("rate"));
+        assert_eq!(refused_field(|one| one.epochs = 100_001), Some("epochs"));
+        assert_eq!(refused_field(|one| one.shape.width = 0), Some("width"));
+        assert_eq!(refused_field(|one| one.shape.outputs = 2), Some("outputs"));
+        for memory in [0, 13] {
+            let field = refused_field(|one| one.shape.memory = NetworkMemory::Steps(memory));
+            assert_eq!(field, Some("memory"), "{memory}");
+        }
+        assert_eq!(refused_field(|one| one.shape.memory = NetworkMemory::Steps(12)), None);
+    }
 }

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::adam::AdamOptimizer;
+use super::error::SequenceError;
 use super::loss::SequenceLoss;
 use super::motion::RecordedMotion;
 use super::network::{NetworkShape, RecurrentNetwork};
@@ -30,15 +31,16 @@ const VALIDATION: usize = 5;
 /// Start of a sequence: index of its motion, and its first sample.
 type SequenceStart = (usize, usize);
 
-/// Trains a network. Returns `None` if the motions have too few samples, or different channels.
+/// Trains a network.
+///
+/// # Errors
+/// Returns the setting that is out of range, or the reason why the motions cannot be used.
 pub fn train_network(
     motions: &[RecordedMotion],
     training: &SequenceTraining,
-) -> Option<TrainedNetwork> {
-    let known = motions.first()?.known.first()?.len();
-    if motions.iter().any(|motion| motion.known.iter().any(|there| there.len() != known)) {
-        return None;
-    }
+) -> Result<TrainedNetwork, SequenceError> {
+    training.check_settings()?;
+    let known = known_count(motions)?;
     let scales = MotionScales::from_motions(motions);
     let places = sequence_starts(motions, training);
     let part = |kept: bool| -> Vec<SequenceStart> {
@@ -48,20 +50,32 @@ pub fn train_network(
     };
     let (kept, seen) = (part(true), part(false));
     if seen.is_empty() {
-        return None;
+        // Two sequences: one for the validation, one to train on.
+        let wanted = training.steps + training.hop + 1;
+        return Err(SequenceError::Few { found: places.len(), wanted });
     }
     let network = RecurrentNetwork::with_random_weights(
         NetworkShape { inputs: 3 + known, ..training.shape },
         training.seed,
     );
-    Some(TrainingState { motions, training, scales, network }.minimize_loss(&seen, &kept))
+    Ok(TrainingState { motions, training, scales, network }.minimize_loss(&seen, &kept))
+}
+
+/// Returns the number of further inputs, which all motions have in common.
+fn known_count(motions: &[RecordedMotion]) -> Result<usize, SequenceError> {
+    if motions.iter().any(RecordedMotion::is_empty) {
+        return Err(SequenceError::Empty);
+    }
+    let mut counts = motions.iter().flat_map(|motion| motion.known.iter().map(Vec::len));
+    let first = counts.next().ok_or(SequenceError::Empty)?;
+    if counts.all(|count| count == first) { Ok(first) } else { Err(SequenceError::Channels) }
 }
 
 /// Starts of all sequences in the motions.
 fn sequence_starts(motions: &[RecordedMotion], training: &SequenceTraining) -> Vec<SequenceStart> {
     let of = |(number, motion): (usize, &RecordedMotion)| {
-        let last = (motion.len() + 1).saturating_sub(training.steps + 1);
-        (0..last).step_by(training.hop.max(1)).map(move |start| (number, start))
+        let last = motion.len().saturating_sub(training.steps);
+        (0..last).step_by(training.hop).map(move |start| (number, start))
     };
     motions.iter().enumerate().flat_map(of).collect()
 }
@@ -206,6 +220,30 @@ mod tests {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
             assert_eq!(pool.install(|| train_network(&motions, &training)).unwrap(), first);
         }
+    }
+
+    #[test]
+    fn settings_and_motions_that_cannot_be_used_are_refused() {
+        let good = training(RecurrentCell::Rnn, NetworkMemory::Steps(3), LossKind::States);
+        let refusal = |motions: &[RecordedMotion], training: &SequenceTraining| {
+            train_network(motions, training).unwrap_err()
+        };
+        let without_batch = SequenceTraining { batch: 0, ..good.clone() };
+        let refused = refusal(&[motion()], &without_batch);
+        assert_eq!(refused.to_string(), "batch: should be from 1 to 65536");
+        let empty = RecordedMotion {
+            positions: Vec::new(),
+            velocities: Vec::new(),
+            known: Vec::new(),
+            given: Vec::new(),
+            ..motion()
+        };
+        assert_eq!(refusal(&[motion(), empty], &good), SequenceError::Empty);
+        let mut other = motion();
+        other.known.iter_mut().for_each(|known| known.truncate(1));
+        assert_eq!(refusal(&[motion(), other], &good), SequenceError::Channels);
+        let long = SequenceTraining { steps: 198, ..good };
+        assert_eq!(refusal(&[motion()], &long), SequenceError::Few { found: 1, wanted: 204 });
     }
 
     #[test]
