@@ -46,8 +46,9 @@ pub struct KindEvaluation {
     pub foundation: f64,
     /// The same with the correction.
     pub branch: f64,
-    /// Standard error of the difference of the two.
-    pub standard_error: f64,
+    /// Standard error of the difference of the two; absent for a single trial.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standard_error: Option<f64>,
 }
 
 impl BranchChoice {
@@ -139,7 +140,14 @@ fn select_best(judged: Vec<(BranchKind, CorrectionEvaluation)>) -> BranchChoice 
 /// Sentence of the reason: kind, number of held-out trials, both errors and the standard error of
 /// their difference.
 fn reason_text(kind: BranchKind, judged: &CorrectionEvaluation, tried: usize) -> String {
-    let CorrectionEvaluation { foundation, branch, standard_error, trials, .. } = judged;
+    let CorrectionEvaluation { foundation, branch, trials, .. } = judged;
+    let Some(standard_error) = judged.standard_error else {
+        return format!(
+            "`{}` was tried on one trial, error {branch:.4} with it and {foundation:.4} without: one \
+             trial does not say how sure the difference is, and no branch is taken",
+            kind.name()
+        );
+    };
     let of = if tried > 1 { "is the best of the kinds" } else { "was tried" };
     let said = format!(
         "`{}` {of}: on {} trials left out, error {branch:.4} with it and \

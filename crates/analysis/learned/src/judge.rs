@@ -28,8 +28,10 @@ pub struct CorrectionEvaluation {
     pub foundation: f64,
     /// The same with the correction.
     pub branch: f64,
-    /// Standard error of the difference of the two over the trials.
-    pub standard_error: f64,
+    /// Standard error of the difference of the two over the trials; absent for a single trial, which
+    /// has no scatter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standard_error: Option<f64>,
     /// Mean share of the correction over these simulations, 0 to 1.
     pub share: f64,
 }
@@ -65,12 +67,12 @@ pub struct TrialError {
 impl CorrectionEvaluation {
     /// True if the correction is better by more than one standard error.
     pub fn is_better(&self) -> bool {
-        self.foundation - self.branch > self.standard_error
+        self.standard_error.is_some_and(|error| self.foundation - self.branch > error)
     }
 
     /// True if the correction is worse by more than one standard error.
     pub fn is_worse(&self) -> bool {
-        self.branch - self.foundation > self.standard_error
+        self.standard_error.is_some_and(|error| self.branch - self.foundation > error)
     }
 }
 
@@ -175,11 +177,12 @@ fn mean_evaluation(trials: Vec<TrialEvaluation>) -> CorrectionEvaluation {
         |trial: &TrialEvaluation| trial.foundation.standardised_mse - trial.branch.standardised_mse;
     let mean_gain = mean(&gain);
     let squares: f64 = trials.iter().map(|trial| (gain(trial) - mean_gain).powi(2)).sum();
+    // Of a mean over trials: sqrt(sum of squared deviations / (n (n - 1))).
+    let standard_error = (trials.len() > 1).then(|| (squares / (count * (count - 1.0))).sqrt());
     CorrectionEvaluation {
         foundation: mean(&|trial| trial.foundation.standardised_mse),
         branch: mean(&|trial| trial.branch.standardised_mse),
-        // Of a mean over trials: sqrt(sum of squared deviations / (n (n - 1))).
-        standard_error: (squares / (count * (count - 1.0))).sqrt(),
+        standard_error,
         share: mean(&|trial| trial.share),
         trials,
     }
@@ -187,6 +190,7 @@ fn mean_evaluation(trials: Vec<TrialEvaluation>) -> CorrectionEvaluation {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn judged(foundation: f64, branch: f64) -> TrialEvaluation {
@@ -208,8 +212,18 @@ mod tests {
         let even = mean_evaluation(vec![judged(2.0, 1.0), judged(4.0, 2.8), judged(3.0, 2.1)]);
         assert!((even.foundation - 3.0).abs() < 1e-12 && (even.branch - 5.9 / 3.0).abs() < 1e-12);
         // Gains of 1, 1.2 and 0.9 scatter by 0.153; by the root of 3 that is 0.088.
-        assert!((even.standard_error - 0.0882).abs() < 1e-4 && even.is_better());
+        assert!((even.standard_error.unwrap() - 0.0882).abs() < 1e-4 && even.is_better());
         let uneven = mean_evaluation(vec![judged(2.0, 1.0), judged(2.0, 3.0), judged(3.0, 2.9)]);
         assert!(!uneven.is_better());
+    }
+
+    #[test]
+    fn a_single_trial_has_no_standard_error_and_decides_nothing() {
+        let one = mean_evaluation(vec![judged(2.0, 1.0)]);
+        assert_eq!((one.foundation, one.branch, one.standard_error), (2.0, 1.0, None));
+        assert!(!one.is_better() && !one.is_worse());
+        // A number that is none would be written as null and could not be read again.
+        let text = serde_json::to_string(&one).unwrap();
+        assert_eq!(serde_json::from_str::<CorrectionEvaluation>(&text).unwrap(), one);
     }
 }

@@ -133,10 +133,11 @@ impl Correction<'_> {
 /// Checks that the gain on trials held out at random is significant (95 %).
 fn check_significance(tried: Option<&KindEvaluation>, trials: usize) -> BranchCheck {
     let what = "trials held out, sure to 95 %";
-    tried.map_or_else(
+    // A single trial has no standard error: nothing is significant.
+    tried.and_then(|tried| Some((tried, tried.standard_error?))).map_or_else(
         || compare_values(what, 0.0, f64::MAX),
-        |tried| {
-            let sure = student_quantile(trials.max(2) - 1) * tried.standard_error;
+        |(tried, standard_error)| {
+            let sure = student_quantile(trials.max(2) - 1) * standard_error;
             compare_values(what, tried.foundation, tried.branch + sure)
         },
     )

@@ -74,6 +74,14 @@ fn verdict_sentence(judgement: Option<&CorrectionEvaluation>) -> String {
     let Some(judged) = judgement else {
         return "There was one trial only, so that none is left to judge the branch on.".to_owned();
     };
+    let Some(standard_error) = judged.standard_error else {
+        return format!(
+            "On the one trial left out of its training, the branch had an error of {}, against {} \
+             without it; one trial does not say how sure the difference is.",
+            format_significant(judged.branch, 3),
+            format_significant(judged.foundation, 3),
+        );
+    };
     let word = if judged.is_better() { "wins" } else { "does not win" };
     format!(
         "On {} trials left out of its training, the branch {word} by more than its uncertainty: \
@@ -82,7 +90,7 @@ fn verdict_sentence(judgement: Option<&CorrectionEvaluation>) -> String {
         judged.trials.len(),
         format_significant(judged.branch, 3),
         format_significant(judged.foundation, 3),
-        format_significant(judged.standard_error, 2),
+        format_significant(standard_error, 2),
         100.0 * judged.share
     )
 }

@@ -3,7 +3,7 @@
 use sistership_learned::{BranchChoice, CorrectionEvaluation};
 
 use super::branch_document::BranchDocument;
-use crate::table::{TextTable, format_number};
+use crate::table::{TextTable, format_number, format_optional};
 
 /// Formats the result as text.
 pub(super) fn format_branch(document: &BranchDocument<'_>) -> String {
@@ -27,8 +27,12 @@ pub(super) fn format_branch(document: &BranchDocument<'_>) -> String {
 fn format_choice(choice: &BranchChoice) -> String {
     let mut table = TextTable::new(["kind", "foundation", "with branch", "std. error"]);
     for tried in &choice.tried {
-        let errors = [tried.foundation, tried.branch, tried.standard_error].map(format_number);
-        table.add_row([tried.kind.name().to_owned()].into_iter().chain(errors));
+        table.add_row([
+            tried.kind.name().to_owned(),
+            format_number(tried.foundation),
+            format_number(tried.branch),
+            format_optional(tried.standard_error),
+        ]);
     }
     format!("standardised MSE on trials left out of the training\n\n{table}\n{}\n\n", choice.reason)
 }
@@ -49,6 +53,9 @@ fn format_judgement(judgement: &CorrectionEvaluation, wins: bool) -> String {
         format_number(*branch),
         format_number(100.0 * share),
     ]);
+    let Some(standard_error) = standard_error else {
+        return format!("standardised MSE; share: what the branch counted for\n\n{table}\n");
+    };
     let word = if wins { "wins by more than" } else { "does NOT win by more than" };
     format!(
         "standardised MSE; share: what the branch counted for\n\n{table}\nthe branch {word} the \
