@@ -52,7 +52,8 @@ pub fn complete_particulars<'a>(
 /// Estimates a particular by the regression with the least scatter among those whose inputs are
 /// known; none where there is no such regression.
 pub fn estimate_particular(particulars: &Particulars, name: &str) -> Option<Quantity> {
-    let given = estimate_value(embedded_library()?, particulars, name, 0)?;
+    let estimator = ParticularEstimator { library: embedded_library()?, ship: particulars };
+    let given = estimator.estimate_value(name, &[])?;
     let mut quantity = Quantity::new(given.value, format!("{ESTIMATED}{}", given.regression));
     quantity.standard_error = Some(given.scatter);
     Some(quantity)
@@ -64,42 +65,43 @@ fn embedded_library() -> Option<&'static RegressionLibrary> {
     LIBRARY.get_or_init(|| RegressionLibrary::parse_embedded().ok()).as_ref()
 }
 
-fn estimate_value(
-    library: &RegressionLibrary,
-    ship: &Particulars,
-    name: &str,
-    depth: usize,
-) -> Option<RegressionValue> {
-    let known = |name: &str| formula_input(library, ship, name, depth);
-    let all = library.regression_values(name, &known).into_iter();
-    all.min_by(|a, b| a.scatter.total_cmp(&b.scatter))
+/// Estimator of the particulars of a ship by nested regressions.
+struct ParticularEstimator<'a> {
+    library: &'a RegressionLibrary,
+    ship: &'a Particulars,
 }
 
-/// Input of a formula: stated, or estimated itself.
-fn formula_input(
-    library: &RegressionLibrary,
-    ship: &Particulars,
-    name: &str,
-    depth: usize,
-) -> Option<f64> {
-    let name = LETTERS.iter().find(|(letter, _)| *letter == name).map_or(name, |(_, name)| name);
-    if name == "Fn" {
-        // Froude number at the service speed.
-        let speed = particulars::particular_value(ship, "service_speed_m_s")?;
-        return Some(speed / (GRAVITY * particulars::particular_value(ship, "lpp_m")?).sqrt());
+impl ParticularEstimator<'_> {
+    /// Estimates a particular as an input of the estimates in `path`, outermost first.
+    fn estimate_value(&self, name: &str, path: &[&str]) -> Option<RegressionValue> {
+        // Regressions that need each other give nothing.
+        if path.len() > DEEPEST || path.contains(&name) {
+            return None;
+        }
+        let inner = [path, &[name]].concat();
+        let known = |input: &str| self.formula_input(input, &inner);
+        let all = self.library.regression_values(name, &known).into_iter();
+        all.min_by(|a, b| a.scatter.total_cmp(&b.scatter))
     }
-    let estimated = || {
-        // Estimates at the largest depth are discarded.
-        let given = estimate_value(library, ship, name, depth + 1).filter(|_| depth < DEEPEST);
-        given.map(|given| given.value)
-    };
-    particulars::particular_value(ship, name).or_else(estimated)
+
+    /// Input of a formula: stated, or estimated itself.
+    fn formula_input(&self, name: &str, path: &[&str]) -> Option<f64> {
+        let letter = LETTERS.iter().find(|(letter, _)| *letter == name);
+        let name = letter.map_or(name, |(_, name)| name);
+        let stated = |name: &str| particulars::particular_value(self.ship, name);
+        if name == "Fn" {
+            // Froude number at the service speed.
+            return Some(stated("service_speed_m_s")? / (GRAVITY * stated("lpp_m")?).sqrt());
+        }
+        stated(name).or_else(|| Some(self.estimate_value(name, path)?.value))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::estimates::regression::Regression;
 
     fn ship(values: &[(&str, f64)]) -> Particulars {
         values.iter().map(|&(name, value)| (name.into(), Quantity::new(value, "test"))).collect()
@@ -119,6 +121,46 @@ mod tests {
         let mass = particulars::particular_value(&fast, "mass_kg").unwrap();
         assert!((mass / (1025.0 * 140.0 * 22.0 * 6.0 * c_b.value) - 1.0).abs() < 1e-12);
         assert!((fast["x_g_m"].value + 2.3).abs() < 0.3, "{:?}", fast["x_g_m"]);
+    }
+
+    /// Library of regressions that give one value each by a formula.
+    fn library(formulas: &[(&str, &str)]) -> RegressionLibrary {
+        let one = |&(name, formula): &(&str, &str)| {
+            let text = format!(
+                "kind: regression\nname: by-{name}\ntitle: t\nsource: {{ citation: c }}\n\
+                 note: n\ngives:\n  {name}: {{ formula: \"{formula}\", scatter: 0.1 }}\n"
+            );
+            Regression::parse("test.yaml", &text).unwrap()
+        };
+        let embedded = RegressionLibrary::parse_embedded().unwrap();
+        RegressionLibrary { regressions: formulas.iter().map(one).collect(), ..embedded }
+    }
+
+    #[test]
+    fn regressions_that_need_each_other_give_nothing() {
+        let ship = ship(&HULL);
+        let circle = library(&[
+            ("rudder_area_m2", "rudder_height_m^2"),
+            ("rudder_height_m", "sqrt(rudder_area_m2)"),
+        ]);
+        let estimator = ParticularEstimator { library: &circle, ship: &ship };
+        assert_eq!(estimator.estimate_value("rudder_area_m2", &[]), None);
+    }
+
+    #[test]
+    fn regressions_are_nested_to_the_largest_depth_and_no_further() {
+        let ship = ship(&HULL);
+        let chain = library(&[
+            ("x_g_m", "rudder_area_m2"),
+            ("rudder_area_m2", "rudder_height_m"),
+            ("rudder_height_m", "block_coefficient"),
+            ("block_coefficient", "propeller_diameter_m"),
+            ("propeller_diameter_m", "0.7*T"),
+        ]);
+        let estimator = ParticularEstimator { library: &chain, ship: &ship };
+        let of_area = estimator.estimate_value("rudder_area_m2", &[]).unwrap();
+        assert!((of_area.value - 4.2).abs() < 1e-12);
+        assert_eq!(estimator.estimate_value("x_g_m", &[]), None);
     }
 
     #[test]
