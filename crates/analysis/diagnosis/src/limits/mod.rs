@@ -1,13 +1,14 @@
 //! Detection limits: the smallest size of an effect that these trials and this model would still
 //! have shown.
 //!
-//! An effect of a given size changes the evidence for it, and for every other that resembles it, by
+//! An effect of a given value changes the evidence for it, and for every other that resembles it, by
 //! the information on its columns; chance adds a known spread. The limit is the smallest size at
 //! which the evidence is sufficient, and above every other's, with a probability of 90 %: the
 //! minimum detectable value of a test with given error probabilities (Currie 1968, Anal Chem 40,
 //! 586-593). The model alone competes, too, with any other level of the random accelerations.
 
 mod expected_evidence;
+mod size_grid;
 
 use std::collections::BTreeMap;
 
@@ -24,6 +25,7 @@ use super::values::form_target;
 use expected_evidence::{InformationView, WeighedCandidate};
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
+use size_grid::SizeGrid;
 
 /// Returns the limits of every listed effect and of each of its parameters whose absence is zero,
 /// from a base without effects at one of its levels.
@@ -168,53 +170,46 @@ impl<'a> DetectionAnalysis<'a> {
         Some(if known || !reads { LimitedBy::Trials } else { LimitedBy::Sensors })
     }
 
-    /// Smallest size of one parameter that is shown, from a grid of equal ratios below the largest
-    /// plausible one; none where no size is.
+    /// Smallest size of one parameter that is shown; none where no size is.
     fn smallest_shown_size(
         &self,
         view: &InformationView,
         (place, own): (usize, usize),
     ) -> Option<f64> {
-        let given = THRESHOLDS.limits;
-        let [least, most] = self.candidates[place].form.parameters[own].bounds;
-        let largest = least.abs().max(most.abs());
-        let sizes = (0..given.steps).map(|k| largest * given.ratio.powi(-(k as i32)));
         let rivals = self.competing_candidates(view, (place, own));
         let seen = self.unit_response(view, place, (place, own));
-        let is_shown = |size: &f64| {
-            self.is_shown((view, place), *size, &seen, &rivals)
-                && self.beats_alone((place, own), *size)
-        };
-        // The largest sizes may be implausible: their prior probability is too low.
-        sizes.skip_while(|size| !is_shown(size)).take_while(is_shown).last()
+        SizeGrid::new(&self.candidates[place].form.parameters[own]).smallest_shown(|value| {
+            self.is_shown((view, place), value, &seen, &rivals)
+                && self.beats_alone((place, own), value)
+        })
     }
 
     fn is_shown(
         &self,
         (view, place): (&InformationView, usize),
-        size: f64,
+        value: f64,
         seen: &DVector<f64>,
         rivals: &[(&WeighedCandidate, DVector<f64>)],
     ) -> bool {
         let Some(own) = &view.weighed[place] else { return false };
-        let expected = own.expected_evidence(&(seen * size));
+        let expected = own.expected_evidence(&(seen * value));
         // Evidence that is exceeded with the probability of the quantile.
         let sure = expected.mean - THRESHOLDS.limits.quantile * expected.deviation;
         let is_behind = |(rival, seen): &(&WeighedCandidate, DVector<f64>)| {
-            rival.expected_evidence(&(seen * size)).mean < sure
+            rival.expected_evidence(&(seen * value)).mean < sure
         };
         sure > self.least_evidence && rivals.iter().all(is_behind)
     }
 
     /// Returns true if the model alone is less probable at every level of the discrepancy.
-    fn beats_alone(&self, (place, own): (usize, usize), size: f64) -> bool {
+    fn beats_alone(&self, (place, own): (usize, usize), value: f64) -> bool {
         let column = self.places[place][own];
         // The evidence of the model alone falls with the square of the effect's size.
         let alone = |level: &AloneLevel| {
-            level.log_evidence - 0.5 * size.powi(2) * level.information[(column, column)]
+            level.log_evidence - 0.5 * value.powi(2) * level.information[(column, column)]
         };
         let here = &self.alone[self.level];
-        let seen = self.unit_response(&self.plain, place, (place, own)) * size;
+        let seen = self.unit_response(&self.plain, place, (place, own)) * value;
         self.plain.weighed[place].as_ref().is_some_and(|weighed| {
             let expected = weighed.expected_evidence(&seen);
             let sure = expected.mean - THRESHOLDS.limits.quantile * expected.deviation;
