@@ -46,8 +46,8 @@ const TRIALS: &str = "self-propulsion point of the trials";
 const RANGE: &str = "range of the trials";
 const CHOSEN: &str = "docs/evidence/propulsion.md";
 
-/// Returns the balance of a model; `None` if its speed or revolutions at the approach are not
-/// known.
+/// Returns the balance of a model; `None` if its speed or revolutions at the approach, or its
+/// length, are not known.
 pub fn model_balance(of: &PropulsionEvidence<'_>) -> Option<Propulsion> {
     let approach = of.model.speed_m_s.filter(|speed| *speed > 0.0)?;
     let n_rps = of.model.revolutions_rps.filter(|n_rps| *n_rps > 0.0)?;
@@ -59,7 +59,7 @@ pub fn model_balance(of: &PropulsionEvidence<'_>) -> Option<Propulsion> {
     });
     let mut parameters: BTreeMap<String, Quantity> = BTreeMap::new();
     let mut add = |name: &str, quantity| parameters.insert(name.to_owned(), quantity);
-    add("resistance", approach_resistance(of, working, [speed, n_rps]));
+    add("resistance", approach_resistance(of, working, [speed, n_rps])?);
     add("speed", Quantity::new(speed, TRIALS));
     add("revolutions", Quantity::new(n_rps, TRIALS));
     add("loading", Quantity::new(working.loading, working.source));
@@ -129,13 +129,13 @@ fn self_propulsion_point(estimate: &Model) -> Option<SelfPropulsionPoint> {
     })
 }
 
-/// Resistance at the self-propulsion point, N.
+/// Resistance at the self-propulsion point, N; `None` without the length of the ship.
 fn approach_resistance(
     of: &PropulsionEvidence<'_>,
     working: SelfPropulsionPoint,
     at: [f64; 2],
-) -> Quantity {
-    let known = prior_resistance(of, at[0]);
+) -> Option<Quantity> {
+    let known = prior_resistance(of, at[0])?;
     let SelfPropulsionPoint { loading, advance, source } = working;
     let square = advance * advance;
     let factor = 2.0 + loading / (1.0 - loading) - square / (1.0 + square);
@@ -147,12 +147,10 @@ fn approach_resistance(
     });
     // A resistance that is not positive is an error of the fit: the prior knowledge alone is used.
     let Some(fitted) = of_slope.filter(|figure| figure.mean > 0.0) else {
-        return value_quantity(known, format!("{source}; the trials do not tell it"));
+        return Some(value_quantity(known, format!("{source}; the trials do not tell it")));
     };
-    value_quantity(
-        weighted_mean(known, fitted),
-        format!("{source}, and surge by speed in the trials"),
-    )
+    let source = format!("{source}, and surge by speed in the trials");
+    Some(value_quantity(weighted_mean(known, fitted), source))
 }
 
 fn value_quantity(figure: UncertainValue, source: String) -> Quantity {
@@ -165,8 +163,8 @@ fn weighted_mean(a: UncertainValue, b: UncertainValue) -> UncertainValue {
     UncertainValue { mean: (p * a.mean + q * b.mean) / (p + q), deviation: (p + q).powf(-0.5) }
 }
 
-/// Prior knowledge of the resistance, N.
-fn prior_resistance(of: &PropulsionEvidence<'_>, speed_m_s: f64) -> UncertainValue {
+/// Prior knowledge of the resistance, N; `None` without the length of the ship.
+fn prior_resistance(of: &PropulsionEvidence<'_>, speed_m_s: f64) -> Option<UncertainValue> {
     let [particulars, estimate] =
         [Some(&of.model.particulars), of.estimate.map(|estimate| &estimate.particulars)];
     let value = |name: &str| {
@@ -175,11 +173,11 @@ fn prior_resistance(of: &PropulsionEvidence<'_>, speed_m_s: f64) -> UncertainVal
     };
     // Particulars of the model have priority over those of the estimate.
     let density = value("water_density_kg_m3").unwrap_or(1025.0);
-    let length_m = value("lpp_m").unwrap_or(0.0);
+    let length_m = value("lpp_m").filter(|length_m| *length_m > 0.0)?;
     let draught_m = value("draught_m").unwrap_or(0.05 * length_m);
     let unit = 0.5 * density * length_m * draught_m * speed_m_s.powi(2);
     let estimated = of.estimate.and_then(|estimate| estimate.coefficients.get("X_0"));
-    match estimated.filter(|x_0| x_0.value < 0.0) {
+    Some(match estimated.filter(|x_0| x_0.value < 0.0) {
         Some(x_0) => {
             let mean = -x_0.value * unit;
             // The stated error of the regression, at least the usual one of estimates.
@@ -190,5 +188,5 @@ fn prior_resistance(of: &PropulsionEvidence<'_>, speed_m_s: f64) -> UncertainVal
             let mean = BALANCE.resistance * unit;
             UncertainValue { mean, deviation: 0.5 * mean }
         }
-    }
+    })
 }

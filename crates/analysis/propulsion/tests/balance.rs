@@ -63,6 +63,15 @@ fn every_model_stops_and_goes_astern() {
 }
 
 #[test]
+fn a_model_without_a_length_has_no_balance() {
+    let zoo = Zoo::load_embedded().unwrap();
+    let (mut model, law) = models(&zoo).remove(0);
+    assert!(balanced(&model, &law).propulsion.is_some());
+    model.particulars.remove("lpp_m");
+    assert_eq!(balanced(&model, &law).propulsion, None);
+}
+
+#[test]
 fn within_its_trials_a_model_stays_what_it_was() {
     let zoo = Zoo::load_embedded().unwrap();
     for (model, law) in models(&zoo) {
