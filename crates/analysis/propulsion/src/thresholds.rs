@@ -86,7 +86,7 @@ pub(crate) struct CheckThresholds {
     /// Duration of the turn, in units of `L/U`, dimensionless. Source: derived: yaw is steady after
     /// less.
     pub turn: f64,
-    /// Step, by `L/U`, dimensionless. Source: as of steady motions in `dynamics::manoeuvre`.
+    /// Step, by `L/U`, dimensionless. Source: as of steady motions in `simulation::manoeuvre`.
     pub step: f64,
 }
 

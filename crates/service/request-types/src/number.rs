@@ -65,7 +65,7 @@ number! {
 }
 
 /// Returns the extension by which a schema excludes 0; it becomes the keyword `not`, see
-/// `routes::document`.
+/// `api::routes::document`.
 fn not_zero() -> Option<utoipa::openapi::extensions::Extensions> {
     Some([("x-not".to_owned(), serde_json::json!({ "const": 0 }))].into_iter().collect())
 }

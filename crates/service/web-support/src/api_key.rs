@@ -23,7 +23,7 @@ impl ApiKey {
 
 /// Token that forms of pages send, so that no other web site can send them: it cannot read a page
 /// of this server. With an API key it is derived from the key, so that every server with that key
-/// accepts it; without one it is random. A signed-in user has another one, see `web::form`.
+/// accepts it; without one it is random. A signed-in user has another one, see `api::web::form`.
 pub struct FormToken(String);
 
 impl FormToken {

@@ -20,7 +20,7 @@ pub struct EvidenceLimits {
     pub false_alarm: f64,
     /// `beta`: probability of finding nothing although an effect of usual size is missing,
     /// dimensionless. Source: the probability by which a diagnosis states its detection limits
-    /// (`diagnose::DetectionLimit`). At half and double of each, three trials with unexplained
+    /// (`diagnosis::DetectionLimit`). At half and double of each, three trials with unexplained
     /// forces are cleared by four to seven clean ones (docs/evidence/condition.md).
     pub miss: f64,
 }

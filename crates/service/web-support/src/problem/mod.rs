@@ -187,7 +187,7 @@ impl IntoResponse for Problem {
                 .headers_mut()
                 .insert(header::RETRY_AFTER, HeaderValue::from_static(RETRY_AFTER_S));
         }
-        // A later layer that knows the id of the request adds it, see `web::envelope`.
+        // A later layer that knows the id of the request adds it, see `api::web::envelope`.
         response.extensions_mut().insert(self);
         response
     }
