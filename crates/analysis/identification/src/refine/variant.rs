@@ -15,10 +15,9 @@ use super::errors::CoefficientErrors;
 use super::family::TermFamily;
 use super::outcome::RefineError;
 use super::parts::trial_slice;
-use super::posterior::{SequencedRows, posterior_errors, sequence_rows};
+use super::posterior::{SequenceTables, SequencedRows, posterior_errors, sequence_rows};
 use super::problem::RefinementProblem;
 use super::ridge::{FittedCoefficient, RegressionFold, RidgeChoices, most_likely};
-use super::rows::RegressionTable;
 use super::settings::TuningRange;
 use super::thresholds::SELECTION;
 use crate::constraints::{CoefficientLimits, LimitError};
@@ -124,12 +123,14 @@ impl TermVariant {
         };
         let parts: Vec<Trial> =
             training.iter().flat_map(parts).filter(|part| part.len() > 1).collect();
-        let one = |part: &Trial| self.equations.regression_tables(&self.blocks, part);
-        let tables: Vec<Vec<RegressionTable>> =
-            parts.par_iter().map(one).collect::<Result<_, _>>()?;
-        // All trials are assumed to have the sampling interval of the first part.
-        let dependent = self.equations.dependent_rows(parts.first().map_or(1.0, Trial::interval_s));
-        Ok(sequence_rows(&self.blocks, &tables, dependent, self.equations.are_differences()))
+        // Trials may differ in their sampling interval, and so in their dependent rows.
+        let one = |part: &Trial| -> Result<SequenceTables, RefineError> {
+            let tables = self.equations.regression_tables(&self.blocks, part)?;
+            let dependent = self.equations.dependent_rows(part.interval_s());
+            Ok(SequenceTables { tables, dependent })
+        };
+        let tables: Vec<SequenceTables> = parts.par_iter().map(one).collect::<Result<_, _>>()?;
+        Ok(sequence_rows(&self.blocks, &tables, self.equations.are_differences()))
     }
 
     /// Returns the training set of each fold, with its trials held out; a single trial is fitted
@@ -250,4 +251,38 @@ fn training_moments(
         return Err(RefineError::Data(message));
     }
     Ok(moments)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::settings::RefinementSettings;
+    use super::*;
+    use crate::testing::{mariner_model, simulated_trials};
+
+    /// Every second sample of a trial.
+    fn thinned(trial: &Trial) -> Trial {
+        let of = |column: &[f64]| column.iter().step_by(2).copied().collect::<Vec<f64>>();
+        let channels = trial.channels.iter().map(|(channel, column)| (*channel, of(column)));
+        Trial { t_s: of(&trial.t_s), channels: channels.collect(), ..trial.clone() }
+    }
+
+    #[test]
+    fn rows_are_merged_over_the_same_time_at_every_sampling_interval() {
+        let (model, law) = mariner_model();
+        let trials = simulated_trials(&model, &law, 0.0);
+        let (fine, coarse) = (&trials[0], &thinned(&trials[1]));
+        let counts = |training: &[&Trial]| -> Vec<usize> {
+            let settings = RefinementSettings::default();
+            let problem = RefinementProblem::from_model(&model, &law, training, settings);
+            let over = EquationForm::Differences(Some(4.0));
+            let variant = TermVariant::new(&problem, over, TermFamily::Own, model.clone()).unwrap();
+            let rows = variant.sequenced_rows(training).unwrap();
+            rows.blocks[0].iter().map(|sequence| sequence.regressors.nrows()).collect()
+        };
+        // A difference spans four samples at 1 s and two at 2 s.
+        let (of_fine, of_coarse) = ((fine.len() - 4) / 4, (coarse.len() - 2) / 2);
+        assert_eq!(counts(&[fine, coarse]), [of_fine, of_coarse]);
+        assert_eq!(counts(&[coarse, fine]), [of_coarse, of_fine]);
+    }
 }

@@ -27,7 +27,7 @@ use super::outcome::RefineError;
 use super::ridge::{RidgeChoices, mixed_source};
 use autocovariance::ResidualAutocovariance;
 use equation::RidgeEquation;
-pub(super) use rows::{SequencedRows, sequence_rows};
+pub(super) use rows::{SequenceTables, SequencedRows, sequence_rows};
 use sistership_numerics::{PriorMetric, RegressionMoments, RidgeChoice};
 use source_variance::source_variances;
 

@@ -24,31 +24,41 @@ pub(in super::super) struct SequencedRows {
     pub blocks: Vec<Vec<RowSequence>>,
 }
 
-/// Creates sequences from tables, by sequence and regression. Each `merged` consecutive rows are
-/// replaced by their mean; `centred` subtracts the mean of all rows from each column.
+/// Rows of a part of a trial without a gap.
+pub(in super::super) struct SequenceTables {
+    /// One table for each regression.
+    pub tables: Vec<RegressionTable>,
+    /// Number of consecutive rows that share most of their information.
+    pub dependent: usize,
+}
+
+/// Creates sequences from the rows of parts. Dependent rows are replaced by their mean; `centred`
+/// subtracts the mean of all rows from each column.
 pub(in super::super) fn sequence_rows(
     blocks: &RegressionBlocks,
-    tables: &[Vec<RegressionTable>],
-    merged: usize,
+    parts: &[SequenceTables],
     centred: bool,
 ) -> SequencedRows {
     let of_block = |b: usize| {
         let p = blocks.blocks[b].regressor_count();
         let offsets = if centred {
-            column_means(tables, b)
+            column_means(parts, b)
         } else {
-            vec![0.0; tables.first().map_or(0, |t| t[b].len())]
+            vec![0.0; parts.first().map_or(0, |part| part.tables[b].len())]
         };
-        tables.iter().map(|tables| row_sequence(&tables[b], p, merged.max(1), &offsets)).collect()
+        let sequence = |part: &SequenceTables| {
+            row_sequence(&part.tables[b], p, part.dependent.max(1), &offsets)
+        };
+        parts.iter().map(sequence).collect()
     };
     SequencedRows { blocks: (0..blocks.blocks.len()).map(of_block).collect() }
 }
 
 /// Means of a regression's columns over all sequences.
-fn column_means(tables: &[Vec<RegressionTable>], block: usize) -> Vec<f64> {
-    let columns = tables.first().map_or(0, |tables| tables[block].len());
+fn column_means(parts: &[SequenceTables], block: usize) -> Vec<f64> {
+    let columns = parts.first().map_or(0, |part| part.tables[block].len());
     let mean = |column: usize| {
-        let all = || tables.iter().flat_map(|tables| tables[block][column].iter());
+        let all = || parts.iter().flat_map(|part| part.tables[block][column].iter());
         all().sum::<f64>() / (all().count() as f64).max(1.0)
     };
     (0..columns).map(mean).collect()

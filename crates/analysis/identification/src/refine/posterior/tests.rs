@@ -37,13 +37,14 @@ fn fitted(seed: u32, memory: f64) -> [(f64, f64); 2] {
     let (a, b) = (noise(600, 0.9, 3 * seed + 1), noise(600, 0.9, 3 * seed + 2));
     let disturbed = noise(600, memory, 3 * seed + 3);
     let y = (0..600).map(|k| 2.0 * a[k] - 0.5 * b[k] + 0.5 * disturbed[k]).collect();
-    let tables: Vec<Vec<RegressionTable>> = vec![vec![vec![a, b, y]]];
-    let moments = vec![RegressionMoments::about_zero(&tables[0][0], 2, 1.0)];
+    let tables: Vec<RegressionTable> = vec![vec![a, b, y]];
+    let moments = vec![RegressionMoments::about_zero(&tables[0], 2, 1.0)];
+    let parts = [SequenceTables { tables, dependent: 1 }];
     let choices = vec![vec![RidgeChoice { lambda: 1e-9, alpha: 0.0 }]];
     let errors = posterior_errors(
         &blocks,
         &moments,
-        &sequence_rows(&blocks, &tables, 1, false),
+        &sequence_rows(&blocks, &parts, false),
         &model,
         &choices,
     )
@@ -82,8 +83,9 @@ fn a_strong_prior_does_not_make_a_wrong_source_sure() {
         .zip(noise(600, 0.0, 3))
         .map(|((a, b), e)| 2.0 * a - 0.5 * b + 0.1 * e)
         .collect();
-    let tables: Vec<Vec<RegressionTable>> = vec![vec![vec![a, b, y]]];
-    let moments = vec![RegressionMoments::about_zero(&tables[0][0], 2, 1.0)];
+    let tables: Vec<RegressionTable> = vec![vec![a, b, y]];
+    let moments = vec![RegressionMoments::about_zero(&tables[0], 2, 1.0)];
+    let parts = [SequenceTables { tables, dependent: 1 }];
     let mut error = |source: f64| {
         model.coefficients.get_mut("X_u").unwrap().value = source;
         model.coefficients.get_mut("X_vv").unwrap().value = -0.5;
@@ -91,7 +93,7 @@ fn a_strong_prior_does_not_make_a_wrong_source_sure() {
         let errors = posterior_errors(
             &blocks,
             &moments,
-            &sequence_rows(&blocks, &tables, 1, false),
+            &sequence_rows(&blocks, &parts, false),
             &model,
             &choices,
         )
