@@ -7,6 +7,7 @@ use crate::export_plan::{ExportCoefficient, ExportPlan, STATES};
 use crate::expression::{TargetLanguage, function_name};
 use crate::external_input::ExternalInput;
 use crate::format::ModelFormat;
+use crate::quoting::escape_c_comment;
 use crate::{header, line_wrapping, range, rates};
 
 /// C99 source file.
@@ -103,7 +104,7 @@ fn source_text(plan: &ExportPlan) -> String {
     let lines = header::header_lines(plan);
     // The end mark of a comment inside the text would end the comment.
     let comment =
-        lines.iter().flat_map(|line| line_wrapping::wrap_comment(" *", &line.replace("*/", "* /")));
+        lines.iter().flat_map(|line| line_wrapping::wrap_comment(" *", &escape_c_comment(line)));
     let mut text =
         format!("/*\n{}\n */\n#include <math.h>\n\n", comment.collect::<Vec<_>>().join("\n"));
     text.push_str(&type_definitions(plan));
@@ -124,7 +125,9 @@ fn source_text(plan: &ExportPlan) -> String {
 
 /// Type definitions of states, inputs and coefficients.
 fn type_definitions(plan: &ExportPlan) -> String {
-    let member = |name: &str, remark: &str| format!("    double {name}; /* {remark} */\n");
+    let member = |name: &str, remark: &str| {
+        format!("    double {name}; /* {} */\n", escape_c_comment(remark))
+    };
     let states: String = STATES
         .iter()
         .map(|(name, unit, meaning)| member(name, &format!("{meaning}, {unit}")))

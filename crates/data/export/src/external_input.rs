@@ -5,6 +5,7 @@ use sistership_model::validity::Region;
 use sistership_model::{Model, law, particulars};
 
 use crate::identifier::to_identifier;
+use crate::quoting::single_line;
 
 /// External input of a model.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,7 +61,9 @@ impl ExternalInput {
             Some(&(_, identifier, unit, meaning)) => {
                 (identifier.to_owned(), unit.to_owned(), meaning.to_owned())
             }
-            None => (to_identifier(name), si_unit(input), format!("`{name}` of the law")),
+            None => {
+                (to_identifier(name), si_unit(input), single_line(&format!("`{name}` of the law")))
+            }
         };
         let default = match (name, input.default) {
             // Propeller revolutions default to those of the model's approach.

@@ -2,6 +2,7 @@
 
 use crate::export_plan::{ExportCoefficient, ExportPlan, STATES};
 use crate::external_input::ExternalInput;
+use crate::quoting::single_line;
 
 /// Lines that a reader needs before the code: provenance, units, signs, inputs, coefficients.
 pub fn header_lines(plan: &ExportPlan) -> Vec<String> {
@@ -62,11 +63,11 @@ fn range_words([low, high]: [Option<f64>; 2]) -> Option<String> {
     }
 }
 
-/// Unit, source and standard error of a coefficient.
+/// Unit, source and standard error of a coefficient, on one line.
 pub fn coefficient_remark(coefficient: &ExportCoefficient) -> String {
     let ExportCoefficient { name, unit, source, standard_error, .. } = coefficient;
     let error =
         standard_error.map_or(String::new(), |error| format!(", standard error {error:.3e}"));
     let unit = if unit == "1" { String::new() } else { format!(" [{unit}]") };
-    format!("{name}{unit}, {source}{error}")
+    single_line(&format!("{name}{unit}, {source}{error}"))
 }

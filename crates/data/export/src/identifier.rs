@@ -24,7 +24,7 @@ pub fn to_identifier(text: &str) -> String {
         name = name.replace("__", "_");
     }
     // An identifier must begin with a letter in every language.
-    if name.starts_with(|first: char| !first.is_ascii_alphabetic()) {
+    if !name.starts_with(|first: char| first.is_ascii_alphabetic()) {
         name.insert_str(0, "m_");
     }
     name
@@ -53,10 +53,17 @@ mod tests {
 
     #[test]
     fn absolute_values_and_submodels_are_spelled_out() {
-        let names = ["X_v|v|", "N_|v|r", "X_u@astern", "mariner/abkowitz", "6-dof", "Y_vvr"];
+        let names = ["X_v|v|", "N_|v|r", "X_u@astern", "mariner/abkowitz", "6-dof", "Y_vvr", "'"];
         let spelled = names.map(to_identifier);
-        let expected =
-            ["X_v_abs_v", "N_abs_v_r", "X_u_at_astern", "mariner_abkowitz", "m_6_dof", "Y_vvr"];
+        let expected = [
+            "X_v_abs_v",
+            "N_abs_v_r",
+            "X_u_at_astern",
+            "mariner_abkowitz",
+            "m_6_dof",
+            "Y_vvr",
+            "m_",
+        ];
         assert_eq!(spelled, expected);
     }
 

@@ -18,6 +18,7 @@ mod line_wrapping;
 mod matlab;
 mod modelica;
 mod python;
+mod quoting;
 mod range;
 mod rates;
 mod subject;

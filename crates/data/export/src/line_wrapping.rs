@@ -1,5 +1,7 @@
 //! Wrapping of long sums and comments over several lines.
 
+use crate::quoting::single_line;
+
 /// Largest length of a line of generated code.
 const WIDTH: usize = 96;
 
@@ -24,9 +26,9 @@ pub fn wrap_sum(head: &str, terms: &[String], next: &str) -> String {
 /// Comment over as many lines as needed, each after a comment mark; the indentation of the text is
 /// kept.
 pub fn wrap_comment(mark: &str, text: &str) -> Vec<String> {
-    let indent = &text[..text.len() - text.trim_start().len()];
+    let indent = &text[..text.len() - text.trim_start_matches(' ').len()];
     let (mut lines, mut line) = (Vec::new(), format!("{mark}{indent}"));
-    for word in text.split_whitespace() {
+    for word in single_line(text).split_whitespace() {
         if line.len() + 1 + word.len() > WIDTH && line.len() > mark.len() + indent.len() {
             // Continued lines are indented further.
             lines.push(std::mem::replace(&mut line, format!("{mark}{indent}   ")));
@@ -55,5 +57,11 @@ mod tests {
         let lines = wrap_comment("#", &"abc defghi ".repeat(30));
         assert!(lines.len() > 3 && lines.iter().all(|line| line.len() <= WIDTH));
         assert!(lines.iter().all(|line| line.starts_with('#')));
+    }
+
+    #[test]
+    fn line_breaks_of_a_text_do_not_end_its_comment() {
+        assert_eq!(wrap_comment("#", "\n  a\rb\n@@mark"), ["# a b @ @mark"]);
+        assert_eq!(wrap_comment("#", "  a"), ["#   a"]);
     }
 }

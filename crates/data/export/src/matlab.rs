@@ -8,6 +8,7 @@ use crate::export_plan::{ExportCoefficient, ExportPlan, STATES};
 use crate::expression::{TargetLanguage, function_name};
 use crate::external_input::ExternalInput;
 use crate::format::ModelFormat;
+use crate::quoting::escape_matlab;
 use crate::{header, line_wrapping, range, rates};
 
 /// Function file for MATLAB R2016b and later, Octave 6 and later.
@@ -142,7 +143,7 @@ fn gear_statements(plan: &ExportPlan) -> &'static str {
 /// Statements that fill the structure of the model.
 fn structure_statements(plan: &ExportPlan) -> String {
     let mut lines = vec![
-        format!("model.name = '{}';", plan.name),
+        format!("model.name = '{}';", escape_matlab(&plan.name)),
         format!("model.sha256 = '{}';", plan.sha256),
         format!("model.lpp_m = {:?};", plan.lpp_m),
         format!("model.speed_m_s = {:?};", plan.speed_m_s),

@@ -7,6 +7,7 @@ use crate::export_plan::{ExportCoefficient, ExportPlan, STATES};
 use crate::expression::{TargetLanguage, function_name};
 use crate::external_input::ExternalInput;
 use crate::format::ModelFormat;
+use crate::quoting::escape_modelica;
 use crate::{header, line_wrapping, range, rates};
 
 /// Model file for Modelica 3.4, without any library.
@@ -98,7 +99,11 @@ fn source_text(plan: &ExportPlan) -> String {
         .flat_map(|line| line_wrapping::wrap_comment("  //", line))
         .collect();
     let parts = [
-        format!("model {} \"Ship manoeuvring model {}\"", plan.identifier, plan.name),
+        format!(
+            "model {} \"Ship manoeuvring model {}\"",
+            plan.identifier,
+            escape_modelica(&plan.name)
+        ),
         comment.iter().map(|line| line.trim_end()).collect::<Vec<_>>().join("\n"),
         input_declarations(plan),
         parameter_declarations(plan),
@@ -116,6 +121,7 @@ fn source_text(plan: &ExportPlan) -> String {
 
 fn input_declarations(plan: &ExportPlan) -> String {
     let one = |name: &str, unit: &str, start: f64, meaning: &str| {
+        let meaning = escape_modelica(meaning);
         format!("  input Real {name}(unit = \"{unit}\", start = {start:?}) \"{meaning}\";")
     };
     let order = plan.gear.map(|_| one("delta_order", "rad", 0.0, "ordered rudder"));
@@ -126,7 +132,7 @@ fn input_declarations(plan: &ExportPlan) -> String {
 
 fn parameter_declarations(plan: &ExportPlan) -> String {
     let one = |c: &ExportCoefficient| {
-        let remark = header::coefficient_remark(c).replace('"', "'");
+        let remark = escape_modelica(&header::coefficient_remark(c));
         format!("  parameter Real {} = {:?} \"{remark}\";", c.identifier, c.value)
     };
     plan.coefficients.iter().map(one).collect::<Vec<_>>().join("\n")

@@ -5,6 +5,8 @@ use sistership_model::version::code_revision;
 use sistership_model::vessel::Status;
 use sistership_model::{Law, Model};
 
+use crate::quoting::single_line;
+
 /// Model to be exported.
 #[derive(Debug, Clone)]
 pub struct ExportSubject<'a> {
@@ -31,7 +33,7 @@ impl ExportSubject<'_> {
             format!("Law {}: {}", law.name, law.title),
             format!("Written by sistership {}", code_revision()),
         ];
-        lines.extend(model.note.iter().map(|note| format!("Note: {}", one_line(note))));
+        lines.extend(model.note.iter().map(|note| format!("Note: {}", single_line(note))));
         lines.extend(model.effects.iter().map(|effect| {
             let values = effect.parameters.iter();
             let values: Vec<String> =
@@ -41,8 +43,8 @@ impl ExportSubject<'_> {
         // Parameters are constants of the tape; they are listed here with their sources.
         let folded = model.parameters.iter().map(|(name, quantity)| {
             let known = law.parameters.get(name);
-            let about =
-                known.map_or(String::new(), |p| format!("[{}] {}", p.unit, one_line(&p.meaning)));
+            let about = known
+                .map_or(String::new(), |p| format!("[{}] {}", p.unit, single_line(&p.meaning)));
             format!("  {name} = {} {about}, {}", quantity.value, quantity.source)
         });
         let stated = model.particulars.iter();
@@ -81,11 +83,7 @@ fn source_lines(model: &Model) -> impl Iterator<Item = String> + '_ {
 
 fn citation_line(what: &str, key: &str, source: &sistership_model::source::Source) -> String {
     let doi = source.doi.as_ref().map_or(String::new(), |doi| format!(" doi:{doi}"));
-    format!("{what} {key}: {}{doi}", one_line(&source.citation))
-}
-
-fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    format!("{what} {key}: {}{doi}", single_line(&source.citation))
 }
 
 /// Reliability of a model by its status.

@@ -3,13 +3,13 @@
 use super::variables::{FmuVariable, UNITS};
 use crate::export_plan::ExportPlan;
 use crate::header;
+use crate::quoting::single_line;
 
 /// Text escaped for an attribute or content, on one line.
 pub fn escape_xml(text: &str) -> String {
     // The ampersand first, as the other replacements contain it.
     let marked = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    let marked = marked.replace('"', "&quot;");
-    marked.split_whitespace().collect::<Vec<_>>().join(" ")
+    single_line(&marked.replace('"', "&quot;"))
 }
 
 /// Elements of the units, with their base units.
