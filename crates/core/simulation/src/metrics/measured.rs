@@ -38,7 +38,6 @@ impl ManoeuvreRecognition {
         let name = trial.manoeuvre.as_deref()?.to_lowercase();
         let delta = trial.channel(Channel::Delta)?;
         let start = execution_sample(delta)?;
-        let side = delta[start].signum();
         if name.starts_with("turn") {
             // The median of the second half is robust against the time in which the rudder moves.
             let rudder_deg = median(&delta[start + (delta.len() - start) / 2..])?.to_degrees();
@@ -52,14 +51,12 @@ impl ManoeuvreRecognition {
         let angle = |text: &str| {
             text.trim().trim_end_matches("deg").trim().parse::<f64>().ok().map(f64::abs)
         };
+        let side = rudder_side(&delta[start..])?;
         let kind =
             ManoeuvreKind::Zigzag { rudder_deg: side * angle(rudder)?, switch_deg: angle(switch)? };
-        // A reversal is a change of sign of the rudder, or its first sample at zero.
-        let crossing =
-            |k: &usize| delta[k - 1] * delta[*k] < 0.0 || (delta[*k] == 0.0 && delta[k - 1] != 0.0);
-        let reversals =
-            (start + 1..delta.len()).filter(crossing).map(|k| trial.t_s[k] - trial.t_s[start]);
-        Some(Self { kind, start, reversals_s: reversals.collect() })
+        let reversals = rudder_reversals(&delta[start..]).into_iter();
+        let reversals_s = reversals.map(|k| trial.t_s[start + k] - trial.t_s[start]).collect();
+        Some(Self { kind, start, reversals_s })
     }
 
     /// Returns the metrics of a track whose states belong to the given samples of the trial.
@@ -110,6 +107,29 @@ fn execution_sample(delta: &[f64]) -> Option<usize> {
     delta.iter().position(|value| (value - rest).abs() > least)
 }
 
+/// Returns the sign of the first angle that is not zero.
+fn rudder_side(delta: &[f64]) -> Option<f64> {
+    delta.iter().find(|angle| **angle != 0.0).map(|angle| angle.signum())
+}
+
+/// Returns the samples at which the rudder changes its side: the first at or beyond zero. A rudder
+/// that returns from zero to the same side has not changed it.
+fn rudder_reversals(delta: &[f64]) -> Vec<usize> {
+    let (mut reversals, mut side, mut at_zero) = (Vec::new(), rudder_side(delta), None);
+    for (k, angle) in delta.iter().enumerate() {
+        if *angle == 0.0 {
+            at_zero = at_zero.or(Some(k));
+            continue;
+        }
+        let crossing = at_zero.take().unwrap_or(k);
+        if side != Some(angle.signum()) {
+            reversals.push(crossing);
+            side = Some(angle.signum());
+        }
+    }
+    reversals
+}
+
 fn median(values: &[f64]) -> Option<f64> {
     let mut values = values.to_vec();
     values.sort_by(f64::total_cmp);
@@ -139,6 +159,15 @@ mod tests {
         let found = ManoeuvreRecognition::from_trial(&trial).unwrap();
         assert_eq!((found.start, found.reversals_s), (2, vec![4.0, 7.0]));
         assert_eq!(found.kind, ManoeuvreKind::Zigzag { rudder_deg: 10.0, switch_deg: 5.0 });
+    }
+
+    #[test]
+    fn a_rudder_that_only_touches_zero_is_not_reversed() {
+        let touched = [5.0, 10.0, 0.0, 10.0, 0.0, 0.0, -10.0, 0.0, -5.0, 2.0, 10.0, 0.0];
+        assert_eq!(rudder_reversals(&touched), [4, 9]);
+        let all = [vec![0.0, 0.0], touched.to_vec()].concat();
+        let found = ManoeuvreRecognition::from_trial(&trial("zigzag 10/5", &all)).unwrap();
+        assert_eq!((found.start, found.reversals_s), (2, vec![4.0, 9.0]));
     }
 
     #[test]
