@@ -25,7 +25,7 @@ statements! {
     DELETE = same("UPDATE ships SET deleted_us = $3 \
         WHERE name = $1 AND revision = COALESCE($2, revision) AND deleted_us IS NULL \
         RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
-    UNDELETE = same("UPDATE ships SET deleted_us = NULL WHERE name = $1 \
+    UNDELETE = same("UPDATE ships SET deleted_us = NULL WHERE name = $1 AND deleted_us IS NOT NULL \
         RETURNING name, title, category, document, revision, created_us, updated_us, deleted_us");
     // Copies the present row, after the update, into the history.
     REMEMBER = same("INSERT INTO ship_revisions (ship, revision, title, category, document, \
@@ -188,22 +188,22 @@ impl ShipRepository<'_> {
         Ok(ship)
     }
 
-    /// Restores a deleted ship unchanged.
+    /// Restores a deleted ship unchanged; one that is not deleted is returned as it is.
     pub async fn undelete(&self, name: &str) -> Result<Ship> {
         let mut tx = self.0.begin().await?;
-        let ship: Option<Ship> = tx.fetch_optional(UNDELETE, args![name: name]).await?;
+        let Some(ship) = tx.fetch_optional(UNDELETE, args![name: name]).await? else {
+            return find_ship(&mut tx, name).await;
+        };
         search_index::queue_ship(self.0, &mut tx, name).await?;
-        if let Some(ship) = &ship {
-            tx.record_audit_event(
-                self.0.now_us(),
-                "ship.undelete",
-                audit_subject(name),
-                None,
-                Some(audit_state(ship)),
-            );
-        }
+        tx.record_audit_event(
+            self.0.now_us(),
+            "ship.undelete",
+            audit_subject(name),
+            None,
+            Some(audit_state(&ship)),
+        );
         tx.commit().await?;
-        ship.ok_or_else(|| StoreError::not_found("ship", name))
+        Ok(ship)
     }
 
     /// Lists all ships by name, or those of one category.

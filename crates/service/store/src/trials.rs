@@ -15,7 +15,7 @@ use crate::page::{ListPage, PageRequest};
 use crate::record::{RowCount, record};
 use crate::search_index;
 use crate::ships;
-use crate::statements::{same, statements};
+use crate::statements::{pair, same, statements};
 use crate::store::Store;
 
 statements! {
@@ -24,10 +24,15 @@ statements! {
     INSERT = same("INSERT INTO trials (id, ship, sha256, name, manifest, conventions, manoeuvre, \
         sample_rows, duration_s, warnings, object_key, created_us) VALUES ($1, $2, $3, $4, $5, $6, \
         $7, $8, $9, $10, $11, $12) ON CONFLICT (ship, sha256) DO NOTHING");
-    // Returns the row in any case, and removes the mark of deletion.
-    REVIVE = same("UPDATE trials SET deleted_us = NULL WHERE ship = $1 AND sha256 = $2 RETURNING \
-        id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, duration_s, \
-        warnings, object_key, created_us, deleted_us");
+    // Deleted or not. On PostgreSQL the row is locked, so that it is not deleted before the commit.
+    STORED = pair(
+        "SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, \
+            duration_s, warnings, object_key, created_us, deleted_us FROM trials WHERE ship = $1 \
+            AND sha256 = $2",
+        "SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, \
+            duration_s, warnings, object_key, created_us, deleted_us FROM trials WHERE ship = $1 \
+            AND sha256 = $2 FOR NO KEY UPDATE",
+    );
     GET = same("SELECT id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, \
         duration_s, warnings, object_key, created_us, deleted_us FROM trials WHERE id = $1 AND \
         deleted_us IS NULL");
@@ -45,9 +50,9 @@ statements! {
     DELETE = same("UPDATE trials SET deleted_us = $2 WHERE id = $1 AND deleted_us IS NULL \
         RETURNING id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, \
         duration_s, warnings, object_key, created_us, deleted_us");
-    UNDELETE = same("UPDATE trials SET deleted_us = NULL WHERE id = $1 RETURNING id, ship, sha256, \
-        name, manifest, conventions, manoeuvre, sample_rows, duration_s, warnings, object_key, \
-        created_us, deleted_us");
+    UNDELETE = same("UPDATE trials SET deleted_us = NULL WHERE id = $1 AND deleted_us IS NOT NULL \
+        RETURNING id, ship, sha256, name, manifest, conventions, manoeuvre, sample_rows, \
+        duration_s, warnings, object_key, created_us, deleted_us");
 }
 
 record! {
@@ -215,9 +220,9 @@ impl TrialRepository<'_> {
             conventions: &new.conventions, manoeuvre: &new.manoeuvre, sample_rows: new.sample_rows,
             duration_s: new.duration_s, warnings: &new.warnings, object_key: &new.object_key,
             created_us: self.0.now_us()];
-        let inserted = tx.execute(INSERT, values).await?;
-        let row: Trial = tx.fetch_one(REVIVE, args![ship: &new.ship, sha256: &new.sha256]).await?;
-        if inserted == 1 {
+        let new_row = tx.execute(INSERT, values).await? == 1;
+        let row: Trial = tx.fetch_one(STORED, args![ship: &new.ship, sha256: &new.sha256]).await?;
+        if new_row {
             tx.record_audit_event(
                 self.0.now_us(),
                 "trial.create",
@@ -226,7 +231,28 @@ impl TrialRepository<'_> {
                 Some(audit_state(&row)),
             );
         }
-        Ok(InsertOutcome { row, new: inserted == 1 })
+        // The upload of a deleted trial restores it.
+        let row = if row.deleted_us.is_some() {
+            self.restore_row(tx, &row.id).await?.unwrap_or(row)
+        } else {
+            row
+        };
+        Ok(InsertOutcome { row, new: new_row })
+    }
+
+    /// Removes the mark of deletion within a transaction; `None` if no deleted trial has this id.
+    async fn restore_row(&self, tx: &mut AuditedTransaction, id: &str) -> Result<Option<Trial>> {
+        let trial: Option<Trial> = tx.fetch_optional(UNDELETE, args![id: id]).await?;
+        if let Some(trial) = &trial {
+            tx.record_audit_event(
+                self.0.now_us(),
+                "trial.undelete",
+                audit_subject(trial),
+                None,
+                Some(audit_state(trial)),
+            );
+        }
+        Ok(trial)
     }
 
     /// Returns the trial of an id.
@@ -285,20 +311,16 @@ impl TrialRepository<'_> {
         trial.ok_or_else(|| StoreError::not_found("trial", id))
     }
 
-    /// Restores a deleted trial.
+    /// Restores a deleted trial; one that is not deleted is returned as it is.
     pub async fn undelete(&self, id: &str) -> Result<Trial> {
         let mut tx = self.0.begin().await?;
-        let trial: Option<Trial> = tx.fetch_optional(UNDELETE, args![id: id]).await?;
-        if let Some(trial) = &trial {
-            tx.record_audit_event(
-                self.0.now_us(),
-                "trial.undelete",
-                audit_subject(trial),
-                None,
-                Some(audit_state(trial)),
-            );
-            search_index::queue_ship(self.0, &mut tx, &trial.ship).await?;
-        }
+        let trial = match self.restore_row(&mut tx, id).await? {
+            Some(trial) => {
+                search_index::queue_ship(self.0, &mut tx, &trial.ship).await?;
+                Some(trial)
+            }
+            None => tx.fetch_optional(GET, args![id: id]).await?,
+        };
         tx.commit().await?;
         trial.ok_or_else(|| StoreError::not_found("trial", id))
     }

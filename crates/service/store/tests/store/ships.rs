@@ -46,6 +46,16 @@ async fn a_deletion_can_be_undone(on: &TestStore) {
     assert_not_found(ships.undelete("pcc").await, "ship");
 }
 
+async fn a_ship_that_is_not_deleted_is_not_restored(on: &TestStore) {
+    let made = on.store.ships().create(&ship("kcs")).await.unwrap();
+    let before = audited_actions(on).await;
+    assert_eq!(on.store.ships().undelete("kcs").await.unwrap(), made);
+    assert_eq!(audited_actions(on).await, before, "nothing has changed");
+    on.store.ships().delete("kcs", None).await.unwrap();
+    on.store.ships().undelete("kcs").await.unwrap();
+    assert_eq!(audited_actions(on).await[..2], ["ship.undelete", "ship.delete"]);
+}
+
 async fn ships_are_listed_by_category(on: &TestStore) {
     for (name, category) in [("a", "tanker"), ("b", "container"), ("c", "tanker"), ("d", "tanker")]
     {
@@ -70,5 +80,6 @@ on_both_databases!(
     a_ship_keeps_its_history,
     only_the_revision_seen_can_be_replaced,
     a_deletion_can_be_undone,
+    a_ship_that_is_not_deleted_is_not_restored,
     ships_are_listed_by_category
 );

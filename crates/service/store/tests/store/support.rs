@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 
 use sistership_store::{
-    AliasMove, ExpectedRevision, NewJob, NewReport, NewShip, NewTrial, NewVersion, Result,
-    StoreError, VersionHead, sha256_hex,
+    AliasMove, AuditFilter, ExpectedRevision, NewJob, NewReport, NewShip, NewTrial, NewVersion,
+    PageRequest, Result, StoreError, VersionHead, sha256_hex,
 };
 
 pub use sistership_store::testing::{TestDatabase, TestStore};
@@ -86,6 +86,13 @@ pub async fn versions(on: &TestStore, model: &str, count: usize) -> Vec<VersionH
         made.push(on.store.versions().create(&version(model), &[]).await.unwrap());
     }
     made
+}
+
+/// Returns the actions of the audit, the latest first.
+pub async fn audited_actions(on: &TestStore) -> Vec<String> {
+    let page = PageRequest::first_page(100);
+    let entries = on.store.audit().list(AuditFilter::All, &page).await.unwrap().items;
+    entries.into_iter().map(|entry| entry.action).collect()
 }
 
 #[track_caller]

@@ -90,6 +90,20 @@ async fn a_deleted_trial_comes_back(on: &TestStore) {
     assert_eq!(trials.get(&made.id).await.unwrap(), made);
 }
 
+async fn every_restoration_of_a_trial_is_audited_once(on: &TestStore) {
+    on.store.ships().create(&ship("kcs")).await.unwrap();
+    let trials = on.store.trials();
+    let made = trials.insert(&trial("kcs", "turn")).await.unwrap().row;
+    let before = audited_actions(on).await;
+    assert_eq!(trials.undelete(&made.id).await.unwrap(), made, "it is not deleted");
+    trials.insert(&trial("kcs", "turn")).await.unwrap();
+    assert_eq!(audited_actions(on).await, before, "nothing has changed");
+    trials.delete(&made.id).await.unwrap();
+    trials.insert(&trial("kcs", "turn")).await.unwrap();
+    assert_eq!(audited_actions(on).await[..2], ["trial.undelete", "trial.delete"]);
+    assert_not_found(trials.undelete("nothing").await, "trial");
+}
+
 async fn trials_are_listed_in_the_order_of_upload(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
     for n in 0..5 {
@@ -114,5 +128,6 @@ on_both_databases!(
     several_trials_are_put_in_all_or_none,
     a_job_follows_trials_or_both_are_undone,
     a_deleted_trial_comes_back,
+    every_restoration_of_a_trial_is_audited_once,
     trials_are_listed_in_the_order_of_upload
 );
