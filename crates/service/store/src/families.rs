@@ -10,7 +10,7 @@ use crate::objects::sha256_hex;
 use crate::page::{ListPage, PageRequest};
 use crate::record::{RowCount, record};
 use crate::search::FactRange;
-use crate::statements::{same, statements};
+use crate::statements::{Statement, pair, same, statements};
 use crate::store::Store;
 use crate::version;
 
@@ -46,8 +46,12 @@ statements! {
         JOIN versions v ON v.model = a.model AND v.number = a.version_number \
         JOIN ship_facts f ON f.ship = m.ship AND f.fact = $2 AND f.value >= $3 AND f.value <= $4 \
         WHERE m.family = $1 ORDER BY m.ship LIMIT $5");
-    // The next revision is computed by the insertion itself; two at the same time conflict on the
-    // primary key.
+    // On SQLite the one writer holds the whole database already.
+    LOCK = pair(
+        "SELECT name, title, foundation, created_us FROM families WHERE name = $1",
+        "SELECT name, title, foundation, created_us FROM families WHERE name = $1 FOR NO KEY UPDATE",
+    );
+    // The next revision is computed by the insertion itself, under the lock of the family.
     TEACH = same("INSERT INTO family_priors (family, revision, document, sha256, created_us) \
         SELECT $1, COALESCE(MAX(revision), 0) + 1, $2, $3, $4 FROM family_priors WHERE family = $1 \
         RETURNING family, revision, document, sha256, created_us");
@@ -175,20 +179,21 @@ impl FamilyRepository<'_> {
     /// Adds ships, all or none; existing members are skipped. Returns the number of new members.
     pub async fn add_members(&self, family: &str, ships: &[String]) -> Result<u64> {
         let mut tx = self.0.begin().await?;
-        check_exists(&mut tx, family).await?;
-        let mut added = 0;
+        require_family(&mut tx, GET, family).await?;
+        let mut added = Vec::new();
         for ship in ships {
             // Checked here and not by the foreign key: a deleted ship still has a row.
             let RowCount { rows } = tx.fetch_one(SHIP, args![name: ship]).await?;
             if rows == 0 {
                 return Err(StoreError::invalid("ships", format!("there is no ship `{ship}`")));
             }
-            added += tx
-                .execute(ADD, args![family: family, ship: ship, added_us: self.0.now_us()])
-                .await?;
+            let values = args![family: family, ship: ship, added_us: self.0.now_us()];
+            if tx.execute(ADD, values).await? > 0 {
+                added.push(ship.as_str());
+            }
         }
-        if added > 0 {
-            let after = json!({ "ships": ships });
+        if !added.is_empty() {
+            let after = json!({ "ships": added });
             tx.record_audit_event(
                 self.0.now_us(),
                 "family.add",
@@ -198,7 +203,7 @@ impl FamilyRepository<'_> {
             );
         }
         tx.commit().await?;
-        Ok(added)
+        Ok(added.len() as u64)
     }
 
     /// Removes a ship from a family; returns true if it was a member.
@@ -287,7 +292,8 @@ pub(crate) async fn insert_prior_row(
     document: &str,
 ) -> Result<FamilyPrior> {
     checks::check_json("document", document)?;
-    check_exists(tx, family).await?;
+    // Two priors at the same time get one revision after the other, not the same one.
+    require_family(tx, LOCK, family).await?;
     let sha256 = sha256_hex(document.as_bytes());
     let values =
         args![family: family, document: document, sha256: &sha256, created_us: store.now_us()];
@@ -302,9 +308,14 @@ fn audit_subject(name: &str) -> String {
     format!("family:{name}")
 }
 
-async fn check_exists(tx: &mut AuditedTransaction, family: &str) -> Result<()> {
-    let family_row: Option<Family> = tx.fetch_optional(GET, args![name: family]).await?;
-    family_row.map(drop).ok_or_else(|| StoreError::not_found("family", family))
+/// Checks that there is a family, by a statement that reads or locks it.
+async fn require_family(
+    tx: &mut AuditedTransaction,
+    statement: Statement,
+    name: &str,
+) -> Result<()> {
+    let family: Option<Family> = tx.fetch_optional(statement, args![name: name]).await?;
+    family.map(drop).ok_or_else(|| StoreError::not_found("family", name))
 }
 
 impl FamilyRepository<'_> {

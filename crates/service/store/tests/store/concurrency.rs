@@ -103,7 +103,25 @@ async fn one_upload_of_many_is_new(on: &TestStore) {
     assert!(inserted.iter().all(|other| other.row == inserted[0].row));
 }
 
+async fn twenty_priors_of_a_family_get_twenty_revisions(on: &TestStore) {
+    let foundation = versions(on, "foundation", 1).await.remove(0).id;
+    on.store.families().create("sisters", "Sisters", &foundation).await.unwrap();
+    let other = Store::connect(&on.database.url, Arc::new(SystemClock)).await.unwrap();
+    let learners = (0..20).map(|n| {
+        let store = if n % 2 == 0 { on.store.clone() } else { other.clone() };
+        tokio::spawn(async move { store.families().insert_prior("sisters", "{}").await })
+    });
+    let mut revisions: Vec<_> = join_all(learners)
+        .await
+        .into_iter()
+        .map(|prior| prior.unwrap().unwrap().revision)
+        .collect();
+    revisions.sort_unstable();
+    assert_eq!(revisions, (1..=20).collect::<Vec<_>>());
+}
+
 on_both_databases!(
+    twenty_priors_of_a_family_get_twenty_revisions,
     fifty_creators_leave_no_gap,
     a_hundred_movers_have_one_winner,
     no_job_is_claimed_twice,

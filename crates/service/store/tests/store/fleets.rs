@@ -1,5 +1,5 @@
 use sistership_store::{
-    AliasMove, ExpectedRevision, Job, JobState, NewOutcome, PageRequest, Result,
+    AliasMove, AuditFilter, ExpectedRevision, Job, JobState, NewOutcome, PageRequest, Result,
 };
 
 use crate::jobs::{claim, let_the_lease_run_out};
@@ -79,6 +79,19 @@ async fn families_have_members_and_teach(on: &TestStore) {
     assert_not_found(families.insert_prior("nobody", "{}").await, "family");
 }
 
+async fn the_audit_has_the_new_members_of_a_family(on: &TestStore) {
+    family(on, &["a", "b"]).await;
+    on.store.ships().create(&ship("c")).await.unwrap();
+    let ships = ["a".to_owned(), "c".to_owned()];
+    assert_eq!(on.store.families().add_members("sisters", &ships).await.unwrap(), 1);
+    let page = PageRequest::first_page(1);
+    let last = on.store.audit().list(AuditFilter::All, &page).await.unwrap().items.remove(0);
+    assert_eq!(
+        (last.action.as_str(), last.state_after.as_deref()),
+        ("family.add", Some(r#"{"ships":["c"]}"#))
+    );
+}
+
 async fn statistics_are_kept_once(on: &TestStore) {
     let key = sistership_store::sha256_hex(b"rows");
     assert_eq!(on.store.statistics().get(&key).await.unwrap(), None);
@@ -154,6 +167,7 @@ async fn what_is_left_is_cancelled_and_goes_on(on: &TestStore) {
 
 on_both_databases!(
     families_have_members_and_teach,
+    the_audit_has_the_new_members_of_a_family,
     statistics_are_kept_once,
     a_ship_has_one_outcome_whoever_comes_twice,
     a_chunk_is_kept_whole_or_not_at_all,
