@@ -45,7 +45,12 @@ struct SharedTransaction {
 
 /// One writer's part of the transaction, during its turn; rolled back unless
 /// [committed](Self::commit).
-pub(crate) struct TransactionPart(Option<WriterTurn>);
+pub(crate) struct TransactionPart {
+    turn: Option<WriterTurn>,
+    /// Runtime in which the part began, and in which it is rolled back: the caller may drop it
+    /// outside of any.
+    runtime: Handle,
+}
 
 struct WriterTurn {
     lock: OwnedMutexGuard<Option<SharedTransaction>>,
@@ -76,7 +81,10 @@ impl WriterGroup {
                 None => SharedTransaction::begin(&pool).await?,
             };
             match shared.run("SAVEPOINT part").await {
-                Ok(()) => Ok(TransactionPart(Some(WriterTurn { lock, shared }))),
+                Ok(()) => {
+                    let turn = Some(WriterTurn { lock, shared });
+                    Ok(TransactionPart { turn, runtime: Handle::current() })
+                }
                 Err(error) => Err(shared.fail_transaction(error)),
             }
         })
@@ -87,21 +95,24 @@ impl WriterGroup {
 impl TransactionPart {
     /// Returns the connection of the transaction.
     pub(crate) fn connection(&mut self) -> sqlx::Result<&mut SqliteConnection> {
-        let turn = self.0.as_mut().ok_or_else(|| not_kept("it has ended"))?;
+        let turn = self.turn.as_mut().ok_or_else(|| not_kept("it has ended"))?;
         Ok(&mut turn.shared.connection)
     }
 
     /// Commits the part, together with the parts of other writers.
     pub(crate) async fn commit(mut self) -> sqlx::Result<()> {
-        let turn = self.0.take().ok_or_else(|| not_kept("it has ended"))?;
+        let turn = self.turn.take().ok_or_else(|| not_kept("it has ended"))?;
         run_uninterrupted(turn.commit()).await
     }
 }
 
 impl Drop for TransactionPart {
     fn drop(&mut self) {
-        if let (Some(turn), Ok(runtime)) = (self.0.take(), Handle::try_current()) {
-            runtime.spawn(turn.rollback_part());
+        if let Some(turn) = self.turn.take() {
+            // A runtime that has ended drops the task at once; the pool then closes the connection,
+            // for which it needs the context of a runtime, too.
+            let _context = self.runtime.enter();
+            self.runtime.spawn(turn.rollback_part());
         }
     }
 }
@@ -284,6 +295,27 @@ mod tests {
         put(&mut part, 3).await.unwrap();
         part.commit().await.unwrap();
         assert_eq!(kept(&pool).await, [2, 3]);
+    }
+
+    #[test]
+    fn a_part_dropped_outside_of_a_runtime_is_rolled_back() {
+        let runtime = tokio::runtime::Runtime::new().unwrap();
+        let (group, pool, part) = runtime.block_on(async {
+            let (group, pool) = group().await;
+            let mut part = group.begin().await.unwrap();
+            put(&mut part, 1).await.unwrap();
+            (group, pool, part)
+        });
+        drop(part);
+        runtime.block_on(async {
+            let mut part = group.begin().await.unwrap();
+            put(&mut part, 2).await.unwrap();
+            part.commit().await.unwrap();
+            assert_eq!(kept(&pool).await, [2]);
+        });
+        let part = runtime.block_on(group.begin()).unwrap();
+        runtime.shutdown_background();
+        drop(part);
     }
 
     #[tokio::test]
