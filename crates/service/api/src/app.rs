@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use sistership_model::{Law, Vessel, Zoo};
 use sistership_store::{ObjectStorage, Store};
-use tokio::sync::{Notify, RwLock, Semaphore};
+use tokio::sync::{RwLock, Semaphore};
 
 use crate::accounts::{Accounts, Credentials};
 use crate::config::{Config, LeaseSettings, Limits};
@@ -43,7 +43,6 @@ struct SharedState {
     spool: Arc<SpoolFolder>,
     no_room: AtomicBool,
     seats: Arc<Semaphore>,
-    wake: Notify,
     turns: Arc<RwLock<()>>,
     metrics: ServerMetrics,
     answers: AnswerCache,
@@ -94,7 +93,6 @@ impl App {
             spool: Arc::new(SpoolFolder::with_root(config.data_dir.join("uploads"))),
             no_room: AtomicBool::new(false),
             seats,
-            wake: Notify::new(),
             turns: Arc::default(),
             metrics: ServerMetrics::default(),
             answers: AnswerCache::default(),
@@ -186,19 +184,6 @@ impl App {
     /// during an earlier attempt at the job.
     pub(crate) fn worker_turns(&self) -> &Arc<RwLock<()>> {
         &self.0.turns
-    }
-
-    /// Signal that wakes the workers of this process.
-    pub(crate) fn wake_signal(&self) -> &Notify {
-        &self.0.wake
-    }
-
-    /// Wakes all workers of this process, including one that is about to wait.
-    pub(crate) fn wake_all(&self) {
-        // `notify_waiters` reaches only those that wait already; `notify_one` leaves a permit for
-        // one that begins to wait just now.
-        self.wake_signal().notify_waiters();
-        self.wake_signal().notify_one();
     }
 
     pub(crate) fn metrics(&self) -> &ServerMetrics {

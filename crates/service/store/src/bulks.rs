@@ -12,7 +12,7 @@ use crate::job::{Job, JobState, NewJob, job};
 use crate::jobs;
 use crate::page::{ListPage, PageRequest};
 use crate::record::record;
-use crate::statements::{same, statements};
+use crate::statements::{Statement, same, statements};
 use crate::store::Store;
 use crate::version::{NewVersion, VersionHead};
 use crate::versions;
@@ -210,28 +210,38 @@ impl BulkRepository<'_> {
     /// Cancels the chunks that wait, and asks the workers of those that run to stop.
     pub async fn request_cancel(&self, id: &str) -> Result<u64> {
         let values = &[("bulk", id.into()), ("finished_us", self.0.now_us().into())];
-        self.update_chunks(CANCEL, "bulk-refinement.cancel", id, values).await
+        let mut tx = self.0.begin().await?;
+        let changed =
+            self.update_chunks(&mut tx, (CANCEL, "bulk-refinement.cancel"), id, values).await?;
+        tx.commit().await?;
+        Ok(changed)
     }
 
     /// Queues the failed and cancelled chunks again; ships that have an outcome keep it.
     pub async fn retry_chunks(&self, id: &str) -> Result<u64> {
-        self.update_chunks(RETRY, "bulk-refinement.retry", id, &[("bulk", id.into())]).await
+        let mut tx = self.0.begin().await?;
+        let values = &[("bulk", id.into())];
+        let changed =
+            self.update_chunks(&mut tx, (RETRY, "bulk-refinement.retry"), id, values).await?;
+        if changed > 0 {
+            tx.mark_queued();
+        }
+        tx.commit().await?;
+        Ok(changed)
     }
 
     async fn update_chunks(
         &self,
-        statement: crate::statements::Statement,
-        action: &'static str,
+        tx: &mut AuditedTransaction,
+        (statement, action): (Statement, &'static str),
         id: &str,
         values: &[(&'static str, Arg<'_>)],
     ) -> Result<u64> {
-        let mut tx = self.0.begin().await?;
         let changed = tx.execute(statement, values).await?;
         if changed > 0 {
             let after = json!({ "chunks": changed });
             tx.record_audit_event(self.0.now_us(), action, audit_subject(id), None, Some(after));
         }
-        tx.commit().await?;
         Ok(changed)
     }
 

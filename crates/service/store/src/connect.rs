@@ -15,6 +15,7 @@ use crate::folders;
 use crate::group::WriterGroup;
 use crate::migrate;
 use crate::postgres_pool::PostgresPool;
+use crate::queue_signal::QueueSignal;
 
 const BUSY_TIMEOUT: Duration = Duration::from_secs(10);
 const SQLITE_READERS: u32 = 4;
@@ -56,6 +57,7 @@ async fn open_memory(url: &str) -> Result<Database> {
         read: ReadPool::Sqlite(pool.clone()),
         write: DatabaseWriter::Sqlite(WriterGroup::new(pool)),
         unit: None,
+        queue: QueueSignal::default(),
     })
 }
 
@@ -80,6 +82,7 @@ async fn open_file(url: &str) -> Result<Database> {
         read: ReadPool::Sqlite(read),
         write: DatabaseWriter::Sqlite(WriterGroup::new(write)),
         unit: None,
+        queue: QueueSignal::default(),
     })
 }
 
@@ -116,6 +119,7 @@ async fn open_postgres(url: &str) -> Result<Database> {
         read: ReadPool::Postgres(pool.clone()),
         write: DatabaseWriter::Postgres(pool),
         unit: None,
+        queue: QueueSignal::default(),
     })
 }
 

@@ -8,6 +8,7 @@ use crate::chain;
 use crate::connections::{DatabaseTransaction, DatabaseWriter, ReadConnection, ReadPool};
 use crate::entry::NewAuditEntry;
 use crate::error::Result;
+use crate::queue_signal::QueueSignal;
 use crate::record::DatabaseRecord;
 use crate::statements::Statement;
 use crate::unit::{UnitStep, UnitTransaction};
@@ -19,6 +20,8 @@ pub(crate) struct Database {
     pub(crate) write: DatabaseWriter,
     /// The unit of work that this handle belongs to, if it belongs to one.
     pub(crate) unit: Option<UnitTransaction>,
+    /// Raised after each commit that queues jobs.
+    pub(crate) queue: QueueSignal,
 }
 
 /// A transaction that may write; it is undone unless [committed](Self::commit).
@@ -26,6 +29,9 @@ pub(crate) struct AuditedTransaction {
     part: TransactionKind,
     /// Audit entries, appended at the commit.
     entries: Vec<NewAuditEntry>,
+    /// True if jobs are queued by the transaction.
+    queues_jobs: bool,
+    queue: QueueSignal,
 }
 
 enum TransactionKind {
@@ -42,7 +48,8 @@ impl Database {
             Some(unit) => TransactionKind::Step(unit.begin_step(&self.write).await?),
             None => TransactionKind::Alone(self.write.begin().await?),
         };
-        Ok(AuditedTransaction { part, entries: Vec::new() })
+        let queue = self.queue.clone();
+        Ok(AuditedTransaction { part, entries: Vec::new(), queues_jobs: false, queue })
     }
 
     /// Returns the row that a reading statement finds, if there is one; within a unit of work it
@@ -151,15 +158,24 @@ impl AuditedTransaction {
         self.entries.push(NewAuditEntry::new(at_us, action, subject, before, after));
     }
 
+    /// Marks that the transaction queues jobs: the workers are woken after the commit.
+    pub(crate) fn mark_queued(&mut self) {
+        self.queues_jobs = true;
+    }
+
     /// Commits the transaction; a step of a unit of work is committed with the unit.
     pub(crate) async fn commit(self) -> Result<()> {
         match self.part {
             TransactionKind::Alone(mut transaction) => {
                 // The audit comes last: its row of the last entry stays locked until the commit.
                 chain::append_entries(&mut transaction, self.entries).await?;
-                transaction.commit().await
+                transaction.commit().await?;
+                if self.queues_jobs {
+                    self.queue.raise();
+                }
+                Ok(())
             }
-            TransactionKind::Step(step) => step.commit_step(self.entries).await,
+            TransactionKind::Step(step) => step.commit_step(self.entries, self.queues_jobs).await,
         }
     }
 }

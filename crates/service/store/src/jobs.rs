@@ -9,6 +9,7 @@ use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::job::{Job, JobCount, JobFilter, JobState, NewJob, job};
 use crate::page::{ListPage, PageRequest};
+use crate::queue_signal::QueueWatch;
 use crate::statements::{Statement, same, statements};
 use crate::store::Store;
 
@@ -49,6 +50,12 @@ impl Store {
 }
 
 impl JobRepository<'_> {
+    /// Returns a watch for jobs that are queued through this store, by new requests or again. Those
+    /// of other processes are found by claiming.
+    pub fn watch_queue(&self) -> QueueWatch {
+        self.0.database().queue.subscribe()
+    }
+
     /// Queues a job.
     pub async fn enqueue(&self, new: &NewJob) -> Result<Job> {
         let mut tx = self.0.begin().await?;
@@ -134,6 +141,9 @@ impl JobRepository<'_> {
         let after =
             json!({ "state": job.state.as_str(), "cancel_requested": job.cancel_requested });
         tx.record_audit_event(self.0.now_us(), action, audit_subject(id), None, Some(after));
+        if job.state == JobState::Queued {
+            tx.mark_queued();
+        }
         tx.commit().await?;
         Ok(job)
     }
@@ -156,6 +166,7 @@ pub(crate) async fn insert_job(
     let values = args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request,
         created_us: now, author: &author];
     let job = tx.fetch_one(INSERT, values).await?;
+    tx.mark_queued();
     let after = json!({ "kind": new.kind, "ship": new.ship });
     tx.record_audit_event(now, "job.create", audit_subject(&id), None, Some(after));
     Ok(job)

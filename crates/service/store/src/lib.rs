@@ -49,6 +49,7 @@ mod objects_place;
 mod overviews;
 mod page;
 mod postgres_pool;
+mod queue_signal;
 mod record;
 mod reports;
 mod reserve;
@@ -108,6 +109,7 @@ pub use objects_error::ObjectsError;
 pub use objects_place::{ObjectsPlace, S3Place, provide_cryptography};
 pub use overviews::ShipOverview;
 pub use page::{ListPage, MAX_LIMIT, PageRequest};
+pub use queue_signal::QueueWatch;
 pub use reports::{NewReport, Report, ReportHead, ReportRepository};
 pub use search::{
     FactRange, FoundShip, MAX_RANGES, ShipKey, ShipSearch, ShipVectors, VectorsState,

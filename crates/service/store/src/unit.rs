@@ -22,9 +22,18 @@ struct UnitState {
     /// Audit entries of its steps, appended at its end: after that the transaction waits for
     /// nothing more.
     entries: Vec<NewAuditEntry>,
+    /// True if one of its steps queues jobs.
+    queues_jobs: bool,
     /// True if the last step has failed and is still to be rolled back.
     undo: bool,
     ended: bool,
+}
+
+/// The transaction of a unit that has ended, complete except for the commit.
+pub(crate) struct EndedUnit {
+    pub transaction: DatabaseTransaction,
+    /// True if jobs are queued by it.
+    pub queues_jobs: bool,
 }
 
 /// Exclusive use of the unit; a step that writes is rolled back unless [kept](Self::keep).
@@ -74,14 +83,14 @@ impl UnitTransaction {
         Ok(UnitStep { state, writes: false })
     }
 
-    /// Ends the unit and returns the transaction, if it has begun, complete except for the commit.
-    pub(crate) async fn end_unit(&self) -> Result<Option<DatabaseTransaction>> {
+    /// Ends the unit and returns its transaction, if it has begun.
+    pub(crate) async fn end_unit(&self) -> Result<Option<EndedUnit>> {
         let mut step = self.lock_state().await?;
         step.state.ended = true;
         let entries = std::mem::take(&mut step.state.entries);
         let Some(mut transaction) = step.state.transaction.take() else { return Ok(None) };
         chain::append_entries(&mut transaction, entries).await?;
-        Ok(Some(transaction))
+        Ok(Some(EndedUnit { transaction, queues_jobs: step.state.queues_jobs }))
     }
 
     /// Ends the unit and rolls it back.
@@ -100,9 +109,14 @@ impl UnitStep {
     }
 
     /// Releases the savepoint of the step and adds its audit entries to the unit.
-    pub(crate) async fn commit_step(mut self, entries: Vec<NewAuditEntry>) -> Result<()> {
+    pub(crate) async fn commit_step(
+        mut self,
+        entries: Vec<NewAuditEntry>,
+        queues_jobs: bool,
+    ) -> Result<()> {
         self.database_transaction()?.run("RELEASE SAVEPOINT step").await?;
         self.state.entries.extend(entries);
+        self.state.queues_jobs |= queues_jobs;
         self.writes = false;
         Ok(())
     }

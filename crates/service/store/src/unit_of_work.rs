@@ -6,7 +6,7 @@ use crate::idempotency::{self, RequestTicket};
 use crate::store::Store;
 #[cfg(feature = "testing")]
 use crate::unit::CrashPoint;
-use crate::unit::UnitTransaction;
+use crate::unit::{EndedUnit, UnitTransaction};
 
 /// Work that is committed completely or not at all, see [`Store::unit`]. It is rolled back when
 /// this and its handles are dropped.
@@ -41,13 +41,18 @@ impl UnitOfWork {
             idempotency::store_answer(&mut tx, ticket, status, body).await?;
             tx.commit().await?;
         }
-        let Some(transaction) = self.unit.end_unit().await? else { return Ok(()) };
+        let Some(EndedUnit { transaction, queues_jobs }) = self.unit.end_unit().await? else {
+            return Ok(());
+        };
         #[cfg(feature = "testing")]
         if self.store.is_to_end_at(CrashPoint::BeforeCommit) {
             drop(transaction);
             return std::future::pending().await;
         }
         transaction.commit().await?;
+        if queues_jobs {
+            self.store.database().queue.raise();
+        }
         #[cfg(feature = "testing")]
         if self.store.is_to_end_at(CrashPoint::AfterCommit) {
             return std::future::pending().await;

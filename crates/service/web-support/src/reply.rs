@@ -17,9 +17,6 @@ pub struct StoredReply {
     pub etag: Option<String>,
     /// Body, a JSON document.
     pub body: String,
-    /// True if jobs were queued, so that workers must be woken.
-    #[serde(skip)]
-    pub queued: bool,
 }
 
 impl StoredReply {
@@ -29,7 +26,7 @@ impl StoredReply {
     /// Returns an error if the document cannot be written.
     pub fn new(status: StatusCode, body: &impl Serialize) -> Result<Self> {
         let body = serde_json::to_string(body).map_err(Problem::internal)?;
-        Ok(Self { status: status.as_u16(), location: None, etag: None, body, queued: false })
+        Ok(Self { status: status.as_u16(), location: None, etag: None, body })
     }
 
     /// Sets the URL of the created item, by the segments of its path.
@@ -43,12 +40,6 @@ impl StoredReply {
     #[must_use]
     pub fn with_list_location(mut self, segments: &[&str], (name, value): (&str, &str)) -> Self {
         self.location = Some(format!("{}?{name}={}", encode_path(segments), percent_encode(value)));
-        self
-    }
-
-    /// Marks that jobs were queued; the workers are woken after the commit.
-    pub fn with_jobs(mut self) -> Self {
-        self.queued = true;
         self
     }
 

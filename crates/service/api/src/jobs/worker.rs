@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use sistership_store::{Actor, Job, JobClaim, StoreError};
+use sistership_store::{Actor, Job, JobClaim, QueueWatch, StoreError};
 use tokio::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, watch};
 use tokio::task::JoinHandle;
 use uuid::Uuid;
@@ -28,6 +28,7 @@ pub(crate) struct Worker {
     app: App,
     name: String,
     stopping: StopSignal,
+    queue: QueueWatch,
 }
 
 /// Permission of a worker to run a job: together with the other workers of the process, or alone.
@@ -55,7 +56,8 @@ struct WatchedWork {
 impl Worker {
     pub(crate) fn new(app: App) -> Self {
         let name = format!("{}-{}", std::process::id(), Uuid::now_v7());
-        Self { stopping: app.stop_signal(), app, name }
+        let (stopping, queue) = (app.stop_signal(), app.store().jobs().watch_queue());
+        Self { stopping, queue, app, name }
     }
 
     /// Claims and runs jobs until the server stops.
@@ -90,12 +92,7 @@ impl Worker {
                 Err(error) => {
                     drop(turn);
                     tracing::error!(%error, "no job could be claimed");
-                    self.wait_for_work(if error.is_out_of_space() {
-                        SPACE_RETRY_DELAY
-                    } else {
-                        RETRY_DELAY
-                    })
-                    .await;
+                    self.pause_after(&error).await;
                 }
             }
         }
@@ -118,8 +115,18 @@ impl Worker {
     /// Waits until there is a new job, the time has passed, or the server stops.
     async fn wait_for_work(&mut self, time: Duration) {
         tokio::select! {
-            () = self.app.wake_signal().notified() => {}
+            () = self.queue.wait_queued() => {}
             () = tokio::time::sleep(time) => {}
+            () = self.stopping.wait() => {}
+        }
+    }
+
+    /// Pauses after a failure of the store, also if jobs are queued meanwhile, or until the server
+    /// stops.
+    async fn pause_after(&mut self, error: &StoreError) {
+        let delay = if error.is_out_of_space() { SPACE_RETRY_DELAY } else { RETRY_DELAY };
+        tokio::select! {
+            () = tokio::time::sleep(delay) => {}
             () = self.stopping.wait() => {}
         }
     }
@@ -145,12 +152,7 @@ impl Worker {
     /// written again: this process has not ended and must not be counted as lost.
     async fn give_back(&mut self, job: &Job, mut error: StoreError) {
         while !self.stopping.is_stopping() {
-            self.wait_for_work(if error.is_out_of_space() {
-                SPACE_RETRY_DELAY
-            } else {
-                RETRY_DELAY
-            })
-            .await;
+            self.pause_after(&error).await;
             let jobs = self.app.store().jobs();
             let given = match jobs.release_job(&job.id, job.fence).await {
                 // The job was lost by a late heartbeat: report that this worker is alive.

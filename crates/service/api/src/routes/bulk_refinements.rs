@@ -174,14 +174,12 @@ async fn refine(
     payload: DocumentBody,
 ) -> Result<Response> {
     let asked: BulkRefinementRequest = payload.parse_json()?;
-    // Bulk refinement and jobs are queued in one transaction; the workers are woken after its
-    // commit.
+    // Bulk refinement and jobs are queued in one transaction.
     let work = |app: App| async move {
         let bulk = order_refinement(app.store(), &family, &asked).await?;
         let id = bulk.id.clone();
         Ok(StoredReply::new(StatusCode::ACCEPTED, &BulkView::load(&app, bulk).await?)?
-            .with_location(&["v1", "bulk-refinements", &id])
-            .with_jobs())
+            .with_location(&["v1", "bulk-refinements", &id]))
     };
     key.run_once(&app, payload.bytes(), work).await
 }
@@ -238,8 +236,6 @@ async fn cancel(State(app): State<App>, PathParams(id): PathParams<Id>) -> Resul
 async fn retry(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<BulkView>> {
     let bulk = app.store().bulks().get(&id).await?;
     app.store().bulks().retry_chunks(&id).await?;
-    // Several chunks may be queued again: all workers are woken.
-    app.wake_signal().notify_waiters();
     Ok(Json(BulkView::load(&app, bulk).await?))
 }
 

@@ -298,7 +298,6 @@ async fn learn(State(app): State<App>, PathParams(name): PathParams<Word>) -> Re
     let job =
         // The job belongs to no ship; access to it is decided by the family in its request.
         app.store().jobs().enqueue(&NewJob { kind: PRIOR_JOB_KIND.to_owned(), ship: None, request }).await?;
-    app.wake_all();
     job_reply(job)
 }
 

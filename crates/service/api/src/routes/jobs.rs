@@ -172,8 +172,5 @@ async fn cancel(State(app): State<App>, PathParams(id): PathParams<Id>) -> Resul
     responses((status = 200, body = JobView))
 )]
 async fn retry(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<JobView>> {
-    let job = app.store().jobs().retry(&id).await?;
-    // One job needs one worker.
-    app.wake_signal().notify_one();
-    Ok(Json(JobView::from_job(job)))
+    Ok(Json(JobView::from_job(app.store().jobs().retry(&id).await?)))
 }

@@ -25,6 +25,5 @@ pub(super) async fn enqueue_job(
 pub(super) fn job_reply(job: Job) -> Result<StoredReply> {
     let id = job.id.clone();
     Ok(StoredReply::new(StatusCode::ACCEPTED, &JobView::from_job(job))?
-        .with_location(&["v1", "jobs", &id])
-        .with_jobs())
+        .with_location(&["v1", "jobs", &id]))
 }

@@ -87,7 +87,7 @@ async fn upload_reply(app: &App, upload: TrialUpload) -> Result<StoredReply> {
     let new = kept.iter().filter(|trial| trial.new).count();
     let trials = kept.into_iter().map(|trial| TrialView::from_trial(trial.row)).collect();
     let uploaded = UploadResult { ship, trials, new, diagnosis: job.map(|job| job.id) };
-    let reply = StoredReply::new(StatusCode::CREATED, &uploaded)?.with_jobs();
+    let reply = StoredReply::new(StatusCode::CREATED, &uploaded)?;
     Ok(match only {
         Some(id) => reply.with_location(&["v1", "trials", &id]),
         None => reply.with_list_location(&["v1", "trials"], ("ship", &uploaded.ship)),

@@ -112,14 +112,11 @@ where
         Ok(reply) => commit_reply(unit, ticket.as_ref(), reply).await,
         Err(problem) => {
             unit.rollback().await;
-            // After the commit only: a worker that wakes earlier would not find the job.
             Err(problem)
         }
     };
-    match (&kept, &ticket) {
-        (Ok(reply), _) if reply.queued => app.wake_all(),
-        (Err(_), Some(ticket)) => abandon_ticket(app.store(), ticket).await,
-        _ => {}
+    if let (Err(_), Some(ticket)) = (&kept, &ticket) {
+        abandon_ticket(app.store(), ticket).await;
     }
     kept
 }

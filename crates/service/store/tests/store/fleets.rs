@@ -146,7 +146,10 @@ async fn what_is_left_is_cancelled_and_goes_on(on: &TestStore) {
     };
     let expected = [(JobState::Cancelled, 2), (JobState::Succeeded, 1)];
     assert_eq!(states(on.store.bulks().count_chunks(&id).await.unwrap()), expected);
+    let mut watch = on.store.jobs().watch_queue();
     assert_eq!(on.store.bulks().retry_chunks(&id).await.unwrap(), 2);
+    let woken = tokio::time::timeout(std::time::Duration::from_secs(1), watch.wait_queued()).await;
+    assert!(woken.is_ok(), "chunks are queued again");
     for ship in ["b", "c"] {
         let job = claim(on, "w").await.unwrap();
         commit(on, &id, &job, &[outcome(ship, vec![])]).await.unwrap();

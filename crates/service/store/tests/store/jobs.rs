@@ -1,6 +1,8 @@
 use std::time::Duration;
 
-use sistership_store::{Job, JobClaim, JobFilter, JobState, MAX_LOST_WORKERS, PageRequest};
+use sistership_store::{
+    Job, JobClaim, JobFilter, JobState, MAX_LOST_WORKERS, PageRequest, QueueWatch,
+};
 
 use crate::support::*;
 
@@ -38,6 +40,40 @@ async fn a_job_runs_and_ends(on: &TestStore) {
     assert_conflict(jobs.complete(&first.id, 1, "{}").await, "succeeded");
     assert_not_found(jobs.get("none").await, "job");
     assert_not_found(jobs.heartbeat("none", 1, 0.0, "", LEASE).await, "job");
+}
+
+/// Returns true if jobs have been queued since the last call.
+async fn is_woken(watch: &mut QueueWatch) -> bool {
+    tokio::time::timeout(Duration::from_millis(20), watch.wait_queued()).await.is_ok()
+}
+
+async fn whatever_queues_a_job_wakes_the_workers_once_it_is_there(on: &TestStore) {
+    let jobs = on.store.jobs();
+    let mut watch = jobs.watch_queue();
+    assert!(!is_woken(&mut watch).await, "nothing is queued");
+    let id = jobs.enqueue(&job("kcs")).await.unwrap().id;
+    assert!(is_woken(&mut watch).await, "also if it was queued before the worker waits");
+    let fence = claim(on, "a").await.unwrap().fence;
+    jobs.fail(&id, fence, "no").await.unwrap();
+    assert!(!is_woken(&mut watch).await, "nothing more is queued");
+    jobs.retry(&id).await.unwrap();
+    assert!(is_woken(&mut watch).await, "queued again");
+    jobs.request_cancel(&id).await.unwrap();
+    let unit = on.store.begin_unit();
+    unit.store().jobs().enqueue(&job("kcs")).await.unwrap();
+    assert!(!is_woken(&mut watch).await, "not committed yet");
+    unit.commit(None).await.unwrap();
+    assert!(is_woken(&mut watch).await, "committed with its unit of work");
+    let mut other = jobs.watch_queue();
+    on.store.ships().create(&ship("kcs")).await.unwrap();
+    assert!(!is_woken(&mut watch).await, "a ship is no job");
+    let inserted = on.store.trials().insert_all_and_enqueue(
+        &[],
+        &sistership_store::ObjectStorage::in_memory(),
+        |_| Some(job("kcs")),
+    );
+    inserted.await.unwrap();
+    assert!(is_woken(&mut watch).await && is_woken(&mut other).await, "every worker");
 }
 
 async fn a_lost_lease_fences_the_old_worker(on: &TestStore) {
@@ -188,6 +224,7 @@ async fn jobs_are_listed(on: &TestStore) {
 }
 
 on_both_databases!(
+    whatever_queues_a_job_wakes_the_workers_once_it_is_there,
     a_job_runs_and_ends,
     a_lost_lease_fences_the_old_worker,
     a_job_that_ends_its_process_twice_is_set_aside,

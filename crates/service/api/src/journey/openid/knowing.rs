@@ -192,6 +192,6 @@ pub(super) fn claims(hostile: &ScriptedProvider, claims: Value) {
     hostile.lock_script().claims = claims.as_object().unwrap().clone();
 }
 
-pub(super) fn token(page: &str) -> &str {
+pub(in crate::journey) fn token(page: &str) -> &str {
     page.split("name=\"form_token\" value=\"").nth(1).unwrap().split('"').next().unwrap()
 }

@@ -1,6 +1,6 @@
 //! Sign-in at an OpenID provider: admission, audit, and refusals.
 
-mod knowing;
+pub(super) mod knowing;
 mod real;
 
 use std::collections::BTreeMap;

@@ -153,7 +153,6 @@ pub(super) async fn apply_corrections(
     }
     let (_, job) = store_upload(&app, draft_upload(&draft, &app)?).await?;
     app.drafts().remove(&id);
-    app.wake_signal().notify_one();
     Ok(match job {
         Some(job) => redirect_to(&format!("/jobs/{}", job.id)),
         None => redirect_to(&format!("/ships/{}", &*ship)),

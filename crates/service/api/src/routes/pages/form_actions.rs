@@ -101,7 +101,5 @@ pub(super) async fn retry_job(
     PathParams(id): PathParams<Id>,
     PageForm(_): PageForm,
 ) -> Result<Response> {
-    let job = app.store().jobs().retry(&id).await?;
-    app.wake_signal().notify_one();
-    Ok(redirect_to(&format!("/jobs/{}", job.id)))
+    Ok(redirect_to(&format!("/jobs/{}", app.store().jobs().retry(&id).await?.id)))
 }
