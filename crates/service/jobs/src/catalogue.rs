@@ -9,7 +9,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use sistership_model::{Vessel, Zoo};
 use sistership_store::{
-    FoundShip, Law, MAX_LIMIT, PageRequest, Result, Ship, ShipSearch, Store, StoreError,
+    FoundShip, Law, PageRequest, Result, Ship, ShipSearch, Store, StoreError, read_all_pages,
 };
 
 use crate::archive::Archive;
@@ -198,13 +198,8 @@ fn log_failure(kind: &str, name: &str, error: Option<sistership_model::FileError
 
 /// Reads all laws of the database.
 async fn read_laws(store: &Store) -> Result<Vec<Law>> {
-    let (mut all, mut page) = (Vec::new(), PageRequest::first_page(MAX_LIMIT));
-    loop {
-        let list = store.laws().list(&page).await?;
-        all.extend(list.items);
-        let Some(next) = list.next else { return Ok(all) };
-        page = PageRequest::after_key(next, MAX_LIMIT);
-    }
+    let laws = store.laws();
+    read_all_pages(|page| async move { laws.list(&page).await }).await
 }
 
 async fn read_ships(store: &Store, heads: impl Iterator<Item = &FoundShip>) -> Result<Vec<Ship>> {

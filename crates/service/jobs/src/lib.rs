@@ -26,8 +26,11 @@ pub mod request;
 pub mod schema;
 pub mod search;
 pub mod seed;
+mod ship_trials;
 pub mod sorted_json;
 pub mod start;
+#[cfg(test)]
+mod test_rows;
 pub mod training;
 pub mod upkeep;
 pub mod validation;

@@ -108,7 +108,7 @@ pub use objects::{ObjectStorage, sha256_hex};
 pub use objects_error::ObjectsError;
 pub use objects_place::{ObjectsPlace, S3Place, provide_cryptography};
 pub use overviews::ShipOverview;
-pub use page::{ListPage, MAX_LIMIT, PageRequest};
+pub use page::{ListPage, MAX_LIMIT, PageRequest, read_all_pages, visit_pages};
 pub use queue_signal::QueueWatch;
 pub use reports::{NewReport, Report, ReportHead, ReportRepository};
 pub use search::{

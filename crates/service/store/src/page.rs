@@ -65,3 +65,70 @@ pub struct ListPage<T, K = String> {
     /// Value of [`Page::after`] for the next page; none on the last one.
     pub next: Option<K>,
 }
+
+/// Reads all pages of a list. `list` reads one page.
+///
+/// # Errors
+/// Returns the first error of `list`.
+pub async fn read_all_pages<T, K, E, F>(
+    list: impl FnMut(PageRequest<K>) -> F,
+) -> std::result::Result<Vec<T>, E>
+where
+    F: Future<Output = std::result::Result<ListPage<T, K>, E>>,
+{
+    let mut all = Vec::new();
+    visit_pages(list, |items| {
+        all.extend(items);
+        Ok(())
+    })
+    .await?;
+    Ok(all)
+}
+
+/// Passes the items of each page of a list to `visit`, from the first page to the last.
+///
+/// # Errors
+/// Returns the first error of `list` or `visit`, which ends the walk.
+pub async fn visit_pages<T, K, E, F>(
+    mut list: impl FnMut(PageRequest<K>) -> F,
+    mut visit: impl FnMut(Vec<T>) -> std::result::Result<(), E>,
+) -> std::result::Result<(), E>
+where
+    F: Future<Output = std::result::Result<ListPage<T, K>, E>>,
+{
+    let mut page = PageRequest::first_page(MAX_LIMIT);
+    loop {
+        let ListPage { items, next } = list(page).await?;
+        visit(items)?;
+        let Some(key) = next else { return Ok(()) };
+        page = PageRequest::after_key(key, MAX_LIMIT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns a page of the numbers from 1 to 2500.
+    async fn list_numbers(page: PageRequest<i64>) -> Result<ListPage<i64, i64>> {
+        let (from, limit) = (page.after.unwrap_or(0) + 1, page.fetch_limit()?);
+        Ok(page.build_page((from..=2500).take(limit as usize).collect(), |number| *number))
+    }
+
+    #[tokio::test]
+    async fn every_item_of_a_list_is_read_once() {
+        let all = read_all_pages(list_numbers).await.unwrap_or_default();
+        assert_eq!(all, (1..=2500).collect::<Vec<_>>());
+    }
+
+    #[tokio::test]
+    async fn an_error_ends_the_walk() {
+        let mut seen = 0;
+        let visited = visit_pages(list_numbers, |items| {
+            seen += items.len();
+            Err(StoreError::invalid("items", "enough"))
+        });
+        assert!(visited.await.is_err());
+        assert_eq!(seen, 1000);
+    }
+}

@@ -4,7 +4,7 @@ use axum::extract::RawPathParams;
 use axum::http::{Method, StatusCode, Uri};
 use sistership_auth::{Rights, Role};
 use sistership_jobs::fleet::{BULK_JOB_KIND, BulkChunk, LearnJob, PRIOR_JOB_KIND};
-use sistership_store::{Job, MAX_LIMIT, PageRequest, Store, StoreError, Trial};
+use sistership_store::{Job, Store, StoreError, Trial, read_all_pages};
 
 use super::table::{RoleScope, RouteNeed, route_need};
 use crate::app::App;
@@ -114,9 +114,10 @@ async fn has_role(store: &Store, rights: &Rights, role: Role, ship: &str) -> Res
     let mut families = Vec::new();
     // Families are read only if the caller has rights by family at all.
     if rights.by_family() {
+        let rows = store.families();
         let found =
-            store.families().list_by_ship(ship, &PageRequest::first_page(MAX_LIMIT)).await?;
-        families.extend(found.items.into_iter().map(|family| family.name));
+            read_all_pages(|page| async move { rows.list_by_ship(ship, &page).await }).await?;
+        families.extend(found.into_iter().map(|family| family.name));
     }
     Ok(rights.on_ship(role, ship, &families))
 }

@@ -6,7 +6,7 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use sistership_store::{MAX_LIMIT, PageRequest, Trial};
+use sistership_store::{Trial, visit_pages};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -132,15 +132,16 @@ async fn undelete(
 /// # Errors
 /// Returns an error if there are too many for one job.
 pub(super) async fn all_of_ship(app: &App, ship: &str) -> Result<Vec<Trial>> {
-    let (mut all, mut page) = (Vec::new(), PageRequest::first_page(MAX_LIMIT));
-    loop {
-        let list = app.store().trials().list(ship, &page).await?;
-        all.extend(list.items);
-        // After each page, so that a ship with very many trials is not read to the end.
-        check_trial_count(app, all.len())?;
-        let Some(next) = list.next else { return Ok(all) };
-        page = PageRequest::after_key(next, MAX_LIMIT);
-    }
+    let (trials, mut all) = (app.store().trials(), Vec::new());
+    // The count is checked after each page, so that a ship with very many trials is not read to the
+    // end.
+    let collect = |rows: Vec<Trial>| {
+        all.extend(rows);
+        check_trial_count(app, all.len())
+    };
+    let list = |page| async move { trials.list(ship, &page).await.map_err(Problem::from) };
+    visit_pages(list, collect).await?;
+    Ok(all)
 }
 
 /// Checks the number of trials of one job.

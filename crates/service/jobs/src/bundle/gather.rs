@@ -3,13 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use sistership_model::version;
-use sistership_store::{MAX_LIMIT, PageRequest, StoreError, Trial, Version};
+use sistership_store::{StoreError, Trial, Version, read_all_pages};
 
 use super::content::{Bundle, BundleContent, ReportRecord, ShipRecord, TrialRecord, VersionRecord};
 use super::error::BundleError;
 use super::history::ship_revisions;
 use crate::archive::{Archive, version_document};
 use crate::recipe::DerivationRecipe;
+use crate::ship_trials::all_trials;
 use crate::version::VersionDocument;
 
 type Result<T> = std::result::Result<T, BundleError>;
@@ -175,10 +176,11 @@ impl BundleBuilder<'_> {
     /// Returns the reports on a version, oldest first.
     async fn version_reports(&self, version: &str) -> Result<Vec<ReportRecord>> {
         let reports = self.archive.store.reports();
-        let heads = reports.by_version(version, &PageRequest::first_page(MAX_LIMIT)).await?;
+        let heads =
+            read_all_pages(|page| async move { reports.by_version(version, &page).await }).await?;
         let mut all = Vec::new();
         // The store lists the newest first.
-        for head in heads.items.iter().rev() {
+        for head in heads.iter().rev() {
             let report = reports.get(&head.id).await?;
             let (kind, document, html) = (report.head.kind, report.document, report.html);
             all.push(ReportRecord { kind, document, html });
@@ -196,22 +198,17 @@ impl BundleBuilder<'_> {
 
     /// Adds every trial of the ship, also those that no version was derived from.
     async fn add_trials(&mut self, ship: &str) -> Result<()> {
-        let mut page = PageRequest::first_page(MAX_LIMIT);
-        loop {
-            let found = self.archive.store.trials().list(ship, &page).await?;
-            for row in found.items {
-                self.add_object(&row.object_key).await?;
-                self.add_trial(row);
-            }
-            let Some(next) = found.next else { return Ok(()) };
-            page = PageRequest::after_key(next, MAX_LIMIT);
+        for row in all_trials(&self.archive.store, ship).await? {
+            self.add_object(&row.object_key).await?;
+            self.add_trial(row);
         }
+        Ok(())
     }
 
     async fn add_aliases(&mut self, ship: &str) -> Result<()> {
-        let aliases =
-            self.archive.store.aliases().list(ship, &PageRequest::first_page(MAX_LIMIT)).await?;
-        let places = aliases.items.into_iter().map(|alias| (alias.alias, alias.version_number));
+        let aliases = self.archive.store.aliases();
+        let aliases = read_all_pages(|page| async move { aliases.list(ship, &page).await }).await?;
+        let places = aliases.into_iter().map(|alias| (alias.alias, alias.version_number));
         self.bundle.content.aliases.extend(places);
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Lookups in an archive where a missing row is not an error.
 
-use sistership_store::{MAX_LIMIT, PageRequest, StoreError};
+use sistership_store::{StoreError, read_all_pages};
 
 use super::content::ShipRevision;
 use super::error::BundleError;
@@ -19,19 +19,15 @@ pub fn optional<T>(result: std::result::Result<T, StoreError>) -> Result<Option<
 
 /// Returns the revisions of a ship, oldest first; empty if there is no such ship.
 pub async fn ship_revisions(archive: &Archive, name: &str) -> Result<Vec<ShipRevision>> {
-    let mut all = Vec::new();
-    let mut page = PageRequest::first_page(MAX_LIMIT);
-    loop {
-        let listed = archive.store.ships().list_revisions(name, &page).await;
-        let Some(listed) = optional(listed)? else { return Ok(all) };
-        all.extend(listed.items.into_iter().map(|revision| ShipRevision {
-            title: revision.title,
-            category: revision.category,
-            document: revision.document,
-        }));
-        let Some(next) = listed.next else { break };
-        page = PageRequest::after_key(next, MAX_LIMIT);
-    }
-    all.reverse();
-    Ok(all)
+    let ships = archive.store.ships();
+    let listed =
+        read_all_pages(|page| async move { ships.list_revisions(name, &page).await }).await;
+    let revisions = optional(listed)?.unwrap_or_default();
+    // The store lists the newest first.
+    let record = |revision: sistership_store::ShipRevision| ShipRevision {
+        title: revision.title,
+        category: revision.category,
+        document: revision.document,
+    };
+    Ok(revisions.into_iter().rev().map(record).collect())
 }

@@ -222,3 +222,30 @@ async fn a_signed_file_is_its_signers() {
         assert!(error.contains(says), "{error}");
     }
 }
+
+#[tokio::test(flavor = "multi_thread")]
+async fn aliases_and_reports_beyond_one_page_are_collected() {
+    let database = TestDatabase::new_sqlite();
+    let archive = filled(&database).await;
+    let version = archive.store.versions().get(SHIP, 1).await.unwrap().head.id;
+    // In one transaction, which is faster.
+    let unit = archive.store.begin_unit();
+    for number in 0..1100 {
+        let report = NewReport {
+            version_id: Some(version.clone()),
+            ship: SHIP.to_owned(),
+            kind: "refinement".to_owned(),
+            document: format!("{{\"number\":{number}}}"),
+            html: "<p></p>".to_owned(),
+        };
+        unit.store().reports().insert(&report).await.unwrap();
+        let alias = server_move(&format!("alias-{number}"), ExpectedRevision::Absent, "test");
+        unit.store().aliases().move_to(SHIP, 1, &alias).await.unwrap();
+    }
+    unit.commit(None).await.unwrap();
+    let content = collect_bundle(&archive, SHIP).await.unwrap().content;
+    assert_eq!(content.aliases.len(), 1100 + 1, "and the champion");
+    let reports = &content.lines[SHIP][0].reports;
+    assert_eq!(reports.len(), 1100 + 1, "and that of the derivation");
+    assert_eq!(reports.last().unwrap().document, r#"{"number":1099}"#, "oldest first");
+}

@@ -3,10 +3,11 @@
 
 use std::collections::BTreeSet;
 
-use sistership_store::{MAX_LIMIT, PageRequest, Trial, Version};
+use sistership_store::{Trial, Version, read_all_pages};
 
 use crate::archive::{Archive, version_document};
 use crate::error::DeriveError;
+use crate::ship_trials::all_trials;
 
 type Result<T> = std::result::Result<T, DeriveError>;
 
@@ -52,10 +53,10 @@ fn sample_count(trial: &Trial) -> u64 {
     u64::try_from(trial.sample_rows).unwrap_or(0)
 }
 
-/// Returns true if one of the newest diagnoses of a version has exactly these trials.
+/// Returns true if one of the diagnoses of a version has exactly these trials.
 async fn is_diagnosed(archive: &Archive, version: &Version, ids: &[String]) -> Result<bool> {
-    let page = PageRequest::first_page(MAX_LIMIT);
-    let known = archive.store.diagnoses().by_version(&version.head.id, &page).await?.items;
+    let (diagnoses, id) = (archive.store.diagnoses(), version.head.id.as_str());
+    let known = read_all_pages(|page| async move { diagnoses.by_version(id, &page).await }).await?;
     let mut known = known.iter().filter(|known| known.version_id == version.head.id);
     Ok(known.any(|known| {
         let mut trials: Vec<String> = serde_json::from_str(&known.trials).unwrap_or_default();
@@ -67,21 +68,10 @@ async fn is_diagnosed(archive: &Archive, version: &Version, ids: &[String]) -> R
 /// Returns the trials of a ship that were uploaded after the last one that a version was fitted on;
 /// all of them if it was fitted on none.
 async fn trials_since(archive: &Archive, version: &Version) -> Result<Vec<Trial>> {
-    let mut all = all_trials(archive, &version.head.model).await?;
+    let mut all = all_trials(&archive.store, &version.head.model).await?;
     let fitted = fitted_samples(archive, version).await?;
     let last = all.iter().rposition(|trial| fitted.contains(&trial.sha256));
     Ok(all.split_off(last.map_or(0, |last| last + 1)))
-}
-
-/// Reads the trials of a ship, oldest first.
-async fn all_trials(archive: &Archive, ship: &str) -> Result<Vec<Trial>> {
-    let (mut all, mut page) = (Vec::new(), PageRequest::first_page(MAX_LIMIT));
-    loop {
-        let trials = archive.store.trials().list(ship, &page).await?;
-        all.extend(trials.items);
-        let Some(next) = trials.next else { return Ok(all) };
-        page = PageRequest::after_key(next, MAX_LIMIT);
-    }
 }
 
 /// Returns the hashes of the trials that a version was fitted on, and of those of the versions

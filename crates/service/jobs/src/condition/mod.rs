@@ -5,11 +5,13 @@ mod description;
 mod evidence;
 mod joint_trials;
 mod recent_drift;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeSet;
 
 use serde::Serialize;
-use sistership_store::{DiagnosisRow, MAX_LIMIT, PageRequest, Store, StoreError, VersionHead};
+use sistership_store::{DiagnosisRow, Store, StoreError, VersionHead, read_all_pages};
 use utoipa::ToSchema;
 
 use self::evidence::{ConditionEvidence, DiagnosisVerdict, EvidenceLimits};
@@ -124,11 +126,9 @@ impl Condition {
             });
         };
         let version = store.versions().get_head(ship, champion.version_number).await?;
-        let rows = store
-            .diagnoses()
-            .by_version(&version.id, &PageRequest::first_page(MAX_LIMIT))
-            .await?
-            .items;
+        let (diagnoses, id) = (store.diagnoses(), version.id.as_str());
+        let rows =
+            read_all_pages(|page| async move { diagnoses.by_version(id, &page).await }).await?;
         // What a deleted trial showed must not count.
         let deleted = store.deleted_trials(&diagnosed_trials(&rows)).await?;
         let mut condition = Self::from_diagnoses(&version, &rows, &deleted);

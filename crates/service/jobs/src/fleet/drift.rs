@@ -6,13 +6,14 @@ use serde::Serialize;
 use sistership_fleet::statistics::{RegressionFrame, TrialStatistics};
 use sistership_model::coefficient::Axis;
 use sistership_model::version::RecipeTrial;
-use sistership_store::{MAX_LIMIT, PageRequest, StoreError, Trial};
+use sistership_store::{StoreError, Trial};
 use utoipa::ToSchema;
 
 use super::stored_statistics::trial_statistics;
 use crate::aliases::CHAMPION;
 use crate::archive::{Archive, version_document};
 use crate::error::DeriveError;
+use crate::ship_trials::{all_trials, newest_trials};
 use crate::version::VersionDocument;
 
 /// Unexplained force of a champion on its ship's trials over time.
@@ -78,7 +79,7 @@ impl Drift {
                 Err(error) => return Ok(Some(Self { reason: Some(error.to_string()), ..drift })),
             };
         // All trials: the ratio needs those that were fitted as well.
-        let trials = newest_trials(archive, ship, usize::MAX).await?;
+        let trials = all_trials(store, ship).await?;
         drift.trials = trial_residuals(archive, &frame, &version, trials).await?;
         drift.compute_ratios();
         Ok(Some(drift))
@@ -121,27 +122,9 @@ pub async fn residuals_of_newest(
     let Ok(frame) = RegressionFrame::new(&version.model, &law, law_sha256, None) else {
         return Ok(Vec::new());
     };
-    let newest = newest_trials(archive, &version.ship, count).await?;
+    let newest = newest_trials(&archive.store, &version.ship, count, |_| true).await?;
     let left = trial_residuals(archive, &frame, version, newest).await?;
     Ok(left.iter().map(TrialResidual::largest_residual).collect())
-}
-
-/// Reads the newest trials of a ship, at most `count`, oldest first.
-async fn newest_trials(
-    archive: &Archive,
-    ship: &str,
-    count: usize,
-) -> Result<Vec<Trial>, StoreError> {
-    let mut newest = Vec::new();
-    let mut page = PageRequest::first_page(MAX_LIMIT);
-    loop {
-        let trials = archive.store.trials().list(ship, &page).await?;
-        newest.extend(trials.items);
-        // Pages come oldest first; only the last `count` rows are kept in memory.
-        newest.drain(..newest.len().saturating_sub(count));
-        let Some(next) = trials.next else { return Ok(newest) };
-        page = PageRequest::after_key(next, MAX_LIMIT);
-    }
 }
 
 impl TrialResidual {

@@ -11,6 +11,7 @@ use super::members::member_names;
 use super::stored_statistics::trial_statistics;
 use crate::archive::{Archive, version_document};
 use crate::error::DeriveError;
+use crate::ship_trials::all_trials;
 
 /// Kind of the jobs that estimate a family's prior.
 pub const PRIOR_JOB_KIND: &str = "family-prior";
@@ -96,12 +97,8 @@ async fn member_statistics(
 
 /// Reads the trials of a ship, oldest first.
 pub async fn recipe_trials(archive: &Archive, ship: &str) -> Result<Vec<RecipeTrial>, DeriveError> {
-    let page = sistership_store::PageRequest::first_page(sistership_store::MAX_LIMIT);
-    let trials = archive.store.trials().list(ship, &page).await?.items;
-    Ok(trials
-        .into_iter()
-        .map(|trial| RecipeTrial { name: trial.name, sha256: trial.sha256 })
-        .collect())
+    let trials = all_trials(&archive.store, ship).await?.into_iter();
+    Ok(trials.map(|trial| RecipeTrial { name: trial.name, sha256: trial.sha256 }).collect())
 }
 
 /// Selects a limited number of ships, evenly spaced.
