@@ -8,13 +8,14 @@ use sistership_assessment::validation::{TrialOfShip, validate};
 use sistership_model::version::RecipeTrial;
 use sistership_model::{Law, Model, Trial, Vessel};
 use sistership_simulation::PlantError;
-use sistership_store::{PageRequest, Version};
+use sistership_store::Version;
 
 use crate::archive::{Archive, parse_vessel, version_document};
 use crate::error::DeriveError;
 use crate::memory::trial_bytes;
+use crate::ship_trials::newest_trials;
 
-/// Largest number of trials: enough for repeats of every standard manoeuvre.
+/// Largest number of trials, the newest ones: enough for repeats of every standard manoeuvre.
 const MOST_TRIALS: usize = 48;
 /// Number of models drawn for the uncertainty of the posterior: the relative standard error of a
 /// standard deviation of 40 draws is 1/sqrt(2 * 39), 11 %.
@@ -32,7 +33,8 @@ pub struct ValidationInputs {
 }
 
 impl ValidationInputs {
-    /// Loads a version, its ship at the present revision, and its turning circles and zigzags.
+    /// Loads a version, its ship at the present revision, and its newest turning circles and
+    /// zigzags.
     ///
     /// # Errors
     /// Returns an error if the version, its law or its ship is missing or damaged.
@@ -44,7 +46,9 @@ impl ValidationInputs {
         let law = archive.law_by_hash(&model.law, own.recipe.law_sha256()).await?;
         let fitted = fitted_hashes(archive, version).await?;
         let vessel = parse_vessel(ship, &archive.store.ships().get(ship).await?.document)?;
-        Ok(Self { model, law, vessel, trials: standard_trials(archive, ship).await?, fitted })
+        // Manoeuvres are known by name only, so that all rows of the ship are read.
+        let trials = newest_trials(&archive.store, ship, MOST_TRIALS, is_judged).await?;
+        Ok(Self { model, law, vessel, trials, fitted })
     }
 
     /// Names and hashes of the samples that it reads.
@@ -99,26 +103,36 @@ async fn fitted_hashes(
     Ok(all)
 }
 
-/// Reads the turning circles and zigzags of a ship, oldest first.
-async fn standard_trials(
-    archive: &Archive,
-    ship: &str,
-) -> Result<Vec<sistership_store::Trial>, DeriveError> {
-    // Manoeuvres are known by name only, so all rows of the ship are read until there are enough.
-    let (mut found, mut page) = (Vec::new(), PageRequest::first_page(200));
-    loop {
-        let rows = archive.store.trials().list(ship, &page).await?;
-        found.extend(rows.items.into_iter().filter(is_judged));
-        match rows.next {
-            Some(next) if found.len() < MOST_TRIALS => page = PageRequest::after_key(next, 200),
-            _ => break,
-        }
-    }
-    found.truncate(MOST_TRIALS);
-    Ok(found)
-}
-
 fn is_judged(trial: &sistership_store::Trial) -> bool {
     let name = trial.manoeuvre.as_deref().unwrap_or_default().to_lowercase();
     name.starts_with("turn") || name.starts_with("zigzag")
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_store::NewTrial;
+    use sistership_store::testing::TestDatabase;
+
+    use super::*;
+    use crate::catalogue::ZooCache;
+    use crate::seed;
+    use crate::test_rows::new_trial;
+
+    #[tokio::test]
+    async fn the_newest_manoeuvres_of_a_long_series_are_validated() {
+        let database = TestDatabase::new_sqlite();
+        let archive = Archive::open(&database.url, database.folder.path()).await.unwrap();
+        seed::seed_zoo(&archive.store, &ZooCache::default()).await.unwrap();
+        let series: Vec<NewTrial> = (0..300)
+            .map(|number: usize| new_trial("mariner", &number.to_string(), Some("zigzag 20/20")))
+            .collect();
+        archive.store.trials().insert_all(&series).await.unwrap();
+        let version = archive.store.versions().get("mariner", 1).await.unwrap();
+        let inputs = ValidationInputs::load(&archive, &version).await.unwrap();
+        let names: Vec<String> =
+            inputs.recipe_trials().into_iter().map(|trial| trial.name).collect();
+        let newest: Vec<String> = (252..300).map(|number| number.to_string()).collect();
+        assert_eq!(names, newest);
+    }
 }
