@@ -8,6 +8,7 @@ use reqwest::{Client, Method, StatusCode};
 use serde_json::{Value, json};
 use sistership_auth::Role;
 use sistership_store::testing::TestDatabase;
+use sistership_store::{JobClaim, NewOutcome, NewVersion};
 
 use super::harness::{Harness, config, read};
 use crate::Server;
@@ -409,6 +410,70 @@ async fn promotion_takes_a_second_person(database: TestDatabase) {
     harness.server.stop().await;
 }
 
+/// Queues a refinement of a family with a candidate for each ship, and returns its id.
+async fn candidates(harness: &Harness, ships: &[&str]) -> String {
+    let store = &harness.server.archive().store;
+    let foundation = store.versions().get(ships[0], 1).await.unwrap().head.id;
+    store.families().create("tankers", "Tankers", &foundation).await.unwrap();
+    let chunk = ships.iter().map(|&ship| ship.to_owned()).collect();
+    let bulks = store.bulks();
+    let kind = sistership_jobs::fleet::BULK_JOB_KIND;
+    let bulk = bulks.create("tankers", "{}", kind, &[chunk], |_, _| "{}".into()).await.unwrap().id;
+    let lease = std::time::Duration::from_secs(60);
+    let JobClaim::Job(job) = store.jobs().claim_next("test", lease, true).await.unwrap() else {
+        panic!("the chunk is queued")
+    };
+    let mut outcomes = Vec::new();
+    for &ship in ships {
+        let known = store.versions().get(ship, 1).await.unwrap();
+        let version = NewVersion {
+            model: ship.into(),
+            parent: None,
+            law: known.head.law,
+            method: "statistics".into(),
+            document: known.document,
+            weights: None,
+        };
+        outcomes.push(NewOutcome {
+            ship: ship.into(),
+            outcome: "candidate".into(),
+            version: Some((version, Vec::new())),
+            worst_change: None,
+            document: "{}".into(),
+        });
+    }
+    bulks.commit_chunk(&bulk, (&job.id, job.fence), &outcomes, "{}").await.unwrap();
+    bulk
+}
+
+/// Candidates of a refinement are promoted all together, or none of them.
+async fn a_promotion_that_fails_midway_promotes_nothing(database: TestDatabase) {
+    let harness = Harness::guarded(database).await;
+    let bulk = candidates(&harness, &["kvlcc2", "mariner"]).await;
+    let on = json!({ "second_person": true });
+    assert_eq!(harness.sends(OWNER, Method::PUT, "/v1/settings", &on).await.0, StatusCode::OK);
+    let roles = |ships: &[&str]| {
+        let mut roles = vec![json!({ "role": "engineer", "family": "tankers" })];
+        roles.extend(ships.iter().map(|ship| json!({ "role": "approver", "ship": ship })));
+        json!({ "title": "approver", "roles": roles })
+    };
+    let of_one = harness.key(&roles(&["kvlcc2"])).await;
+    let of_both = harness.key(&roles(&["kvlcc2", "mariner"])).await;
+    let path = format!("/v1/bulk-refinements/{bulk}/champions");
+    let word = json!({ "actor": "ann", "reason": "better" });
+    let (status, problem) = harness.sends(&of_one, Method::POST, &path, &word).await;
+    assert!(is_refused(status, &problem), "no approver of the second: {status} {problem}");
+    let champion = async |ship: &str| {
+        let path = format!("/v1/models/{ship}/aliases/champion");
+        harness.asks(Some(OWNER), Method::GET, &path).await.1["version"].clone()
+    };
+    assert_eq!((champion("kvlcc2").await, champion("mariner").await), (json!(1), json!(1)));
+    let (status, promoted) = harness.sends(&of_both, Method::POST, &path, &word).await;
+    assert_eq!((status, &promoted["champions"]), (StatusCode::OK, &json!(2)), "{promoted}");
+    assert_eq!((champion("kvlcc2").await, champion("mariner").await), (json!(2), json!(2)));
+    harness.server.stop().await;
+}
+
 /// Every change is in the audit with its author; a later change of one row is detected.
 async fn the_audit_names_who_did_what(database: TestDatabase) {
     let harness = Harness::guarded(database).await;
@@ -450,5 +515,6 @@ on_both_databases!(
     a_role_for_a_ship_goes_no_further,
     keys_and_users_come_and_go,
     promotion_takes_a_second_person,
+    a_promotion_that_fails_midway_promotes_nothing,
     the_audit_names_who_did_what,
 );

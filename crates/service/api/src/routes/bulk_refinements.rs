@@ -7,7 +7,7 @@ use axum::response::Response;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sistership_store::{
-    AliasMove, BulkOutcome, ExpectedRevision, FamilyRefinement, MAX_LIMIT, PageRequest,
+    AliasMove, BulkOutcome, ExpectedRevision, FamilyRefinement, read_all_pages,
 };
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
@@ -17,6 +17,7 @@ use super::aliases::check_second_person;
 use crate::app::App;
 use crate::problem::Result;
 use crate::web::field::{Cursor, Limit, Remark, RequestKey};
+use crate::web::unit::run_in_unit;
 use crate::web::{
     DocumentBody, Id, IdempotencyKey, Listing, Name, PathParams, QueryParams, StoredReply, Word,
     page,
@@ -271,31 +272,40 @@ async fn promote(
     PathParams(id): PathParams<Id>,
     payload: DocumentBody,
 ) -> Result<Json<PromotionResult>> {
-    let word: Promotion = payload.parse_json()?;
+    let promotion: Promotion = payload.parse_json()?;
     let bulk = app.store().bulks().get(&id).await?;
-    let (reason, actor) = (word.reason.into_string(), word.actor.into_string());
-    let change =
-        AliasMove { alias: CHAMPION.to_owned(), expect: ExpectedRevision::Any, reason, actor };
-    let (mut champions, mut page) = (0, PageRequest::first_page(MAX_LIMIT));
-    // Candidates are promoted one by one; an error leaves the earlier promotions in place.
-    loop {
-        let list = app.store().bulks().list_outcomes(&bulk.id, Some("candidate"), &page).await?;
-        for outcome in &list.items {
-            let meant = word
-                .ships
-                .as_ref()
-                .is_none_or(|ships| ships.iter().any(|ship| **ship == *outcome.ship));
-            if let (true, Some(version)) = (meant, outcome.version) {
-                // The role of an approver may depend on the ship, so that it is checked for each.
-                check_second_person(app.store(), &outcome.ship).await?;
-                app.store()
-                    .bulks()
-                    .promote_candidate(&bulk.id, &outcome.ship, version, &change)
-                    .await?;
-                champions += 1;
-            }
+    let work = |app: App| async move { promotion.promote_candidates(&app, &bulk.id).await };
+    Ok(Json(PromotionResult { champions: run_in_unit(&app, work).await? }))
+}
+
+impl Promotion {
+    /// Promotes the candidates that are meant, and returns their number.
+    async fn promote_candidates(self, app: &App, bulk: &str) -> Result<usize> {
+        let bulks = app.store().bulks();
+        let list = |page| async move { bulks.list_outcomes(bulk, Some("candidate"), &page).await };
+        let candidates: Vec<BulkOutcome> = read_all_pages(list).await?;
+        let change = self.alias_move();
+        let mut champions = 0;
+        for BulkOutcome { ship, version, .. } in candidates {
+            let Some(version) = version.filter(|_| self.includes_ship(&ship)) else { continue };
+            // The role of an approver may depend on the ship, so that it is checked for each.
+            check_second_person(app.store(), &ship).await?;
+            bulks.promote_candidate(bulk, &ship, version, &change).await?;
+            champions += 1;
         }
-        let Some(next) = list.next else { return Ok(Json(PromotionResult { champions })) };
-        page = PageRequest::after_key(next, MAX_LIMIT);
+        Ok(champions)
+    }
+
+    fn includes_ship(&self, ship: &str) -> bool {
+        self.ships.as_ref().is_none_or(|ships| ships.iter().any(|named| **named == *ship))
+    }
+
+    fn alias_move(&self) -> AliasMove {
+        AliasMove {
+            alias: CHAMPION.to_owned(),
+            expect: ExpectedRevision::Any,
+            reason: self.reason.to_string(),
+            actor: self.actor.to_string(),
+        }
     }
 }

@@ -5,6 +5,7 @@ pub(crate) mod envelope;
 pub(crate) mod form;
 pub(crate) mod guard;
 pub(crate) mod idempotency;
+pub(crate) mod unit;
 
 pub(crate) use idempotency::IdempotencyKey;
 pub(crate) use sistership_web_support::conditions::RequestConditions;
