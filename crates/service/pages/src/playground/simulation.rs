@@ -61,7 +61,14 @@ fn simulate_standard(
     // The step and the default duration follow the time in which the ship passes its own length.
     let length_s = ship.lpp_m() / speed;
     let step_s = STEP_S.min(0.02 * length_s);
-    check_step_count(orders.duration_s.unwrap_or(60.0 * length_s) / step_s, most)?;
+    let steps = orders.duration_s.unwrap_or(60.0 * length_s) / step_s;
+    // The default duration follows the speed, and has a fixed number of steps unless the speed is
+    // low.
+    let remedy = match orders.duration_s {
+        Some(_) => StepRemedy { field: "duration", says: "give a shorter time" },
+        None => StepRemedy { field: "speed", says: "give a higher speed, or a shorter time" },
+    };
+    check_step_count(steps, most, remedy)?;
     let settings = ManoeuvreSettings {
         speed_m_s: Some(speed),
         n_rps: orders.n_rpm.map(|rpm| rpm / 60.0),
@@ -90,12 +97,18 @@ fn simulate_standard(
     })
 }
 
-fn check_step_count(steps: f64, most: usize) -> Result<()> {
+/// Field of the form that makes a simulation too long, and how to put it right.
+struct StepRemedy {
+    field: &'static str,
+    says: &'static str,
+}
+
+fn check_step_count(steps: f64, most: usize, remedy: StepRemedy) -> Result<()> {
     match steps <= most as f64 {
         true => Ok(()),
         false => Err(PageError::invalid_field(
-            "speed",
-            format!("would take {steps:.0} steps, at most {most} are made: faster, or shorter"),
+            remedy.field,
+            format!("would take {steps:.0} steps, at most {most} are made: {}", remedy.says),
         )),
     }
 }
@@ -139,7 +152,9 @@ fn simulate_script(
     let lines = orders.script_lines()?;
     let settings = ReplaySettings::default();
     let trial = script_trial(ship, &lines, orders, speed);
-    check_step_count(trial.duration_s() / settings.step_s + trial.len() as f64, most)?;
+    let steps = trial.duration_s() / settings.step_s + trial.len() as f64;
+    let remedy = StepRemedy { field: "script", says: "give a script of a shorter time" };
+    check_step_count(steps, most, remedy)?;
     let run = replay_trial(ship, &trial, &settings)
         .map_err(|error| PageError::invalid_field("script", error.to_string()))?;
     Ok(run.track)
@@ -187,5 +202,34 @@ fn interpolate_script(lines: &[ScriptLine], t: f64, of: impl Fn(&ScriptLine) -> 
         (Some(a), Some(b)) => of(a) + (of(b) - of(a)) * (t - a.0) / (b.0 - a.0),
         (Some(one), None) | (None, Some(one)) => of(one),
         (None, None) => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_model::Zoo;
+
+    use super::*;
+
+    /// Returns the field that a run of too many steps is refused by.
+    fn refused_field(orders: &ManoeuvreOrders) -> String {
+        let zoo = Zoo::load_embedded().unwrap();
+        let model = zoo.find_model("mariner").unwrap();
+        let mut ship = Ship::new(&model, zoo.law(&model.law).unwrap()).unwrap();
+        match simulate_orders(&mut ship, orders, 100) {
+            Err(PageError::Invalid { field, .. }) => field,
+            _ => panic!("a run of more than 100 steps"),
+        }
+    }
+
+    #[test]
+    fn the_field_that_makes_a_run_too_long_is_named() {
+        let default = ManoeuvreOrders::default();
+        let script = ManoeuvreOrders { kind: ManoeuvreKind::Script, ..default.clone() };
+        assert_eq!(refused_field(&script), "script");
+        assert_eq!(refused_field(&default), "speed");
+        let long = ManoeuvreOrders { duration_s: Some(1000.0), ..default };
+        assert_eq!(refused_field(&long), "duration");
     }
 }
