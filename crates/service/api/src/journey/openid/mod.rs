@@ -246,6 +246,14 @@ async fn without_accounts_there_is_no_provider() {
     for path in ["/sign-in/oidc", "/sign-in/oidc/callback?code=a"] {
         let answer = harness.client.get(harness.url(path)).send().await.unwrap();
         assert_eq!(answer.status(), StatusCode::NOT_FOUND);
+        let cookie = answer.headers().get("set-cookie").map(|cookie| cookie.to_str().unwrap());
+        let is_removed =
+            cookie.is_some_and(|cookie| cookie.starts_with("sistership_oidc=; Max-Age=0"));
+        assert_eq!(
+            is_removed,
+            path.contains("callback"),
+            "a failure removes the ticket: {cookie:?}"
+        );
     }
     harness.server.stop().await;
 }

@@ -3,7 +3,7 @@
 use crate::accounts::{SignInOutcome, find_cookie};
 use axum::extract::{Request, State};
 use axum::http::StatusCode;
-use axum::response::Response;
+use axum::response::{IntoResponse, Response};
 use sistership_auth::openid::{LIFETIME_S, SignInPurpose};
 use sistership_pages::people::ProviderLink;
 use sistership_pages::{FormFields, people};
@@ -34,7 +34,7 @@ pub(super) async fn begin_sign_in(
 }
 
 /// Receives the browser from the provider.
-pub(super) async fn finish_sign_in(State(app): State<App>, request: Request) -> Result<Response> {
+pub(super) async fn finish_sign_in(State(app): State<App>, request: Request) -> Response {
     let (parts, _) = request.into_parts();
     let from = origin_of(&parts.extensions);
     let (ticket, query) =
@@ -45,10 +45,12 @@ pub(super) async fn finish_sign_in(State(app): State<App>, request: Request) -> 
             with_session(redirect_to(local_path(Some(&next))), &secret, uses_https(&app))
         }
         Ok(SignInOutcome::Linked) => redirect_to("/account?done=link"),
-        Err(problem) => failure_page(&app, "/", problem)?,
+        Err(problem) => {
+            failure_page(&app, "/", problem).unwrap_or_else(IntoResponse::into_response)
+        }
     };
-    // The ticket has served its purpose: its cookie is removed, also after a refusal.
-    Ok(with_ticket(&app, response, "", 0))
+    // The ticket has served its purpose: its cookie is removed, also after a refusal or a failure.
+    with_ticket(&app, response, "", 0)
 }
 
 /// Begins to link the user's own account with the provider.
