@@ -41,6 +41,7 @@ impl NetworkRange {
             let outside = width - self.bits;
             mine.checked_shr(outside).unwrap_or(0) == other.checked_shr(outside).unwrap_or(0)
         };
+        // Both are canonical: no network is one of IPv4 addresses mapped into IPv6.
         match (self.address, address.to_canonical()) {
             (IpAddr::V4(mine), IpAddr::V4(other)) => {
                 same(mine.to_bits().into(), other.to_bits().into(), 32)
@@ -48,6 +49,20 @@ impl NetworkRange {
             (IpAddr::V6(mine), IpAddr::V6(other)) => same(mine.to_bits(), other.to_bits(), 128),
             _ => false,
         }
+    }
+
+    /// Returns a network of IPv4 addresses mapped into IPv6 as one of IPv4, by which peers are
+    /// compared.
+    fn into_canonical(self, text: &str) -> Result<Self, String> {
+        let address = self.address.to_canonical();
+        if address.is_ipv4() == self.address.is_ipv4() {
+            return Ok(self);
+        }
+        // The mapped addresses are `::ffff:0:0/96`; a shorter prefix has other addresses, too.
+        let bits = self.bits.checked_sub(96).ok_or_else(|| {
+            format!("`{text}` has more than mapped IPv4 addresses; write it as 10.0.0.0/8")
+        })?;
+        Ok(Self { address, bits })
     }
 }
 
@@ -61,7 +76,7 @@ impl FromStr for NetworkRange {
         let address: IpAddr = address.parse().map_err(|_| wrong())?;
         let width = if address.is_ipv4() { 32 } else { 128 };
         let bits = bits.map_or(Ok(width), str::parse).map_err(|_| wrong())?;
-        if bits > width { Err(wrong()) } else { Ok(Self { address, bits }) }
+        if bits > width { Err(wrong()) } else { Self { address, bits }.into_canonical(text) }
     }
 }
 
@@ -173,6 +188,14 @@ mod tests {
         assert!(any.contains([9, 9, 9, 9].into()));
         let one: NetworkRange = "10.1.2.3".parse().unwrap();
         assert!(one.contains([10, 1, 2, 3].into()) && !one.contains([10, 1, 2, 4].into()));
+        let mapped: NetworkRange = "::ffff:10.0.0.0/104".parse().unwrap();
+        assert_eq!(mapped, "10.0.0.0/8".parse().unwrap());
+        assert!(mapped.contains([10, 1, 2, 3].into()) && !mapped.contains([11, 1, 2, 3].into()));
+        assert!(mapped.contains("::ffff:10.1.2.3".parse().unwrap()));
+        let one: NetworkRange = "::ffff:10.1.2.3".parse().unwrap();
+        assert!(one.contains([10, 1, 2, 3].into()) && !one.contains([10, 1, 2, 4].into()));
+        let short = "::ffff:10.0.0.0/90".parse::<NetworkRange>().unwrap_err();
+        assert!(short.contains("write it as"), "{short}");
         for wrong in ["10.0.0.0/33", "10.0.0/8", "::/129", "proxy", "10.0.0.0/"] {
             assert!(wrong.parse::<NetworkRange>().is_err(), "{wrong}");
         }
