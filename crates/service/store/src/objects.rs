@@ -143,7 +143,12 @@ impl ObjectStorage {
 
 /// Returns the SHA-256 of bytes in lower-case hexadecimal.
 pub fn sha256_hex(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    to_hex(&Sha256::digest(bytes))
+}
+
+/// Returns a hash in lower-case hexadecimal.
+pub(crate) fn to_hex(hash: &[u8]) -> String {
+    hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Returns the hash, computed on a thread for blocking work.

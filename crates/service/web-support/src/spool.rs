@@ -5,6 +5,7 @@ use std::io;
 use bytes::Bytes;
 use futures::{Stream, StreamExt as _};
 use sha2::{Digest as _, Sha256};
+use sistership_auth::to_hex;
 use sistership_store::is_out_of_space;
 use tempfile::{NamedTempFile, TempPath};
 use tokio::fs::File;
@@ -36,12 +37,7 @@ pub async fn spool_stream<E: Into<Problem>>(
         file.write_all(&chunk).await.map_err(write_problem)?;
     }
     file.flush().await.map_err(write_problem)?;
-    Ok(SpooledFile { path, sha256: hex_digits(&hash.finalize()) })
-}
-
-/// Returns a hash in lower-case hexadecimal.
-pub fn hex_digits(hash: &[u8]) -> String {
-    hash.iter().map(|byte| format!("{byte:02x}")).collect()
+    Ok(SpooledFile { path, sha256: to_hex(&hash.finalize()) })
 }
 
 /// Creates a temporary file, which is removed when it is dropped.
@@ -57,7 +53,20 @@ pub fn write_problem(error: io::Error) -> Problem {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
+
+    #[tokio::test]
+    async fn a_file_has_the_hash_of_its_bytes() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = SpoolFolder::with_root(folder.path().to_path_buf());
+        let pieces =
+            ["a", "bc"].map(|piece| Ok::<_, Problem>(Bytes::from_static(piece.as_bytes())));
+        let file = spool_stream(&place, futures::stream::iter(pieces)).await.unwrap();
+        assert_eq!(std::fs::read(&file.path).unwrap(), b"abc");
+        // NIST FIPS 180-2, appendix B.1.
+        assert!(file.sha256.starts_with("ba7816bf8f01cfea4141"), "{}", file.sha256);
+    }
 
     #[test]
     fn a_full_disk_is_told() {

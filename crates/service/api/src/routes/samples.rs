@@ -11,6 +11,7 @@ use bytes::Bytes;
 use futures::stream::BoxStream;
 use futures::{Stream, StreamExt as _};
 use sha2::{Digest as _, Sha256};
+use sistership_auth::to_hex;
 use sistership_store::ObjectsError;
 use sistership_trials::samples::CsvPieces;
 use utoipa_axum::router::OpenApiRouter;
@@ -19,7 +20,7 @@ use utoipa_axum::routes;
 use super::binary::Binary;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::upload::{hex_digits, spool_stream};
+use crate::upload::spool_stream;
 use crate::web::{Id, PathParams, accept};
 use sistership_jobs::budget::{self, MemoryShare};
 
@@ -73,7 +74,7 @@ fn verify_stream(
                 yield before;
             }
         }
-        check_hash(&key, &hex_digits(&hash.finalize()))?;
+        check_hash(&key, &to_hex(&hash.finalize()))?;
         yield held;
     }
 }

@@ -5,8 +5,6 @@ mod reading;
 mod storing;
 
 pub(crate) use reading::{check_upload, read_each};
-pub(crate) use sistership_web_support::spool::{
-    SpooledFile, hex_digits, spool_stream, write_problem,
-};
+pub(crate) use sistership_web_support::spool::{SpooledFile, spool_stream, write_problem};
 pub(crate) use sistership_web_support::upload::{RawQuery, TrialUpload};
 pub(crate) use storing::{StoredTrial, store_upload};

@@ -118,6 +118,8 @@ pub fn check_signer(
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
+    use sistership_auth::to_hex;
+
     use super::*;
 
     /// RFC 8032, section 7.1, test 2: the key, and the signature of `0x72`.
@@ -125,17 +127,13 @@ mod tests {
     const SIGNATURE: &str = "92a009a9f0d4cab8720e820b5f642540a2b27b5416503f8fb3762223ebdb69da\
         085ac1e43e15996e458f3613d0f11d8c387b2eaeb4302aeeb00d291612bb0c00";
 
-    fn hex(bytes: &[u8]) -> String {
-        bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-    }
-
     #[test]
     fn the_signature_of_the_standard_is_made_and_taken() {
         let key = SigningKey::from_pem(PRIVATE.as_bytes()).unwrap();
         let made = key.sign_manifest(&[0x72]);
-        assert_eq!(hex(&made.bytes), SIGNATURE);
+        assert_eq!(to_hex(&made.bytes), SIGNATURE);
         assert_eq!(
-            hex(&made.key.as_der()[PREFIX.len()..]),
+            to_hex(&made.key.as_der()[PREFIX.len()..]),
             "3d4017c3e843895a92b70aa74d1b7ebc9c982ccf2ec4968cc0cd55f12af4660c"
         );
         assert_eq!(key.sign_manifest(&[0x72]).verify_manifest(&[0x72]), Some(key.verifying_key()));

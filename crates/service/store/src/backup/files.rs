@@ -9,6 +9,7 @@ use sha2::{Digest as _, Sha256};
 use super::content::FileHead;
 use crate::error::{Result, StoreError};
 use crate::folders;
+use crate::objects::to_hex;
 
 /// Returns a conversion of I/O errors that adds the path.
 pub(crate) fn file_error(path: &Path) -> impl FnOnce(io::Error) -> StoreError {
@@ -44,8 +45,7 @@ fn hash_file(path: &Path) -> io::Result<FileHead> {
             }
         }
     }
-    let sha256 = hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-    Ok(FileHead { bytes, sha256 })
+    Ok(FileHead { bytes, sha256: to_hex(&hasher.finalize()) })
 }
 
 /// Writes a file atomically and durably: after a power failure it is complete or absent.
