@@ -52,24 +52,23 @@ pub async fn verify_version(
 }
 
 /// Estimates the memory that a verification needs, bytes.
+///
+/// # Errors
+/// Returns an error if the version or an object of its samples is missing.
 pub async fn memory_demand(archive: &Archive, ship: &str, number: i64) -> Result<u64, DeriveError> {
-    let trials = match version_document(&archive.store.versions().get(ship, number).await?)?.recipe
-    {
-        DerivationRecipe::Plain(sistership_model::version::VersionRecipe::Refinement {
-            trials,
-            ..
-        }) => trials,
-        DerivationRecipe::Diagnosis(recipe) => recipe.trials,
-        DerivationRecipe::Training(recipe) => recipe.trials,
-        _ => return Ok(0),
-    };
-    let mut bytes = 0;
-    for trial in &trials {
+    let version = archive.store.versions().get(ship, number).await?;
+    let recipe = version_document(&version)?.recipe;
+    let mut each = Vec::with_capacity(recipe.trials().len());
+    for trial in recipe.trials() {
         // Samples are compressed to about a third of their size in memory.
-        bytes += 3 * archive.objects.object_size(&trial.sha256).await? / trial_bytes(1)
-            * BYTES_PER_SAMPLE;
+        let samples = 3 * archive.objects.object_size(&trial.sha256).await? / trial_bytes(1);
+        each.push(samples * BYTES_PER_SAMPLE);
     }
-    Ok(bytes)
+    Ok(match recipe {
+        // One trial after the other is reduced to its statistics.
+        DerivationRecipe::Family(_) => each.into_iter().max().unwrap_or(0),
+        _ => each.into_iter().sum(),
+    })
 }
 
 /// Derives a version again and compares the bytes, with a progress callback that can stop it.

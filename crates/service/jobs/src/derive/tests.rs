@@ -19,7 +19,7 @@ use crate::input::InputKind;
 use crate::library::{EffectLibrary, FIRST_SHA256, embedded_library};
 use crate::recipe::DerivationRecipe;
 use crate::upkeep::{check_archive, collect_garbage};
-use crate::verify::verify_version;
+use crate::verify::{memory_demand, verify_version};
 use crate::version::VersionDocument;
 
 const SHIP: &str = "demo-ship";
@@ -86,6 +86,27 @@ async fn stored(archive: &Archive, number: i64) -> VersionDocument {
 async fn derived(archive: &Archive, recipe: &DerivationRecipe) -> String {
     let derived = derive(archive, SHIP, recipe, Arc::new(|_, _| true)).await.unwrap();
     derived.document.to_canonical_json().unwrap()
+}
+
+/// Every derivation that reads samples takes memory for them; that of a family for one trial at a
+/// time.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_verification_has_the_memory_of_the_samples_that_it_reads() {
+    let database = TestDatabase::new_sqlite();
+    let archive = archive(&database).await;
+    for (number, kind) in KINDS {
+        let bytes = memory_demand(&archive, SHIP, number).await.unwrap();
+        let mut sizes = Vec::new();
+        for trial in stored(&archive, number).await.recipe.trials() {
+            sizes.push(archive.objects.object_size(&trial.sha256).await.unwrap());
+        }
+        let read = match kind {
+            "statistics" => *sizes.iter().max().unwrap(),
+            _ => sizes.iter().sum(),
+        };
+        // At least hundred times the compressed size.
+        assert!(bytes > 100 * read && read > 0, "{kind}: {bytes} bytes for {read}");
+    }
 }
 
 /// The library of the recipe is taken, and not the program's.
