@@ -93,6 +93,16 @@ impl StoreError {
         matches!(self, Self::Objects(error) if error.is_passing())
     }
 
+    /// Returns true if stored data are missing or damaged: a retry gives the same result, and other
+    /// data are not affected.
+    pub fn is_data_fault(&self) -> bool {
+        match self {
+            Self::NotFound { .. } => true,
+            Self::Objects(error) => matches!(error, ObjectsError::Damaged { .. }),
+            _ => false,
+        }
+    }
+
     /// Returns the error of data that could not be stored for lack of space.
     pub fn out_of_space() -> Self {
         Self::Objects(ObjectsError::Folder(ErrorKind::StorageFull.into()))
@@ -198,5 +208,23 @@ mod tests {
             );
         }
         assert!(!StoreError::not_found("ship", "kcs").is_out_of_space());
+    }
+
+    #[test]
+    fn damaged_data_are_told_from_a_store_that_does_not_answer() {
+        let damaged = ObjectsError::Damaged { key: "a".to_owned(), actual: "b".to_owned() };
+        let silent = object_store::Error::Generic { store: "S3", source: "no answer".into() };
+        for (error, of_data, transient) in [
+            (StoreError::not_found("object", "a"), true, false),
+            (damaged.into(), true, false),
+            (ObjectsError::from(silent).into(), false, true),
+            (sqlx::Error::PoolTimedOut.into(), false, false),
+        ] {
+            assert_eq!(
+                (error.is_data_fault(), error.is_transient()),
+                (of_data, transient),
+                "{error}"
+            );
+        }
     }
 }

@@ -13,7 +13,7 @@ pub(super) enum JobError {
     Stopped,
     /// The job cannot be done; another attempt would fail likewise.
     Failed(String),
-    /// The database failed; a later attempt may succeed.
+    /// The database or the object store failed; a later attempt may succeed.
     Store(StoreError),
 }
 
@@ -27,8 +27,9 @@ pub(super) fn permanent_failure(reason: impl std::fmt::Display) -> JobError {
 impl From<StoreError> for JobError {
     fn from(error: StoreError) -> Self {
         match error {
-            // Lack of space is temporary, whatever kind of error carries it.
-            full if full.is_out_of_space() => Self::Store(full),
+            // Lack of space is temporary, whatever kind of error carries it; so is an object store
+            // that does not answer.
+            passing if passing.is_out_of_space() || passing.is_transient() => Self::Store(passing),
             StoreError::NotFound { .. } | StoreError::Invalid { .. } | StoreError::Objects(_) => {
                 permanent_failure(error)
             }
@@ -53,5 +54,24 @@ impl From<Problem> for JobError {
             507 => Self::Store(StoreError::out_of_space()),
             _ => permanent_failure(problem.detail),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use std::time::Duration;
+
+    use sistership_store::ObjectsError;
+
+    use super::*;
+
+    #[tokio::test]
+    async fn a_job_is_tried_again_if_the_object_store_does_not_answer() {
+        let late = tokio::time::timeout(Duration::ZERO, std::future::pending::<()>()).await;
+        let late = StoreError::from(ObjectsError::from(late.unwrap_err()));
+        assert!(matches!(JobError::from(DeriveError::Store(late)), JobError::Store(_)));
+        let damaged = ObjectsError::Damaged { key: "a".into(), actual: "b".into() };
+        assert!(matches!(JobError::from(StoreError::from(damaged)), JobError::Failed(_)));
     }
 }

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use sistership_fleet::bulk::BulkRefinement;
 use sistership_fleet::statistics::RegressionFrame;
 use sistership_identification::refine::RefineError;
-use sistership_store::{AliasMove, ExpectedRevision, NewOutcome, NewVersion, StoreError};
+use sistership_store::{AliasMove, ExpectedRevision, NewOutcome, NewVersion};
 
 use super::family_prior::recipe_trials;
 use super::frame::StartingModels;
@@ -40,7 +40,7 @@ pub type MemberOutcome = std::result::Result<(BulkRefinement, VersionDocument), 
 /// Loads the inputs of the refinement of a member.
 ///
 /// # Errors
-/// Returns an error of the database or of the program; an error of the ship is part of the result.
+/// Returns an error of the store or of the program; an error of the ship is part of the result.
 pub async fn load_member(
     archive: &Archive,
     loaded: &LoadedOrder,
@@ -57,15 +57,12 @@ pub async fn load_member(
     };
     match load_inputs(archive, loaded, &mut member).await {
         Ok(gathered) => member.gathered = Ok(gathered),
-        // Faults of the database or of the program end the job; those of a ship are its outcome.
+        // Faults of the database, of the object store or of the program end the job; missing or
+        // damaged data of a ship are its outcome.
         Err(error @ (DeriveError::Broken(_) | DeriveError::Refine(RefineError::Cancelled))) => {
             return Err(error);
         }
-        Err(DeriveError::Store(error))
-            if !matches!(error, StoreError::NotFound { .. } | StoreError::Objects(_)) =>
-        {
-            return Err(error.into());
-        }
+        Err(DeriveError::Store(error)) if !error.is_data_fault() => return Err(error.into()),
         Err(error) => member.gathered = Err(error.to_string()),
     }
     Ok(member)
@@ -201,4 +198,63 @@ fn is_unchanged(refinement: &BulkRefinement) -> bool {
 fn change_summary(refinement: &BulkRefinement) -> Value {
     let BulkRefinement { axes, pulled, before, after, trials, .. } = refinement;
     json!({ "axes": axes, "pulled": pulled, "before": before, "after": after, "trials": trials })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_fleet::bulk::BulkSettings;
+    use sistership_model::version::SourceVersion;
+    use sistership_store::testing::TestDatabase;
+
+    use super::*;
+    use crate::catalogue::ZooCache;
+    use crate::fleet::choices::{Rule, Start};
+    use crate::fleet::order::BulkOrder;
+    use crate::inputs::DerivationInputs;
+    use crate::seed;
+    use crate::test_rows::new_trial;
+
+    const SHIP: &str = "mariner";
+
+    /// An order on the published model of the ship.
+    async fn loaded_order(archive: &Archive) -> LoadedOrder {
+        let head = archive.store.versions().get(SHIP, 1).await.unwrap().head;
+        let law_sha256 = archive.store.laws().get(&head.law).await.unwrap().sha256;
+        let order = BulkOrder {
+            family: "cargo".to_owned(),
+            foundation: SourceVersion {
+                ship: head.model,
+                number: head.number,
+                sha256: head.sha256,
+            },
+            law_sha256,
+            start: Start::default(),
+            prior: None,
+            settings: BulkSettings::default(),
+            rule: Rule::default(),
+        };
+        LoadedOrder::load(&DerivationInputs::new(archive), order).await.unwrap()
+    }
+
+    #[tokio::test]
+    async fn an_object_store_that_does_not_answer_is_no_fault_of_the_ship() {
+        let database = TestDatabase::new_sqlite();
+        let archive = Archive::open(&database.url, database.folder.path()).await.unwrap();
+        seed::seed_zoo(&archive.store, &ZooCache::default()).await.unwrap();
+        let trial =
+            archive.store.trials().insert(&new_trial(SHIP, "turn", None)).await.unwrap().row;
+        let order = loaded_order(&archive).await;
+        let member = load_member(&archive, &order, SHIP).await.unwrap();
+        assert!(member.gathered.is_err(), "its samples are missing");
+        // A file in the place of the folder of the object: it cannot be opened.
+        let objects = database.folder.path().join("objects");
+        std::fs::create_dir_all(&objects).unwrap();
+        std::fs::write(objects.join(&trial.object_key[..2]), "").unwrap();
+        match load_member(&archive, &order, SHIP).await {
+            Err(DeriveError::Store(error)) => assert!(error.is_transient(), "{error}"),
+            Err(error) => panic!("{error}"),
+            Ok(_) => panic!("the fault of the object store is an outcome of the ship"),
+        }
+    }
 }
