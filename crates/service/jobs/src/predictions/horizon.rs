@@ -11,6 +11,7 @@ use utoipa::ToSchema;
 use crate::predictions::error::{PredictionError, Result};
 use crate::predictions::inputs::InitialState;
 use crate::predictions::session::{CurrentRequest, PredictionSession, SessionRequest, WindRequest};
+use crate::predictions::track::reserve_steps;
 
 /// Horizon, with the orders within it.
 #[derive(Debug, Deserialize, ToSchema)]
@@ -70,21 +71,18 @@ impl HorizonRequest {
         law: &Law,
         most: usize,
     ) -> Result<Value> {
-        let steps = self.count_steps()?;
+        let (dt_s, steps) = (self.dt_s(), self.count_steps()?);
         let asked = self.session_request(name, depth_m);
         let mut session = PredictionSession::new(&asked, model, law).map_err(in_horizon)?;
-        session.reserve_memory(self.dt_s(), steps, most).map_err(in_horizon)?;
+        let mut foundation = foundation_session(asked, model, law)?;
+        // Before anything is simulated, and of both together: they use the same limits.
+        let models = std::iter::once(&session).chain(&foundation);
+        let integrated = models.map(|model| model.integration_steps(dt_s, steps)).sum();
+        reserve_steps("steps", integrated, most).map_err(in_horizon)?;
         let mut answer = self.simulate_steps(&mut session, steps);
-        answer["foundation"] = match model.branch {
+        answer["foundation"] = match &mut foundation {
             None => answer["trajectory"].clone(),
-            Some(_) => {
-                let alone = Model { branch: None, ..model.clone() };
-                // The foundation is drawn as a line without band.
-                let asked = SessionRequest { draws: None, ..asked };
-                let mut foundation =
-                    PredictionSession::new(&asked, &alone, law).map_err(in_horizon)?;
-                self.simulate_steps(&mut foundation, steps)["trajectory"].take()
-            }
+            Some(foundation) => self.simulate_steps(foundation, steps)["trajectory"].take(),
         };
         answer["metrics"] = Value::Null;
         Ok(answer)
@@ -147,6 +145,21 @@ impl HorizonRequest {
     }
 }
 
+/// Creates the session of the foundation alone, which is drawn as a line without band; `None` for a
+/// model that is its own foundation.
+fn foundation_session(
+    asked: SessionRequest,
+    model: &Model,
+    law: &Law,
+) -> Result<Option<PredictionSession>> {
+    if model.branch.is_none() {
+        return Ok(None);
+    }
+    let alone = Model { branch: None, ..model.clone() };
+    let asked = SessionRequest { draws: None, ..asked };
+    PredictionSession::new(&asked, &alone, law).map(Some).map_err(in_horizon)
+}
+
 /// Prefixes a field with `horizon.`, except for the fields that are not part of the horizon.
 fn in_horizon(error: PredictionError) -> PredictionError {
     match error {
@@ -155,5 +168,80 @@ fn in_horizon(error: PredictionError) -> PredictionError {
             PredictionError::Field { field: format!("horizon.{field}"), message }
         }
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use std::sync::Arc;
+
+    use serde_json::json;
+    use sistership_model::Zoo;
+    use sistership_model::branch::{CorrectionDocument, CorrectionMode, CorrectionRecipe, Learner};
+    use sistership_model::learned::{
+        AdditionFormulas, AdditionGradient, AttachedWeights, CorrectionInstant, CorrectionModel,
+    };
+    use sistership_model::validity::Region;
+
+    use super::*;
+
+    /// A correction that adds nothing.
+    #[derive(Debug)]
+    struct NoAddition;
+
+    impl CorrectionModel for NoAddition {
+        fn rate_additions(&self, _: &CorrectionInstant) -> [f64; 3] {
+            [0.0; 3]
+        }
+
+        fn addition_gradient(&self, _: &CorrectionInstant) -> AdditionGradient {
+            AdditionGradient::default()
+        }
+
+        fn addition_formulas(&self) -> AdditionFormulas {
+            AdditionFormulas::default()
+        }
+
+        fn active_share(&self, _: &CorrectionInstant) -> f64 {
+            1.0
+        }
+    }
+
+    /// The Mariner with that correction.
+    fn corrected_model(zoo: &Zoo) -> Model {
+        let columns = ["u", "v", "r"].map(|name| (name.to_owned(), vec![-1.0, 1.0]));
+        let branch = CorrectionDocument {
+            mode: CorrectionMode::Parallel,
+            outputs: Vec::new(),
+            weights_sha256: String::new(),
+            domain: Region::from_samples(&columns.into()).unwrap(),
+            fade: 1.0,
+            recipe: CorrectionRecipe {
+                learner: Learner::KernelRidge { centres: 1, length: 1.0, ridge: 1.0 },
+                seed: 1,
+                window_s: 1.0,
+                hop_s: 1.0,
+                trials: Vec::new(),
+            },
+            learned: AttachedWeights::new(Arc::new(NoAddition)),
+        };
+        Model { branch: Some(branch), ..zoo.find_model("mariner").unwrap() }
+    }
+
+    #[test]
+    fn the_foundation_counts_within_the_limit_of_steps() {
+        let zoo = Zoo::load_embedded().unwrap();
+        let (model, law) = (corrected_model(&zoo), zoo.law("abkowitz").unwrap());
+        let horizon: HorizonRequest =
+            serde_json::from_value(json!({ "duration_s": 30, "dt_s": 1 })).unwrap();
+        let name: ModelName = "mariner".parse().unwrap();
+        // 300 steps of 0.1 s for each of the two models.
+        let answer = horizon.simulate_horizon((&name, None), &model, law, 600).unwrap();
+        assert_eq!(answer["foundation"]["t_s"].as_array().unwrap().len(), 31);
+        match horizon.simulate_horizon((&name, None), &model, law, 599) {
+            Err(PredictionError::Field { field, .. }) => assert_eq!(field, "horizon.duration_s"),
+            other => panic!("{other:?}"),
+        }
     }
 }

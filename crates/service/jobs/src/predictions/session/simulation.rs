@@ -47,7 +47,8 @@ impl PredictionSession {
     /// # Errors
     /// Returns an error that names the invalid field of the request, or the missing memory.
     pub fn apply_orders(&mut self, request: &StepsRequest, most: usize) -> Result<()> {
-        self.reserve_memory(request.dt_s.get(), request.step_count(), most)?;
+        let steps = self.integration_steps(request.dt_s.get(), request.step_count());
+        reserve_steps("steps", steps, most)?;
         // Everything that can fail comes before the first change of the session.
         let others = self.input_indices(&request.orders)?;
         self.set_orders(request.orders.delta_rad, request.orders.n_rps);
@@ -59,11 +60,11 @@ impl PredictionSession {
         Ok(())
     }
 
-    /// Reserves the memory of steps; refuses more work than is allowed.
-    pub(crate) fn reserve_memory(&self, dt_s: f64, steps: usize, most: usize) -> Result<()> {
+    /// Number of steps of the integration in `steps` steps of the session, over all its models.
+    pub(crate) fn integration_steps(&self, dt_s: f64, steps: usize) -> f64 {
         // Draws are simulated in SIMD blocks, each of which costs about as much as one simulation.
         let blocks = self.beside.as_ref().map_or(0, |beside| beside.sisters.block_count());
-        reserve_steps("steps", (self.count_parts(dt_s) * steps) as f64 * (1 + blocks) as f64, most)
+        (self.count_parts(dt_s) * steps) as f64 * (1 + blocks) as f64
     }
 
     /// Sets the orders of rudder and revolutions; those not given stay.
