@@ -23,7 +23,7 @@ enum Making {
     Corrected(&'static [&'static str]),
     /// By `estimate`.
     Estimated,
-    /// By `diagnose`, of a model of another ship.
+    /// By `diagnose`, of the ship's own model on trials with an offset of the rudder.
     Diagnosed,
 }
 
@@ -52,7 +52,7 @@ pub const KINDS: &[Kind] = &[
     kind("serial-5", 5, false, Corrected(&["--kind", "perceptron", "--mode", "serial"])),
     kind("convert-5", 5, false, Corrected(&["--kind", "boosted", "--mode", "convert"])),
     kind("estimate", 1, false, Estimated),
-    kind("diagnosed-2", 2, false, Diagnosed),
+    kind("diagnosed-2", 2, true, Diagnosed),
 ];
 
 const POPULATION: &[&str] =
@@ -84,7 +84,8 @@ impl Kind {
             }
             Estimated => run(&["estimate", "--ship", &ship, "--out", &out])?,
             Diagnosed => {
-                run(&["diagnose", "--model", "mariner", "--trials", &trials, "--out", &out])?;
+                let askew = place.path("roll/askew.yaml");
+                run(&["diagnose", "--model", "sr108", "--trials", &askew, "--out", &out])?;
             }
         }
         if std::path::Path::new(&out).is_file() { Ok(out) } else { Err(format!("no {out}")) }

@@ -43,6 +43,8 @@ impl Place {
             }
             place.trials(&format!("{folder}/later"), &later, has_roll);
         }
+        let askew: Vec<Trial> = seen[..2].iter().cloned().map(with_offset).collect();
+        place.trials("roll/askew", &askew, true);
         place
     }
 
@@ -82,6 +84,14 @@ impl Place {
     fn write(&self, name: &str, bytes: &[u8]) {
         std::fs::write(self.0.path().join(name), bytes).expect("written");
     }
+}
+
+/// A trial whose rudder was two degrees off what was recorded.
+fn with_offset(mut trial: Trial) -> Trial {
+    if let Some(rudder) = trial.channels.get_mut(&Channel::Delta) {
+        rudder.iter_mut().for_each(|angle_rad| *angle_rad += 2.0_f64.to_radians());
+    }
+    trial
 }
 
 fn folder(has_roll: bool) -> &'static str {

@@ -13,7 +13,7 @@ use crate::evaluation::{
     last_ridge, ridge_settings, stage_settings,
 };
 use crate::selection_report::{ReportLine, SelectionReport, SelectionStage};
-use crate::simulation_check::simulation_fault;
+use crate::simulation_check::{SimulationFault, simulation_fault};
 use crate::thresholds::SEARCH;
 
 /// The selected candidate, with the settings that give its refinement explicitly.
@@ -35,7 +35,9 @@ pub struct SelectedCandidate {
 /// fitted model keeps the constraints and completes the standard manoeuvres, the candidate is
 /// excluded and the next one is chosen: the source as it is, or a law without coefficients, is not
 /// what was chosen. The same applies if the model leaves the physical range under rudder orders at
-/// random, as long as another candidate does not.
+/// random, as long as another candidate does not. A model that does not stop or go astern gives way
+/// to one that does only if that one's error is within a factor ([`SEARCH`]`.propulsion`): what the
+/// trials measured counts more than what they do not reach.
 ///
 /// # Errors
 /// Returns an error if it was cancelled, a setting is refused, or no candidate is left.
@@ -44,11 +46,15 @@ pub(super) fn select_candidate(
     mut tried: Vec<EvaluatedCandidate>,
     progress: Progress<'_>,
 ) -> Result<SelectedCandidate, RefineError> {
-    let mut spare = None;
+    let mut spare = Spare::default();
     loop {
         let Some(best) = chosen_place(search, &tried) else {
-            return spare.ok_or_else(|| nothing_left(&tried));
+            return spare.into_best().ok_or_else(|| nothing_left(&tried));
         };
+        let error = tried[best].weighed.error.unwrap_or(f64::INFINITY);
+        if spare.is_better_than(error) {
+            return spare.into_best().ok_or_else(|| nothing_left(&tried));
+        }
         let settings = explicit_settings(search, &tried, best);
         let entrant = tried[best].entrant;
         let made = match tried[best].refinement.take() {
@@ -63,17 +69,51 @@ pub(super) fn select_candidate(
                 let ladder = build_report(search, &tried, best);
                 let folds = tried[best].weighed.folds.clone();
                 let winner = SelectedCandidate { entrant, settings, ladder, refinement, folds };
-                let Some(reason) = unsailed else { return Ok(winner) };
-                // The first model that only fails the additional records is used if no other one
-                // passes.
-                spare.get_or_insert(winner);
-                reason
+                let Some(fault) = unsailed else { return Ok(winner) };
+                spare.keep(winner, &fault, error);
+                // A prior that keeps more of the source does not mend the propulsion.
+                if let SimulationFault::Propulsion(reason) = fault {
+                    tried[best].refusal = Some(reason);
+                    continue;
+                }
+                fault.into_reason()
             }
         };
         tried[best].refusal = Some(reason);
         // A refused weak form gets a successor with a stronger prior. Strengths only grow, so that
         // the loop ends.
         tried.extend(refit_stronger(search, &tried[best], progress)?);
+    }
+}
+
+/// First models that fail only additional simulations, used if no other one passes.
+#[derive(Default)]
+struct Spare {
+    steering: Option<SelectedCandidate>,
+    /// With its error.
+    propulsion: Option<(SelectedCandidate, f64)>,
+}
+
+impl Spare {
+    fn keep(&mut self, model: SelectedCandidate, fault: &SimulationFault, error: f64) {
+        match fault {
+            SimulationFault::Steering(_) => {
+                self.steering.get_or_insert(model);
+            }
+            SimulationFault::Propulsion(_) => {
+                self.propulsion.get_or_insert((model, error));
+            }
+        }
+    }
+
+    /// Returns true if a model that fails only with another propulsion is kept whose error is less
+    /// by the factor.
+    fn is_better_than(&self, error: f64) -> bool {
+        self.propulsion.as_ref().is_some_and(|(_, least)| error > SEARCH.propulsion * least)
+    }
+
+    fn into_best(self) -> Option<SelectedCandidate> {
+        self.propulsion.map(|(model, _)| model).or(self.steering)
     }
 }
 

@@ -15,6 +15,24 @@ use sistership_simulation::recorded::{RecordedTrial, ReplaySettings, replay_tria
 
 use crate::thresholds::SIMULATION_CHECK;
 
+/// Why a model does not complete a simulation.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SimulationFault {
+    /// Under rudder orders, at the revolutions of the trials.
+    Steering(String),
+    /// With the propeller stopped or reversed, where trials seldom reach.
+    Propulsion(String),
+}
+
+impl SimulationFault {
+    /// The reason in words.
+    pub fn into_reason(self) -> String {
+        match self {
+            Self::Steering(reason) | Self::Propulsion(reason) => reason,
+        }
+    }
+}
+
 /// Random rudder orders and turns, from straight ahead.
 fn rudder_orders() -> Vec<RudderOrder> {
     let held =
@@ -25,20 +43,31 @@ fn rudder_orders() -> Vec<RudderOrder> {
 /// Returns why a model does not complete a simulation within the range of its rudder and its
 /// motion: the order, and where the simulation stops. `None` if it completes all of them, or if the
 /// records lack an input of its law.
-pub fn simulation_fault(model: &Model, law: &Law, trials: &[&Trial]) -> Option<String> {
+pub fn simulation_fault(model: &Model, law: &Law, trials: &[&Trial]) -> Option<SimulationFault> {
     let mut helms = rudder_records(model, trials, (&rudder_orders(), SIMULATION_CHECK.lengths))?;
     helms.extend(motion_records(model, trials).unwrap_or_default());
     let ship = prepare_ship(model, law, trials).ok()?;
+    let steering = replay_fault(&ship, &helms);
+    let steering = steering.or_else(|| zigzag_fault(&ship, &model.steering));
+    let propulsion = || {
+        let engine = replay_fault(&ship, &engine_records(model, trials).unwrap_or_default());
+        engine.or_else(|| propulsion_fault(&ship))
+    };
+    steering
+        .map(SimulationFault::Steering)
+        .or_else(|| propulsion().map(SimulationFault::Propulsion))
+}
+
+/// First record that a ship does not complete.
+fn replay_fault(ship: &Ship, records: &[Trial]) -> Option<String> {
     let all: Vec<RecordedTrial<'_>> =
-        helms.iter().map(|trial| RecordedTrial { trial, coefficients: &[] }).collect();
+        records.iter().map(|trial| RecordedTrial { trial, coefficients: &[] }).collect();
     // Records are simulated in lockstep, which makes many of them cheap.
-    let runs = replay_trials(&ship, &all, &ReplaySettings::default()).ok()?;
-    let stopped =
-        helms.iter().zip(&runs).find_map(|(helm, run)| Some((helm, run.stopped.as_ref()?)));
-    stopped
-        .map(|(helm, stopped)| format!("does not sail {}: {stopped}", helm.name))
-        .or_else(|| zigzag_fault(&ship, &model.steering))
-        .or_else(|| propulsion_fault(&ship))
+    let runs = replay_trials(ship, &all, &ReplaySettings::default()).ok()?;
+    let mut stopped =
+        records.iter().zip(&runs).filter_map(|(one, run)| Some((one, run.stopped.as_ref()?)));
+    let (record, stopped) = stopped.next()?;
+    Some(format!("does not complete {}: {stopped}", record.name))
 }
 
 /// Fault of a ship with the propeller stopped or reversed, straight ahead or out of a turn. A ship
@@ -61,7 +90,7 @@ fn zigzag_fault(ship: &Ship, steering: &Steering) -> Option<String> {
     let sailed = asked.iter().zip(simulate_zigzags(ship, &asked, &settings));
     let mut stopped = sailed.filter_map(|((angle, _), sailed)| Some((angle, sailed.err()?)));
     let (angle, stopped) = stopped.next()?;
-    Some(format!("does not sail a zigzag of {angle:.1} deg: {stopped}"))
+    Some(format!("does not complete a zigzag of {angle:.1} deg: {stopped}"))
 }
 
 /// Factors of the recorded revolutions, with their description: the propeller stopped, and
@@ -70,40 +99,54 @@ const ENGINE: [(f64, &str); 2] = [(0.0, ", propeller stopped,"), (-1.0, ", prope
 
 /// Records that begin in motions of the trials, spread over all of them: a ship gets into motions
 /// that the model does not reach by itself. From each the rudder goes hard over to both sides, and
-/// moves at random; where revolutions were recorded, the propeller is stopped and reversed with the
-/// rudder amidships.
+/// moves at random.
 fn motion_records(model: &Model, trials: &[&Trial]) -> Option<Vec<Trial>> {
-    let places: Vec<(&Trial, usize)> =
-        trials.iter().flat_map(|trial| (0..trial.len()).map(move |at| (*trial, at))).collect();
-    let one = |k: usize, helm: RudderOrder, (turns, engine): (f64, &str)| {
-        // The middle of the k-th of `motions` equal parts of all samples.
-        let (trial, at) =
-            *places.get((2 * k + 1) * places.len() / (2 * SIMULATION_CHECK.motions))?;
-        let of = |channel: Channel| Some((channel, trial.channel(channel)?[at]));
-        // A sample that lacks one of these cannot start a record; other channels start as recorded.
-        let angle_rad = of(Channel::Delta)?.1;
-        let moving = [Channel::U, Channel::V, Channel::R].map(of).into_iter();
-        let moving = moving.collect::<Option<Vec<_>>>()?;
-        let revolutions = of(Channel::N).map(|(channel, n_rps)| (channel, turns * n_rps));
-        let others = [Channel::P, Channel::Phi].into_iter().filter_map(of).chain(revolutions);
-        let begun = RecordStart { channels: moving.into_iter().chain(others).collect(), angle_rad };
-        let record = rudder_record(model, trials, (helm, SIMULATION_CHECK.motion_lengths), &begun)?;
-        let begun = format!("from the motion of {} at {:.0} s", trial.name, trial.t_s[at]);
-        Some(Trial { name: format!("{}{engine} {begun}", record.name), ..record })
-    };
-    let helms = |k: usize| {
+    let orders = |k: usize| {
         [
             RudderOrder::Held(1.0),
             RudderOrder::Held(-1.0),
             RudderOrder::Random(SIMULATION_CHECK.records + k),
         ]
     };
-    let steered = |k: usize| helms(k).map(|helm| one(k, helm, (1.0, "")));
-    let driven = |k: usize| ENGINE.map(|engine| one(k, RudderOrder::Held(0.0), engine));
-    let has_revolutions = trials.iter().all(|trial| trial.channel(Channel::N).is_some());
-    let engines = if has_revolutions { SIMULATION_CHECK.motions } else { 0 };
-    let all = (0..SIMULATION_CHECK.motions).flat_map(steered);
-    all.chain((0..engines).flat_map(driven)).collect()
+    let steered =
+        |k: usize| orders(k).map(|order| motion_record(model, trials, k, order, (1.0, "")));
+    (0..SIMULATION_CHECK.motions).flat_map(steered).collect()
+}
+
+/// Records from the same motions with the propeller stopped and reversed and the rudder amidships;
+/// `None` if a trial has no revolutions.
+fn engine_records(model: &Model, trials: &[&Trial]) -> Option<Vec<Trial>> {
+    if trials.iter().any(|trial| trial.channel(Channel::N).is_none()) {
+        return None;
+    }
+    let driven = |k: usize| {
+        ENGINE.map(|engine| motion_record(model, trials, k, RudderOrder::Held(0.0), engine))
+    };
+    (0..SIMULATION_CHECK.motions).flat_map(driven).collect()
+}
+
+/// A record that begins in the middle of the k-th of equal parts of all samples; `None` if that
+/// sample lacks a speed, the yaw rate or the rudder.
+fn motion_record(
+    model: &Model,
+    trials: &[&Trial],
+    k: usize,
+    order: RudderOrder,
+    (turns, engine): (f64, &str),
+) -> Option<Trial> {
+    let places: Vec<(&Trial, usize)> =
+        trials.iter().flat_map(|trial| (0..trial.len()).map(move |at| (*trial, at))).collect();
+    let (trial, at) = *places.get((2 * k + 1) * places.len() / (2 * SIMULATION_CHECK.motions))?;
+    let of = |channel: Channel| Some((channel, trial.channel(channel)?[at]));
+    let angle_rad = of(Channel::Delta)?.1;
+    let moving = [Channel::U, Channel::V, Channel::R].map(of).into_iter();
+    let moving = moving.collect::<Option<Vec<_>>>()?;
+    let revolutions = of(Channel::N).map(|(channel, n_rps)| (channel, turns * n_rps));
+    let others = [Channel::P, Channel::Phi].into_iter().filter_map(of).chain(revolutions);
+    let start = RecordStart { channels: moving.into_iter().chain(others).collect(), angle_rad };
+    let record = rudder_record(model, trials, (order, SIMULATION_CHECK.motion_lengths), &start)?;
+    let from = format!("from the motion of {} at {:.0} s", trial.name, trial.t_s[at]);
+    Some(Trial { name: format!("{}{engine} {from}", record.name), ..record })
 }
 
 #[cfg(test)]
@@ -122,8 +165,10 @@ mod tests {
         assert_eq!(simulation_fault(&model, &law, &trials), None);
         let runs_away =
             with_scaled_coefficients(&model, |name| if name == "N_r" { -10.0 } else { 1.0 });
-        let told = simulation_fault(&runs_away, &law, &trials).unwrap();
-        assert!(told.starts_with("does not sail rudder 1 at random: stopped at "), "{told}");
+        let fault = simulation_fault(&runs_away, &law, &trials).unwrap();
+        assert!(matches!(fault, SimulationFault::Steering(_)), "{fault:?}");
+        let told = fault.into_reason();
+        assert!(told.starts_with("does not complete rudder 1 at random: stopped at "), "{told}");
     }
 
     #[test]

@@ -28,6 +28,10 @@ pub(super) struct SearchThresholds {
     /// Factor of roll's own prior at each such refusal, dimensionless. Source:
     /// `docs/evidence/plain.md`, which has the root and the square of it.
     pub roll_stronger: f64,
+    /// `g_p`: ratio of errors up to which a model that stops and goes astern replaces one that does
+    /// not, dimensionless. Source: chosen, as for trajectories of ratios that few trials cannot
+    /// distinguish.
+    pub propulsion: f64,
     /// `lambda_h`: strength of a prior that keeps the source, dimensionless. Source: derived: the
     /// effect of the trials is smaller than the rounding of its coefficients.
     pub kept: f64,
@@ -69,6 +73,7 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     near: [3.16, 1.0, 0.316],
     stronger: [3.16, 10.0, 31.6, 100.0, 316.0, 1000.0],
     roll_stronger: 10.0,
+    propulsion: 1.5,
     kept: 1e9,
     sources: 5,
     population: 48,

@@ -48,11 +48,12 @@ impl RowSource for TableRows {
     }
 
     fn feed_rows(&mut self, taker: &mut impl RowSink) {
-        let Some(at) = time_column(&self.columns) else { return };
+        // Columns that are to be identified have no time yet; their rows are read all the same.
+        let at = time_column(&self.columns);
         let clock = ColumnClock::with_start(self.table.start.clone());
         for (k, &row) in self.table.rows.iter().enumerate() {
             let values = &self.table.values;
-            if taker.accepts_row(row as usize, Some(values[at][k]), &clock) {
+            if taker.accepts_row(row as usize, at.map(|at| values[at][k]), &clock) {
                 let finite = |value: f64| Some(value).filter(|value| value.is_finite());
                 taker.take_row(row as usize, |position, _| {
                     finite(values[position][k]).ok_or(CellFault::NotANumber)

@@ -67,12 +67,8 @@ async fn whatever_queues_a_job_wakes_the_workers_once_it_is_there(on: &TestStore
     let mut other = jobs.watch_queue();
     on.store.ships().create(&ship("kcs")).await.unwrap();
     assert!(!is_woken(&mut watch).await, "a ship is no job");
-    let inserted = on.store.trials().insert_all_and_enqueue(
-        &[],
-        &sistership_store::ObjectStorage::in_memory(),
-        |_| Some(job("kcs")),
-    );
-    inserted.await.unwrap();
+    let (trials, objects) = (on.store.trials(), sistership_store::ObjectStorage::in_memory());
+    trials.insert_all_and_enqueue(&[], &objects, |_| Some(job("kcs"))).await.unwrap();
     assert!(is_woken(&mut watch).await && is_woken(&mut other).await, "every worker");
 }
 
