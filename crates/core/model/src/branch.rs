@@ -348,11 +348,11 @@ impl SettingCheck {
     }
 
     /// A number above 0, at most 1.
-    fn share(value: f64, field: &'static str) -> Self {
+    fn unit_share(value: f64, field: &'static str) -> Self {
         Self::new(value > 0.0 && value <= 1.0, field, "should be above 0 and at most 1")
     }
 
-    fn positive(value: f64, field: &'static str) -> Self {
+    fn positive_number(value: f64, field: &'static str) -> Self {
         Self::new(value > 0.0 && value.is_finite(), field, "should be a finite number above 0")
     }
 }
@@ -381,8 +381,8 @@ impl Learner {
                 SettingCheck::tree_count(*trees),
                 SettingCheck::leaf_size(*leaf),
                 SettingCheck::tree_depth(*depth),
-                SettingCheck::share(*rate, "learner.rate"),
-                SettingCheck::share(*sampled, "learner.sampled"),
+                SettingCheck::unit_share(*rate, "learner.rate"),
+                SettingCheck::unit_share(*sampled, "learner.sampled"),
             ],
             Self::KernelRidge { centres, length, ridge } => vec![
                 SettingCheck::new(
@@ -390,8 +390,8 @@ impl Learner {
                     "learner.centres",
                     "should be from 1 to 2000",
                 ),
-                SettingCheck::positive(*length, "learner.length"),
-                SettingCheck::positive(*ridge, "learner.ridge"),
+                SettingCheck::positive_number(*length, "learner.length"),
+                SettingCheck::positive_number(*ridge, "learner.ridge"),
             ],
             Self::Perceptron { hidden, epochs, batch, rate, decay } => vec![
                 SettingCheck::new(
@@ -410,7 +410,7 @@ impl Learner {
                     "learner.batch",
                     "should be from 1 to 65536",
                 ),
-                SettingCheck::share(*rate, "learner.rate"),
+                SettingCheck::unit_share(*rate, "learner.rate"),
                 SettingCheck::new(
                     (0.0..=1.0).contains(decay),
                     "learner.decay",
