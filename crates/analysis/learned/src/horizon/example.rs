@@ -60,13 +60,13 @@ impl OneShotSettings {
     /// Returns the first setting that is out of range, with the permitted range.
     pub fn check_settings(&self) -> Result<(), SettingError> {
         let of_steps = "should be from 1 to 10000";
-        SettingError::unless((1..=10_000).contains(&self.steps), "steps", of_steps)?;
-        SettingError::unless(self.memory >= 1, "memory", "should be at least 1")?;
+        SettingError::refuse_unless((1..=10_000).contains(&self.steps), "steps", of_steps)?;
+        SettingError::refuse_unless(self.memory >= 1, "memory", "should be at least 1")?;
         let divides = match self.told {
             OrderEncoding::Orders { parts } => (1..=self.steps).contains(&parts),
             OrderEncoding::End | OrderEncoding::Nothing => true,
         };
-        SettingError::unless(divides, "parts", "should be from 1 to the number of `steps`")
+        SettingError::refuse_unless(divides, "parts", "should be from 1 to the number of `steps`")
     }
 
     /// Returns the examples of a trial, one every `hop` samples, none across a gap. Without a
@@ -81,7 +81,7 @@ impl OneShotSettings {
         hop: usize,
     ) -> Result<Vec<TrackExample>, HorizonError> {
         self.check_settings()?;
-        SettingError::unless(hop >= 1, "hop", "should be at least 1")?;
+        SettingError::refuse_unless(hop >= 1, "hop", "should be at least 1")?;
         let mut all = Vec::new();
         for segment in trial.segments() {
             // Instants with a full horizon within the segment.

@@ -45,8 +45,8 @@ impl SequenceTraining {
     /// Returns the first setting that is out of range, with the permitted range.
     pub fn check_settings(&self) -> Result<(), SettingError> {
         let of_steps = "should be from 1 to 10000";
-        SettingError::unless((1..=10_000).contains(&self.steps), "steps", of_steps)?;
-        SettingError::unless(self.hop >= 1, "hop", "should be at least 1")?;
+        SettingError::refuse_unless((1..=10_000).contains(&self.steps), "steps", of_steps)?;
+        SettingError::refuse_unless(self.hop >= 1, "hop", "should be at least 1")?;
         SettingError::check_epochs(self.epochs)?;
         SettingError::check_batch(self.batch)?;
         SettingError::check_rate(self.rate)?;
@@ -56,13 +56,17 @@ impl SequenceTraining {
     fn check_shape(&self) -> Result<(), SettingError> {
         SettingError::check_width(self.shape.width)?;
         let of_outputs = "should be 3, the accelerations of surge, sway and yaw";
-        SettingError::unless(self.shape.outputs == 3, "outputs", of_outputs)?;
+        SettingError::refuse_unless(self.shape.outputs == 3, "outputs", of_outputs)?;
         // The last step of a sequence must be one that the network sees with a full memory.
         let fits = match self.shape.memory {
             NetworkMemory::Steps(steps) => (1..=self.steps).contains(&steps),
             NetworkMemory::All => true,
         };
-        SettingError::unless(fits, "memory", "should be `all`, or from 1 to the number of `steps`")
+        SettingError::refuse_unless(
+            fits,
+            "memory",
+            "should be `all`, or from 1 to the number of `steps`",
+        )
     }
 }
 
