@@ -1,46 +1,18 @@
 //! Migrations of the schema, embedded in the binary and applied when a store is opened, by one
 //! process at a time.
 
-use sqlx::migrate::{Migration, MigrationType, Migrator};
+use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
 use sqlx::{PgConnection, PgPool, SqlSafeStr as _, SqlitePool};
 
-use crate::error::Result;
+use crate::error::{Result, StoreError};
 
 /// A migration: its number, its name, its text.
 type MigrationSource = (i64, &'static str, &'static str);
 
-const SQLITE: &[MigrationSource] = &[
-    (1, "initial", include_str!("../../../../migrations/sqlite/0001_initial.sql")),
-    (2, "diagnoses", include_str!("../../../../migrations/sqlite/0002_diagnoses.sql")),
-    (3, "search", include_str!("../../../../migrations/sqlite/0003_search.sql")),
-    (4, "fleets", include_str!("../../../../migrations/sqlite/0004_fleets.sql")),
-    (5, "effects", include_str!("../../../../migrations/sqlite/0005_effects.sql")),
-    (6, "leases", include_str!("../../../../migrations/sqlite/0006_leases.sql")),
-    (7, "weights", include_str!("../../../../migrations/sqlite/0007_weights.sql")),
-    (8, "standing", include_str!("../../../../migrations/sqlite/0008_standing.sql")),
-    (9, "access", include_str!("../../../../migrations/sqlite/0009_access.sql")),
-    (10, "webhooks", include_str!("../../../../migrations/sqlite/0010_webhooks.sql")),
-    (11, "identities", include_str!("../../../../migrations/sqlite/0011_identities.sql")),
-    (12, "vector_stamps", include_str!("../../../../migrations/sqlite/0012_vector_stamps.sql")),
-    (13, "notes", include_str!("../../../../migrations/sqlite/0013_notes.sql")),
-    (14, "weighed", include_str!("../../../../migrations/sqlite/0014_weighed.sql")),
-];
-const POSTGRES: &[MigrationSource] = &[
-    (1, "initial", include_str!("../../../../migrations/postgres/0001_initial.sql")),
-    (2, "diagnoses", include_str!("../../../../migrations/postgres/0002_diagnoses.sql")),
-    (3, "search", include_str!("../../../../migrations/postgres/0003_search.sql")),
-    (4, "fleets", include_str!("../../../../migrations/postgres/0004_fleets.sql")),
-    (5, "effects", include_str!("../../../../migrations/postgres/0005_effects.sql")),
-    (6, "leases", include_str!("../../../../migrations/postgres/0006_leases.sql")),
-    (7, "weights", include_str!("../../../../migrations/postgres/0007_weights.sql")),
-    (8, "standing", include_str!("../../../../migrations/postgres/0008_standing.sql")),
-    (9, "access", include_str!("../../../../migrations/postgres/0009_access.sql")),
-    (10, "webhooks", include_str!("../../../../migrations/postgres/0010_webhooks.sql")),
-    (11, "identities", include_str!("../../../../migrations/postgres/0011_identities.sql")),
-    (12, "vector_stamps", include_str!("../../../../migrations/postgres/0012_vector_stamps.sql")),
-    (13, "notes", include_str!("../../../../migrations/postgres/0013_notes.sql")),
-    (14, "weighed", include_str!("../../../../migrations/postgres/0014_weighed.sql")),
-];
+const SQLITE: &[MigrationSource] =
+    &[(1, "schema", include_str!("../../../../migrations/sqlite/0001_schema.sql"))];
+const POSTGRES: &[MigrationSource] =
+    &[(1, "schema", include_str!("../../../../migrations/postgres/0001_schema.sql"))];
 
 fn build_migrator(sources: &'static [MigrationSource]) -> Migrator {
     let migration = |&(version, name, sql): &MigrationSource| {
@@ -54,33 +26,35 @@ fn build_migrator(sources: &'static [MigrationSource]) -> Migrator {
 /// out, as sqlx has no other lock for SQLite.
 pub(crate) async fn migrate_sqlite(pool: &SqlitePool) -> Result<()> {
     let mut tx = pool.begin_with("BEGIN IMMEDIATE").await?;
-    build_migrator(SQLITE).run_direct(None, &mut *tx, false).await.map_err(sqlx::Error::from)?;
+    build_migrator(SQLITE).run_direct(None, &mut *tx, false).await.map_err(migration_error)?;
     Ok(tx.commit().await?)
 }
 
 /// Migrates a PostgreSQL database under the advisory lock of sqlx.
 pub(crate) async fn migrate_postgres(pool: &PgPool) -> Result<()> {
-    Ok(build_migrator(POSTGRES).run(pool).await.map_err(sqlx::Error::from)?)
+    build_migrator(POSTGRES).run(pool).await.map_err(migration_error)
 }
 
-/// Creates the schema of an earlier migration, within a transaction of the caller.
+/// Creates the schema of a migration, within a transaction of the caller: that of a backup.
 pub(crate) async fn postgres_up_to(version: i64, connection: &mut PgConnection) -> Result<()> {
-    Ok(build_migrator(POSTGRES)
+    build_migrator(POSTGRES)
         .run_direct(Some(version), connection, false)
         .await
-        .map_err(sqlx::Error::from)?)
+        .map_err(migration_error)
 }
 
-/// Creates the schema of an earlier migration on SQLite, for tests of upgrades.
-#[cfg(all(unix, feature = "testing"))]
-pub(crate) async fn sqlite_up_to(
-    version: i64,
-    connection: &mut sqlx::SqliteConnection,
-) -> Result<()> {
-    Ok(build_migrator(SQLITE)
-        .run_direct(Some(version), connection, false)
-        .await
-        .map_err(sqlx::Error::from)?)
+/// Names the migration by which a store differs from this program; other errors are the database's.
+fn migration_error(error: MigrateError) -> StoreError {
+    let reason = match &error {
+        MigrateError::VersionMissing(number) => format!("has migration {number}, unknown here"),
+        MigrateError::VersionMismatch(number) => format!("has another migration {number}"),
+        _ => return sqlx::Error::from(error).into(),
+    };
+    let message = format!(
+        "{reason}: another version of sistership made this store; open it with that version, or \
+         name an empty database"
+    );
+    StoreError::conflict("database", "schema", message)
 }
 
 /// Returns the number of the newest migration.

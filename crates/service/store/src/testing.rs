@@ -9,7 +9,6 @@ use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{AssertSqlSafe, ConnectOptions as _, Connection as _, Executor as _, PgConnection};
 use tempfile::TempDir;
 
-pub use earlier::migration_numbers;
 pub use s3::TestS3;
 
 use crate::backup::TABLES;
@@ -17,7 +16,6 @@ use crate::clock::ManualClock;
 use crate::connections::ReadPool;
 use crate::store::Store;
 
-mod earlier;
 mod plans;
 mod s3;
 mod server;

@@ -8,7 +8,6 @@ mod kills;
 mod memory;
 mod races;
 mod slow;
-mod upgrades;
 mod workers;
 
 use crate::attack::Attack;
@@ -25,6 +24,5 @@ pub fn all() -> Vec<Box<dyn Attack>> {
         Box::new(races::Races),
         Box::new(workers::Workers),
         Box::new(backups::Backups),
-        Box::new(upgrades::Upgrades),
     ]
 }

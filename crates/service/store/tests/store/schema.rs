@@ -105,6 +105,18 @@ async fn many_open_a_new_postgres_database_at_once() {
     open_at_once(database).await;
 }
 
+async fn a_store_with_migrations_of_another_version_is_refused(on: &TestStore) {
+    let changes = [
+        ("UPDATE _sqlx_migrations SET version = 99", "has migration 99, unknown here"),
+        ("UPDATE _sqlx_migrations SET version = 1, checksum = substr(checksum, 2)", "has another migration 1"),
+    ];
+    for (change, reason) in changes {
+        on.database.execute_unchecked(change).await;
+        let opened = Store::connect(&on.database.url, Arc::new(SystemClock)).await;
+        assert_conflict(opened, reason);
+    }
+}
+
 #[tokio::test]
 async fn sqlite_in_memory_is_one_database() {
     let store = Store::connect("sqlite::memory:", Arc::new(SystemClock)).await.unwrap();
@@ -145,5 +157,6 @@ on_both_databases!(
     every_statement_prepares,
     no_statement_reads_a_whole_table,
     opening_twice_keeps_what_is_there,
+    a_store_with_migrations_of_another_version_is_refused,
     insert_only_holds_below_the_store_too
 );

@@ -1,4 +1,0 @@
--- How many workers a job has lost: those whose lease ran out without a word, as that of a process does which has ended.
-ALTER TABLE jobs ADD COLUMN lost_workers BIGINT NOT NULL DEFAULT 0;
--- When whoever carries a request out has last said so; none before the first time.
-ALTER TABLE idempotency_keys ADD COLUMN alive_us BIGINT;

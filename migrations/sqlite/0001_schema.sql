@@ -1,0 +1,458 @@
+-- Schema of the store. Times are microseconds since 1970, ids are UUID v7 or slugs, booleans are 0 or 1, and JSON
+-- documents are text, because hashes are over their exact bytes.
+
+-- Laws, ships and trials
+-- ----------------------
+
+-- Laws of motion: the text of each file under its name.
+CREATE TABLE laws (
+    name       TEXT NOT NULL PRIMARY KEY,
+    document   TEXT NOT NULL,
+    sha256     TEXT NOT NULL,
+    created_us INTEGER NOT NULL
+) STRICT;
+CREATE TRIGGER laws_no_update BEFORE UPDATE ON laws
+    BEGIN SELECT RAISE(ABORT, 'laws is insert-only'); END;
+CREATE TRIGGER laws_no_delete BEFORE DELETE ON laws
+    BEGIN SELECT RAISE(ABORT, 'laws is insert-only'); END;
+
+-- Current document of each ship; a deleted ship keeps its row with the time of deletion.
+CREATE TABLE ships (
+    name       TEXT NOT NULL PRIMARY KEY,
+    title      TEXT NOT NULL,
+    category   TEXT NOT NULL,
+    document   TEXT NOT NULL,
+    revision   INTEGER NOT NULL CHECK (revision > 0),
+    created_us INTEGER NOT NULL,
+    updated_us INTEGER NOT NULL,
+    deleted_us INTEGER
+) STRICT;
+CREATE INDEX ships_by_category ON ships (category, name);
+
+-- Every document that a ship has had.
+CREATE TABLE ship_revisions (
+    ship       TEXT NOT NULL REFERENCES ships (name),
+    revision   INTEGER NOT NULL,
+    title      TEXT NOT NULL,
+    category   TEXT NOT NULL,
+    document   TEXT NOT NULL,
+    created_us INTEGER NOT NULL,
+    PRIMARY KEY (ship, revision)
+) STRICT;
+CREATE TRIGGER ship_revisions_no_update BEFORE UPDATE ON ship_revisions
+    BEGIN SELECT RAISE(ABORT, 'ship_revisions is insert-only'); END;
+CREATE TRIGGER ship_revisions_no_delete BEFORE DELETE ON ship_revisions
+    BEGIN SELECT RAISE(ABORT, 'ship_revisions is insert-only'); END;
+
+-- Trials of a ship, each once by the hash of its samples, which are an object of the object store.
+CREATE TABLE trials (
+    id          TEXT NOT NULL UNIQUE,
+    ship        TEXT NOT NULL REFERENCES ships (name),
+    sha256      TEXT NOT NULL,
+    name        TEXT NOT NULL,
+    manifest    TEXT NOT NULL,
+    conventions TEXT NOT NULL,
+    manoeuvre   TEXT,
+    sample_rows INTEGER NOT NULL CHECK (sample_rows >= 0),
+    duration_s  REAL NOT NULL CHECK (duration_s >= 0),
+    warnings    TEXT NOT NULL,
+    object_key  TEXT NOT NULL,
+    created_us  INTEGER NOT NULL,
+    deleted_us  INTEGER,
+    PRIMARY KEY (ship, sha256)
+) STRICT;
+CREATE INDEX trials_by_ship ON trials (ship, id);
+CREATE INDEX trials_by_object ON trials (object_key);
+
+-- Models and their versions
+-- -------------------------
+
+-- One row per model. Its lock orders the numbers of new versions and the moves of aliases.
+CREATE TABLE models (
+    name        TEXT NOT NULL PRIMARY KEY,
+    next_number INTEGER NOT NULL CHECK (next_number > 0)
+) STRICT;
+
+-- `weights_key` names the object with the weights of a learned correction, `author` the principal that requested the
+-- version.
+CREATE TABLE versions (
+    id          TEXT NOT NULL PRIMARY KEY,
+    model       TEXT NOT NULL REFERENCES models (name),
+    number      INTEGER NOT NULL CHECK (number > 0),
+    parent      TEXT REFERENCES versions (id),
+    law         TEXT NOT NULL,
+    method      TEXT NOT NULL,
+    document    TEXT NOT NULL,
+    sha256      TEXT NOT NULL,
+    created_us  INTEGER NOT NULL,
+    weights_key TEXT,
+    author      TEXT,
+    UNIQUE (model, number)
+) STRICT;
+CREATE INDEX versions_by_parent ON versions (parent, id);
+CREATE INDEX versions_by_weights ON versions (weights_key) WHERE weights_key IS NOT NULL;
+CREATE TRIGGER versions_no_update BEFORE UPDATE ON versions
+    BEGIN SELECT RAISE(ABORT, 'versions is insert-only'); END;
+CREATE TRIGGER versions_no_delete BEFORE DELETE ON versions
+    BEGIN SELECT RAISE(ABORT, 'versions is insert-only'); END;
+
+-- Version that each alias of a model names; `revision` counts the moves, for compare-and-swap.
+CREATE TABLE aliases (
+    model          TEXT NOT NULL,
+    alias          TEXT NOT NULL,
+    version_number INTEGER NOT NULL,
+    revision       INTEGER NOT NULL CHECK (revision > 0),
+    PRIMARY KEY (model, alias),
+    FOREIGN KEY (model, version_number) REFERENCES versions (model, number)
+) STRICT;
+
+-- Every move of an alias.
+CREATE TABLE alias_moves (
+    id          TEXT NOT NULL PRIMARY KEY,
+    model       TEXT NOT NULL,
+    alias       TEXT NOT NULL,
+    from_number INTEGER,
+    to_number   INTEGER NOT NULL,
+    revision    INTEGER NOT NULL,
+    reason      TEXT NOT NULL,
+    actor       TEXT NOT NULL,
+    moved_us    INTEGER NOT NULL,
+    UNIQUE (model, alias, revision),
+    FOREIGN KEY (model, to_number) REFERENCES versions (model, number)
+) STRICT;
+CREATE TRIGGER alias_moves_no_update BEFORE UPDATE ON alias_moves
+    BEGIN SELECT RAISE(ABORT, 'alias_moves is insert-only'); END;
+CREATE TRIGGER alias_moves_no_delete BEFORE DELETE ON alias_moves
+    BEGIN SELECT RAISE(ABORT, 'alias_moves is insert-only'); END;
+
+-- Jobs and their results
+-- ----------------------
+
+-- Answers to requests with an `Idempotency-Key`. The process that works on a request updates `alive_us`; it is null until
+-- the first update.
+CREATE TABLE idempotency_keys (
+    scope          TEXT NOT NULL,
+    key            TEXT NOT NULL,
+    request_sha256 TEXT NOT NULL,
+    status         INTEGER,
+    response       TEXT,
+    created_us     INTEGER NOT NULL,
+    alive_us       INTEGER,
+    PRIMARY KEY (scope, key)
+) STRICT;
+CREATE INDEX idempotency_keys_by_age ON idempotency_keys (created_us);
+
+-- `fence` rises with each claim, so that a worker that lost the job cannot change it; `lost_workers` counts leases that
+-- expired without a report, as that of a process does which has ended.
+CREATE TABLE jobs (
+    id               TEXT NOT NULL PRIMARY KEY,
+    kind             TEXT NOT NULL,
+    ship             TEXT,
+    request          TEXT NOT NULL,
+    state            TEXT NOT NULL CHECK (state IN ('queued', 'running', 'succeeded', 'failed', 'cancelled')),
+    progress         REAL NOT NULL,
+    message          TEXT NOT NULL,
+    result           TEXT,
+    error            TEXT,
+    attempt          INTEGER NOT NULL,
+    fence            INTEGER NOT NULL,
+    lease_until_us   INTEGER,
+    worker           TEXT,
+    created_us       INTEGER NOT NULL,
+    started_us       INTEGER,
+    finished_us      INTEGER,
+    cancel_requested INTEGER NOT NULL CHECK (cancel_requested IN (0, 1)),
+    lost_workers     INTEGER NOT NULL DEFAULT 0,
+    author           TEXT
+) STRICT;
+CREATE INDEX jobs_by_ship ON jobs (ship, id);
+CREATE INDEX jobs_to_claim ON jobs (id) WHERE state IN ('queued', 'running');
+CREATE INDEX jobs_by_kind ON jobs (kind, state, created_us);
+CREATE INDEX jobs_by_state ON jobs (state, id);
+
+-- Report of a job, as data and as a page.
+CREATE TABLE reports (
+    id         TEXT NOT NULL PRIMARY KEY,
+    version_id TEXT REFERENCES versions (id),
+    ship       TEXT NOT NULL,
+    kind       TEXT NOT NULL,
+    document   TEXT NOT NULL,
+    html       TEXT NOT NULL,
+    created_us INTEGER NOT NULL
+) STRICT;
+CREATE INDEX reports_by_version ON reports (version_id, id);
+
+-- Diagnoses of versions on trials on which they were not fitted. All diagnoses of a champion together give the condition
+-- of its ship: `unexplained` lists the ids of trials with a remainder that nothing explains, `drift` is a document that
+-- compares the unexplained force on new trials with that on the fitted ones.
+CREATE TABLE diagnoses (
+    id          TEXT NOT NULL PRIMARY KEY,
+    version_id  TEXT NOT NULL REFERENCES versions (id),
+    made_id     TEXT REFERENCES versions (id),
+    report_id   TEXT NOT NULL REFERENCES reports (id),
+    verdict     TEXT NOT NULL,
+    effects     TEXT NOT NULL,
+    trials      TEXT NOT NULL,
+    created_us  INTEGER NOT NULL,
+    unexplained TEXT NOT NULL DEFAULT '[]',
+    drift       TEXT
+) STRICT;
+CREATE INDEX diagnoses_by_version ON diagnoses (version_id, id);
+CREATE INDEX diagnoses_by_made ON diagnoses (made_id, id);
+CREATE INDEX diagnoses_by_report ON diagnoses (report_id);
+CREATE TRIGGER diagnoses_no_update BEFORE UPDATE ON diagnoses
+    BEGIN SELECT RAISE(ABORT, 'diagnoses is insert-only'); END;
+CREATE TRIGGER diagnoses_no_delete BEFORE DELETE ON diagnoses
+    BEGIN SELECT RAISE(ABORT, 'diagnoses is insert-only'); END;
+
+-- Libraries of effects under the hash by which recipes name them.
+CREATE TABLE effect_libraries (
+    sha256     TEXT NOT NULL PRIMARY KEY,
+    document   TEXT NOT NULL,
+    created_us INTEGER NOT NULL
+) STRICT;
+CREATE TRIGGER effect_libraries_no_update BEFORE UPDATE ON effect_libraries
+    BEGIN SELECT RAISE(ABORT, 'effect_libraries is insert-only'); END;
+CREATE TRIGGER effect_libraries_no_delete BEFORE DELETE ON effect_libraries
+    BEGIN SELECT RAISE(ABORT, 'effect_libraries is insert-only'); END;
+
+-- Search of ships
+-- ---------------
+-- Facts and vectors are derived from the document of a ship and from its champion.
+
+CREATE TABLE ship_facts (
+    ship  TEXT NOT NULL REFERENCES ships (name),
+    fact  TEXT NOT NULL,
+    value REAL NOT NULL,
+    PRIMARY KEY (ship, fact)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX ship_facts_by_value ON ship_facts (fact, value, ship);
+
+-- `stamp` identifies a state of the vectors: a cache in memory is valid while the sum of the stamps stays the same.
+CREATE TABLE ship_vectors (
+    ship     TEXT NOT NULL PRIMARY KEY REFERENCES ships (name),
+    category TEXT NOT NULL,
+    vectors  TEXT NOT NULL,
+    stamp    INTEGER NOT NULL DEFAULT 0
+) STRICT, WITHOUT ROWID;
+CREATE INDEX ship_vectors_by_category ON ship_vectors (category, ship);
+CREATE INDEX ship_vectors_by_stamp ON ship_vectors (category, stamp);
+
+CREATE TABLE ship_tags (
+    ship TEXT NOT NULL REFERENCES ships (name),
+    tag  TEXT NOT NULL,
+    PRIMARY KEY (ship, tag)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX ship_tags_by_tag ON ship_tags (tag, ship);
+
+-- Ships that have changed since their facts and vectors were derived.
+CREATE TABLE search_queue (
+    ship TEXT NOT NULL PRIMARY KEY REFERENCES ships (name),
+    mark TEXT NOT NULL
+) STRICT, WITHOUT ROWID;
+
+-- Fleets
+-- ------
+
+-- Sufficient statistics of trials, under the hash of everything that they depend on. They can be derived again from the
+-- samples.
+CREATE TABLE trial_statistics (
+    key        TEXT NOT NULL PRIMARY KEY,
+    document   TEXT NOT NULL,
+    sha256     TEXT NOT NULL,
+    created_us INTEGER NOT NULL
+) STRICT;
+
+-- Ships whose models share a foundation.
+CREATE TABLE families (
+    name       TEXT NOT NULL PRIMARY KEY,
+    title      TEXT NOT NULL,
+    foundation TEXT NOT NULL REFERENCES versions (id),
+    created_us INTEGER NOT NULL
+) STRICT;
+CREATE INDEX families_by_foundation ON families (foundation);
+
+CREATE TABLE family_members (
+    family   TEXT NOT NULL REFERENCES families (name),
+    ship     TEXT NOT NULL REFERENCES ships (name),
+    added_us INTEGER NOT NULL,
+    PRIMARY KEY (family, ship)
+) STRICT;
+CREATE INDEX family_members_by_ship ON family_members (ship, family);
+
+-- Priors that were learned from a family, one for each time.
+CREATE TABLE family_priors (
+    family     TEXT NOT NULL REFERENCES families (name),
+    revision   INTEGER NOT NULL CHECK (revision > 0),
+    document   TEXT NOT NULL,
+    sha256     TEXT NOT NULL,
+    created_us INTEGER NOT NULL,
+    PRIMARY KEY (family, revision)
+) STRICT;
+CREATE TRIGGER family_priors_no_update BEFORE UPDATE ON family_priors
+    BEGIN SELECT RAISE(ABORT, 'family_priors is insert-only'); END;
+CREATE TRIGGER family_priors_no_delete BEFORE DELETE ON family_priors
+    BEGIN SELECT RAISE(ABORT, 'family_priors is insert-only'); END;
+
+-- Refinements of all members of a family. Chunks are jobs, and each ship has one outcome.
+CREATE TABLE bulk_refinements (
+    id         TEXT NOT NULL PRIMARY KEY,
+    family     TEXT NOT NULL REFERENCES families (name),
+    request    TEXT NOT NULL,
+    ships      INTEGER NOT NULL CHECK (ships > 0),
+    created_us INTEGER NOT NULL
+) STRICT;
+CREATE INDEX bulk_refinements_by_family ON bulk_refinements (family, id);
+
+CREATE TABLE bulk_chunks (
+    bulk   TEXT NOT NULL REFERENCES bulk_refinements (id),
+    number INTEGER NOT NULL,
+    job    TEXT NOT NULL UNIQUE REFERENCES jobs (id),
+    PRIMARY KEY (bulk, number)
+) STRICT;
+
+CREATE TABLE bulk_outcomes (
+    bulk         TEXT NOT NULL REFERENCES bulk_refinements (id),
+    ship         TEXT NOT NULL REFERENCES ships (name),
+    outcome      TEXT NOT NULL CHECK (outcome IN ('champion', 'candidate', 'unchanged', 'refused')),
+    version_id   TEXT REFERENCES versions (id),
+    worst_change REAL,
+    document     TEXT NOT NULL,
+    created_us   INTEGER NOT NULL,
+    PRIMARY KEY (bulk, ship)
+) STRICT;
+CREATE INDEX bulk_outcomes_by_ship ON bulk_outcomes (ship, bulk);
+CREATE INDEX bulk_outcomes_by_version ON bulk_outcomes (version_id);
+
+-- Users, rights and audit
+-- -----------------------
+
+CREATE TABLE users (
+    name          TEXT NOT NULL PRIMARY KEY,
+    title         TEXT NOT NULL,
+    password_hash TEXT,
+    created_us    INTEGER NOT NULL,
+    disabled_us   INTEGER
+) STRICT;
+
+-- Roles of users (`user:NAME`) and service keys (`key:PREFIX`), each for the server, a ship or a family.
+CREATE TABLE grants (
+    principal  TEXT NOT NULL,
+    scope_kind TEXT NOT NULL CHECK (scope_kind IN ('server', 'ship', 'family')),
+    scope_name TEXT NOT NULL,
+    role       TEXT NOT NULL CHECK (role IN ('reader', 'engineer', 'approver', 'admin')),
+    PRIMARY KEY (principal, scope_kind, scope_name)
+) STRICT;
+
+-- Service keys: prefix and hash only, never the key.
+CREATE TABLE service_keys (
+    prefix       TEXT NOT NULL PRIMARY KEY,
+    title        TEXT NOT NULL,
+    user_name    TEXT REFERENCES users (name),
+    sha256       TEXT NOT NULL,
+    created_us   INTEGER NOT NULL,
+    expires_us   INTEGER,
+    revoked_us   INTEGER,
+    last_used_us INTEGER
+) STRICT;
+CREATE INDEX service_keys_by_user ON service_keys (user_name);
+
+-- Sessions of browsers, under the hash of the token.
+CREATE TABLE sessions (
+    sha256     TEXT NOT NULL PRIMARY KEY,
+    user_name  TEXT NOT NULL REFERENCES users (name),
+    created_us INTEGER NOT NULL,
+    expires_us INTEGER NOT NULL
+) STRICT;
+CREATE INDEX sessions_by_user ON sessions (user_name);
+CREATE INDEX sessions_by_end ON sessions (expires_us);
+
+-- Users of OpenID providers: a subject of an issuer is one user.
+CREATE TABLE identities (
+    issuer     TEXT NOT NULL,
+    subject    TEXT NOT NULL,
+    user_name  TEXT NOT NULL REFERENCES users (name),
+    created_us INTEGER NOT NULL,
+    PRIMARY KEY (issuer, subject)
+) STRICT;
+CREATE INDEX identities_by_user ON identities (user_name);
+
+-- Completed sign-ins at a provider, kept until they would have expired, so that none is used twice.
+CREATE TABLE spent_sign_ins (
+    sha256     TEXT NOT NULL PRIMARY KEY,
+    expires_us INTEGER NOT NULL
+) STRICT;
+CREATE INDEX spent_sign_ins_by_end ON spent_sign_ins (expires_us);
+
+CREATE TABLE settings (
+    name       TEXT NOT NULL PRIMARY KEY,
+    value      TEXT NOT NULL,
+    changed_us INTEGER NOT NULL
+) STRICT;
+
+-- Audit: every change with its author. The hash of an entry is over its fields and the hash of the entry before it. Notes
+-- on ships are entries, too, with an index of their own.
+CREATE TABLE audit (
+    number          INTEGER NOT NULL PRIMARY KEY CHECK (number > 0),
+    at_us           INTEGER NOT NULL,
+    actor           TEXT NOT NULL,
+    origin          TEXT NOT NULL,
+    action          TEXT NOT NULL,
+    subject         TEXT NOT NULL,
+    state_before    TEXT,
+    state_after     TEXT,
+    previous_sha256 TEXT NOT NULL,
+    sha256          TEXT NOT NULL
+) STRICT;
+CREATE INDEX audit_by_subject ON audit (subject, number);
+CREATE INDEX audit_by_actor ON audit (actor, number);
+CREATE INDEX audit_notes ON audit (subject, number) WHERE action = 'ship.note';
+CREATE TRIGGER audit_no_update BEFORE UPDATE ON audit
+    BEGIN SELECT RAISE(ABORT, 'audit is insert-only'); END;
+CREATE TRIGGER audit_no_delete BEFORE DELETE ON audit
+    BEGIN SELECT RAISE(ABORT, 'audit is insert-only'); END;
+
+-- Last entry of the audit. A transaction that adds one locks this row until its commit.
+CREATE TABLE audit_head (
+    one    INTEGER NOT NULL PRIMARY KEY CHECK (one = 1),
+    number INTEGER NOT NULL,
+    sha256 TEXT NOT NULL
+) STRICT;
+
+-- Webhooks
+-- --------
+
+-- Receivers of events. `secret` signs deliveries; an event of drift is sent when the unexplained force on new trials
+-- exceeds that on the fitted ones by the factor `drift_above`.
+CREATE TABLE webhooks (
+    id          TEXT NOT NULL PRIMARY KEY,
+    title       TEXT NOT NULL,
+    url         TEXT NOT NULL,
+    secret      TEXT NOT NULL,
+    ship        TEXT,
+    drift_above REAL NOT NULL,
+    created_us  INTEGER NOT NULL,
+    ended_us    INTEGER
+) STRICT;
+
+CREATE TABLE webhook_events (
+    event   TEXT NOT NULL,
+    webhook TEXT NOT NULL REFERENCES webhooks (id),
+    PRIMARY KEY (event, webhook)
+) STRICT;
+CREATE INDEX webhook_events_by_webhook ON webhook_events (webhook, event);
+
+-- Deliveries, written by the transaction of the event. `due_us` is null once a delivery has arrived or was given up.
+CREATE TABLE deliveries (
+    id           TEXT NOT NULL PRIMARY KEY,
+    webhook      TEXT NOT NULL REFERENCES webhooks (id),
+    event        TEXT NOT NULL,
+    body         TEXT NOT NULL,
+    created_us   INTEGER NOT NULL,
+    attempts     INTEGER NOT NULL,
+    due_us       INTEGER,
+    delivered_us INTEGER,
+    answer       TEXT
+) STRICT;
+CREATE INDEX deliveries_due ON deliveries (due_us);
+CREATE INDEX deliveries_by_webhook ON deliveries (webhook, id);
