@@ -30,7 +30,7 @@ impl Outcome {
         let known = baseline.model.uncertainty.as_ref();
         Self {
             seed,
-            interval_s: known.and_then(|known| known.reading_interval_s),
+            interval_s: known.map(|known| known.reading_interval_s),
             wind: diagnosed(&baseline, &judged),
             placebo: diagnosed(&baseline, &false_wind),
         }

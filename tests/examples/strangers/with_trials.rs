@@ -105,13 +105,9 @@ fn refined(
     let settings = RefinementSettings {
         method: EstimationMethod::Weak,
         prior,
-        in_parts: trials.len() < 3,
-        steering_from_trials: true,
-        steering_above_noise: true,
-        recorded_terms: true,
+        hold_out_parts: trials.len() < 3,
         ..RefinementSettings::default()
     };
-    let settings = settings.with_request_defaults();
     let request = RefinementSpec {
         target: &stranger.vessel,
         source,

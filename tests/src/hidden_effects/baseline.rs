@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use sistership_diagnosis::{self as diagnose, CalibrationSettings, Diagnosis, calibrate_model};
+use sistership_diagnosis::{self as diagnose, Diagnosis, calibrate_model};
 use sistership_identification::refine::{RefinementSettings, RefinementSpec, refine};
 use sistership_model::{Effect, Law, Model, Trial};
 
@@ -57,12 +57,7 @@ pub fn by(
         println!("{channel:>6} {:10.5} -> {:10.5}", before[channel], after[channel]);
     }
     let mut model = refinement.model;
-    let settings = CalibrationSettings {
-        expected_rates: true,
-        reading_interval: true,
-        ..CalibrationSettings::default()
-    };
-    let uncertainty = calibrate_model(&model, law, &library(), trials, settings)
+    let uncertainty = calibrate_model(&model, law, &library(), trials, None)
         .unwrap_or_else(|error| panic!("{error}"));
     println!("discrepancy {:?}", uncertainty.discrepancy);
     model.uncertainty = Some(uncertainty);

@@ -16,8 +16,8 @@ use sistership_identification::refine::RefineError;
 pub struct CalibratedModel {
     pub model: Model,
     pub law: Law,
-    /// True if instruments depend on the rates that the filter expects, as on the model's own
-    /// trials.
+    /// True if instruments depend on the rates that the filter expects, as on the trials of the
+    /// calibration; without one, they depend on the rates on the recorded path.
     pub expected_rates: bool,
     /// Least interval between readings, s, as on the model's own trials; determined from the
     /// samples that are used where absent.
@@ -73,9 +73,8 @@ impl CalibratedModel {
         let law = law
             .with_effects(&model)
             .map_err(|(field, message)| RefineError::Law(format!("{field}: {message}")))?;
-        let expected_rates = model.uncertainty.as_ref().is_some_and(|known| known.expected_rates);
-        let reading_interval_s =
-            model.uncertainty.as_ref().and_then(|known| known.reading_interval_s);
+        let expected_rates = model.uncertainty.is_some();
+        let reading_interval_s = model.uncertainty.as_ref().map(|known| known.reading_interval_s);
         Ok(Self { model, law, expected_rates, reading_interval_s })
     }
 }

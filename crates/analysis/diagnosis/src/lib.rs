@@ -42,7 +42,7 @@ mod values;
 use std::sync::Arc;
 
 pub use as_recorded::trial_from_track;
-pub use calibrate::{CalibrationSettings, calibrate_model};
+pub use calibrate::calibrate_model;
 pub use expected::{ExpectedInformation, TrialUnknowns, observable_forms};
 pub use outcome::{
     ChangeCourse, ConfoundedEffect, DetectionLimit, Diagnosis, DiscrepancyLevel, EffectChange,

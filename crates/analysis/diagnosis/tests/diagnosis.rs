@@ -8,8 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, Normal};
 use sistership_diagnosis::{
-    CalibrationSettings, Diagnosis, DiagnosisInputs, OriginKind, Settings, Verdict,
-    calibrate_model, diagnose,
+    Diagnosis, DiagnosisInputs, OriginKind, Settings, Verdict, calibrate_model, diagnose,
 };
 use sistership_model::effect::AppliedEffect;
 use sistership_model::quantity::Quantity;
@@ -220,15 +219,9 @@ fn a_noisy_gyro_is_not_late() {
     let trials: Vec<&Trial> = trials.iter().collect();
     let effects = [Arc::clone(zoo.effect("time-delay").unwrap())];
     let law = zoo.law(&model.law).unwrap();
-    let explained = |expected_rates: bool| {
-        let settings = CalibrationSettings { expected_rates, ..CalibrationSettings::default() };
-        let uncertainty = calibrate_model(&model, law, &effects, &trials, settings).unwrap();
-        uncertainty.false_alarm_levels["time-delay/yaw-rate"].together
-    };
-    let (expected, on_path) = (explained(true), explained(false));
-    println!("explained by chance's share: {expected}, by rates on the path {on_path}");
-    assert!(expected < 4.0, "a chi-square of one degree by its mean: {expected}");
-    assert!(on_path > 3.0 * expected.max(1.0), "{on_path}");
+    let uncertainty = calibrate_model(&model, law, &effects, &trials, None).unwrap();
+    let explained = uncertainty.false_alarm_levels["time-delay/yaw-rate"].together;
+    assert!(explained < 4.0, "a chi-square of one degree by its mean: {explained}");
 }
 
 /// A log through the water beside velocities over the ground: what the hull sees ahead.

@@ -7,7 +7,7 @@
 //! the trials of the largest and smallest rudder angles and speeds are held out
 //! ([`crate::correction`]).
 
-use sistership_identification::refine::{Progress, RefineError, ReplayedTrials, ThinningSettings};
+use sistership_identification::refine::{Progress, RefineError, ReplayedTrials};
 use sistership_learned::{
     BranchChoice, BranchKind, BranchSettings, HeldOutTrials, KindSearch, TrainError, select_kind,
 };
@@ -35,9 +35,8 @@ pub(super) fn choose_correction(
     if folds.is_empty() {
         return Ok(BranchChoice::without_evaluation(IN_PARTS.to_owned()));
     }
-    let by = ThinningSettings { economical: true, smoothing_s: None };
     let lpp_m = request.target.particular("lpp_m");
-    let replayed = ReplayedTrials::new(request.law, lpp_m, trials, by);
+    let replayed = ReplayedTrials::new(request.law, lpp_m, trials, None);
     let kinds = KindSearch::WhilePromising { step_s: replayed.step_s };
     let thinned: Vec<&Trial> = replayed.trials.iter().collect();
     let on = HeldOutTrials { law: request.law, trials: &thinned, folds: &folds };

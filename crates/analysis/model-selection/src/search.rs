@@ -16,7 +16,6 @@ use crate::evaluation::{
 use crate::selection::{SelectedCandidate, select_candidate};
 use crate::selection_report::SelectionStage;
 use crate::thresholds::SEARCH;
-use sistership_assessment::uncertainty::Sampling;
 use sistership_identification::refine::{
     CandidateEvaluation, MonotoneProgress, Progress, RefineError, RefinementSettings,
     SourceEnvelopes, refine_if_wanted,
@@ -52,20 +51,8 @@ fn search_settings(search: &CandidateSearch<'_>) -> RefinementSettings {
         longer_restarts_s: longer_restarts_s(search, &lengths_s),
         smoothing_s: settings.smoothing_s.or(lengths_s(SEARCH.smoothing)),
         part_s: settings.part_s.or_else(|| lengths_s(SEARCH.part).filter(|_| !few)),
-        in_parts: settings.in_parts || few,
-        hydrostatic_roll: true,
-        plane_source: true,
-        steering_from_trials: true,
-        steering_above_noise: true,
-        recorded_terms: true,
-        recorded_revolutions: true,
-        posterior_by_folds: true,
-        folds_pooled: true,
-        economical: true,
-        expected_rates: true,
-        reading_interval: true,
+        hold_out_parts: settings.hold_out_parts || few,
         calibration_samples: settings.calibration_samples.or(Some(SEARCH.calibration)),
-        bands: Sampling { within_steps: true, figures_only: true, ..settings.bands },
         ..settings.clone()
     }
 }
@@ -78,7 +65,10 @@ fn longer_restarts_s(
     lengths_s: &dyn Fn(f64) -> Option<f64>,
 ) -> Vec<f64> {
     let (settings, fitted) = (search.settings, search.fitted_trials());
-    if !settings.longer_restarts_s.is_empty() || settings.in_parts || fitted.len() < SEARCH.few {
+    if !settings.longer_restarts_s.is_empty()
+        || settings.hold_out_parts
+        || fitted.len() < SEARCH.few
+    {
         return settings.longer_restarts_s.clone();
     }
     let longest_s = fitted.iter().map(|trial| trial.duration_s()).fold(0.0, f64::max);
@@ -107,7 +97,7 @@ fn run_stages(
     let mut next = leading_by_law(search, &tried);
     // Parts of one manoeuvre have no information on other manoeuvres, and without a source there is
     // no other information.
-    if search.settings.in_parts && !next.is_empty() {
+    if search.settings.hold_out_parts && !next.is_empty() {
         alone.clear();
     }
     next.extend(alone);

@@ -39,25 +39,13 @@ const STEERING: SteeringThresholds = SteeringThresholds {
     most_samples: 20,
 };
 
-/// Choice of the time over which a rate is taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RateWindow {
-    /// The time of covering a length alone, as in versions with this setting.
-    OfLength,
-    /// The time of covering a length, and longer where the noise of the readings requires it.
-    AboveNoise,
-}
-
 /// Returns the gear's rate, rad/s, by the fastest movements of the rudder in trials; none where no
 /// movement is long enough to show it. `length_s` is the time in which the ship covers its length.
-pub fn measured_rate(trials: &[&Trial], length_s: f64, window: RateWindow) -> Option<f64> {
+pub fn measured_rate(trials: &[&Trial], length_s: f64) -> Option<f64> {
     let of = |trial: &&Trial| {
         let step_s = trial.interval_s();
         let count = ((STEERING.window * length_s / step_s).round() as usize).max(1);
-        match window {
-            RateWindow::OfLength => rudder_rates(trial, count),
-            RateWindow::AboveNoise => rates_above_noise(trial, count),
-        }
+        rates_above_noise(trial, count)
     };
     let each: Vec<Vec<(f64, f64)>> = trials.iter().map(of).collect();
     let largest = largest_rate(each.iter().flatten());
@@ -146,11 +134,9 @@ mod tests {
     #[test]
     fn the_rate_is_that_of_the_gear_whatever_the_noise() {
         for (rate, noise) in [(2.32, 0.0), (2.32, 0.1), (4.0, 0.1), (5.0, 0.3)] {
-            for window in [RateWindow::OfLength, RateWindow::AboveNoise] {
-                let trial = zigzag(rate, noise, &[20.0, -20.0]);
-                let measured = measured_rate(&[&trial], 30.0, window).unwrap().to_degrees();
-                assert!((measured / rate - 1.0).abs() < 0.1, "{rate} deg/s read as {measured}");
-            }
+            let trial = zigzag(rate, noise, &[20.0, -20.0]);
+            let measured = measured_rate(&[&trial], 30.0).unwrap().to_degrees();
+            assert!((measured / rate - 1.0).abs() < 0.1, "{rate} deg/s read as {measured}");
         }
     }
 
@@ -158,7 +144,7 @@ mod tests {
     fn a_short_ship_shows_its_rate_within_the_noise() {
         for rate in [2.32, 2.9, 3.8] {
             let trial = zigzag(rate, 0.09, &[20.0, -20.0]);
-            let measured = measured_rate(&[&trial], 14.7, RateWindow::AboveNoise).unwrap();
+            let measured = measured_rate(&[&trial], 14.7).unwrap();
             let measured = measured.to_degrees();
             assert!((measured / rate - 1.0).abs() < 0.03, "{rate} deg/s read as {measured}");
         }
@@ -167,9 +153,7 @@ mod tests {
     #[test]
     fn a_rudder_that_hardly_moves_shows_no_rate() {
         let trial = zigzag(5.0, 0.05, &[1.0, -1.0]);
-        for window in [RateWindow::OfLength, RateWindow::AboveNoise] {
-            assert_eq!(measured_rate(&[&trial], 30.0, window), None);
-            assert_eq!(measured_rate(&[&Trial::default()], 30.0, window), None);
-        }
+        assert_eq!(measured_rate(&[&trial], 30.0), None);
+        assert_eq!(measured_rate(&[&Trial::default()], 30.0), None);
     }
 }

@@ -51,7 +51,7 @@ pub(crate) fn design_targets(
                 .flat_map(|j| [1.0, -1.0].map(|side| unknowns.move_coefficients(model, j, side))),
         )
         .collect();
-    let sampling = Sampling { within_steps: true, figures_only: true, ..Sampling::default() };
+    let sampling = Sampling::default();
     let sailed = figures_by_name(&models[0], law, &models, sampling)?;
     let (estimate, moved) = sailed.split_first()?;
     let of = |(name, unit): &(&'static str, &'static str)| {

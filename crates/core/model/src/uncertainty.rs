@@ -34,16 +34,9 @@ pub struct Uncertainty {
     /// are read with them, too.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub systematic_errors: Vec<AppliedEffect>,
-    /// True if the prediction of later readings was learned from the rates that the filter expects;
-    /// default: from those on the recorded path, whose noise is that of the readings. Later trials
-    /// are read in the same way.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub expected_rates: bool,
     /// Interval between readings with independent noise, s; 0 if every sample is independent. Later
-    /// trials are read in the same way. Default: determined from the samples used of each set of
-    /// trials.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reading_interval_s: Option<f64>,
+    /// trials are read in the same way.
+    pub reading_interval_s: f64,
     /// Level that each form of an effect explained in these trials, which do not have the effect:
     /// by `effect/form`.
     #[serde(rename = "feigned", default, skip_serializing_if = "BTreeMap::is_empty")]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use sistership_identification::refine::{
     Refinement, RefinementExtent, RefinementSettings, RefinementSpec, ReplayedTrials,
-    SourceEnvelopes, TermFamily, ThinningSettings, evaluate_candidates,
+    SourceEnvelopes, TermFamily, evaluate_candidates,
 };
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Vessel};
@@ -175,12 +175,8 @@ fn corrected_error(contest: &ComparisonInputs<'_>) -> Option<Option<f64>> {
     let speeds = fitted.iter().flat_map(|trial| trial.channel(Channel::U).unwrap_or_default());
     // The physical range must contain the fastest fitted trial, as in the refinement.
     ship.set_envelope_speed(speeds.fold(0.0_f64, |fastest, speed| fastest.max(speed.abs())));
-    let replayed = ReplayedTrials::new(
-        contest.law,
-        Some(ship.lpp_m()),
-        &fitted,
-        ThinningSettings::from(settings),
-    );
+    let replayed =
+        ReplayedTrials::new(contest.law, Some(ship.lpp_m()), &fitted, settings.smoothing_s);
     let steps = ReplaySettings {
         restart_s: settings.restart_s,
         step_s: replayed.step_s,

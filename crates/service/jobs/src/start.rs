@@ -48,8 +48,6 @@ impl RefinementStart {
         law: Option<String>,
         settings: RefinementSettings,
     ) -> Self {
-        // One order of lists, so that the same settings give the same recipe and the same bytes.
-        let settings = settings.with_request_defaults();
         // Nothing was compared, so there is neither a ranking nor a selection report.
         let source = Some(source);
         Self { source, law, population: Vec::new(), settings, similarity: None, ladder: None }

@@ -17,13 +17,11 @@ use crate::uncertainty::sampling::{Sampling, draw_from_posterior};
 
 /// Draws that are simulated in lockstep.
 const LOCKSTEP_DRAWS: usize = 10;
-/// Steps in units of the time in which the ship travels its own length: `STEP` for draws that
-/// reverse the rudder at the end of a step, `EXACT_STEP` for those that do so within it and are
-/// corrected by the estimate at the fine step. Bands at the latter's step differ from those at the
-/// former's by 0.3 % of their width in the median (at most 9 %); draws of another seed by 6 % (a
-/// tanker, 152 coefficients, 200 draws).
-const STEP: f64 = 0.02;
-const EXACT_STEP: f64 = 0.05;
+/// Step of draws in units of the time in which the ship travels its own length. Draws reverse the
+/// rudder within a step and are corrected by the estimate at the fine step: bands at this step
+/// differ from those at 0.02 by 0.3 % of their width in the median (at most 9 %), draws of another
+/// seed by 6 % (a tanker, 152 coefficients, 200 draws).
+const STEP: f64 = 0.05;
 
 /// Uncertainty bands of a model's standard manoeuvres.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -66,8 +64,8 @@ pub struct UncertaintyBand {
 }
 
 /// Returns the bands of the standard manoeuvres; `None` if the model has no posterior of its
-/// present coefficients. The default step is [`STEP`] or [`EXACT_STEP`] of the time of a ship
-/// length. `depth_m` is for laws that depend on it.
+/// present coefficients. The default step is [`STEP`] of the time of a ship length. `depth_m` is
+/// for laws that depend on it.
 pub fn uncertainty_bands(
     model: &Model,
     law: &Law,
@@ -76,16 +74,12 @@ pub fn uncertainty_bands(
     sampling: Sampling,
 ) -> Option<UncertaintyBands> {
     let draws = draw_from_posterior(model, sampling)?;
-    let within_steps = sampling.within_steps;
-    let (ship, fast) = prepare_ship(model, law, settings, depth_m, sampling)?;
+    let (ship, fast) = prepare_ship(model, law, settings, depth_m)?;
     let sailed = simulate_draws(&ship, &draws, &fast)?;
     // A draw that fails one manoeuvre still gives the figures of the others.
     let failed = sailed.iter().filter(|sailed| !sailed.failures.is_empty()).count();
     // Draws run at a coarse step; the estimate, simulated at both, gives the correction for it.
-    let by_step = match within_steps {
-        true => errors_by_step(&ship, &ship.open_coefficient_values(model)?, settings, &fast),
-        false => BTreeMap::new(),
-    };
+    let by_step = errors_by_step(&ship, &ship.open_coefficient_values(model)?, settings, &fast);
     let mut figures: BTreeMap<String, Vec<NamedFigure>> = BTreeMap::new();
     let mut order = Vec::new();
     let mut drawn = vec![DrawFigures::new(); sailed.len()];
@@ -104,8 +98,7 @@ pub fn uncertainty_bands(
     }
     let figures =
         order.iter().filter_map(|name| band_of_draws(&figures[name], draws.len())).collect();
-    // The most informative trial is part of the request for reversals within steps.
-    let next_trial = next_trial(&drawn).filter(|_| within_steps);
+    let next_trial = next_trial(&drawn);
     Some(UncertaintyBands { sampling, failed, figures, next_trial })
 }
 
@@ -132,7 +125,6 @@ fn prepare_ship(
     law: &Law,
     settings: &ManoeuvreSettings,
     depth_m: Option<f64>,
-    sampling: Sampling,
 ) -> Option<(Ship, ManoeuvreSettings)> {
     let mut ship = Ship::with_open_coefficients(model, law).ok()?;
     let speed_m_s = settings.speed_m_s.unwrap_or(ship.approach_speed_m_s());
@@ -141,11 +133,12 @@ fn prepare_ship(
     // Draws are simulated outside the range of the trials, too.
     ship.disable_excursions();
     depth_m.into_iter().for_each(|depth_m| ship.set_depth(depth_m));
-    let Sampling { within_steps: reversals_within_steps, figures_only, .. } = sampling;
-    let share = if reversals_within_steps { EXACT_STEP } else { STEP };
-    let coarse = share * ship.lpp_m() / speed_m_s;
+    let coarse = STEP * ship.lpp_m() / speed_m_s;
     let step_s = settings.step_s.or(Some(coarse));
-    Some((ship, ManoeuvreSettings { step_s, reversals_within_steps, figures_only, ..*settings }))
+    // Figures do not need the rest of an initial turn; overshoots need the time of each reversal.
+    let fast =
+        ManoeuvreSettings { step_s, reversals_within_steps: true, figures_only: true, ..*settings };
+    Some((ship, fast))
 }
 
 /// Standard manoeuvres of several models, simulated in lockstep; `None` if one of them differs in
@@ -166,13 +159,8 @@ fn simulate_draws(
 
 /// Returns the figures of the standard manoeuvres, by their names, of models with the law and
 /// particulars of a model; `None` if the law does not fit.
-pub fn figures_by_name(
-    model: &Model,
-    law: &Law,
-    models: &[Model],
-    sampling: Sampling,
-) -> Option<Vec<DrawFigures>> {
-    let (ship, fast) = prepare_ship(model, law, &ManoeuvreSettings::default(), None, sampling)?;
+pub fn figures_by_name(model: &Model, law: &Law, models: &[Model]) -> Option<Vec<DrawFigures>> {
+    let (ship, fast) = prepare_ship(model, law, &ManoeuvreSettings::default(), None)?;
     let named = |sailed: StandardManoeuvres| {
         let figures = sailed.list_figures().into_iter();
         figures.filter_map(|figure| Some((figure.name, figure.value?))).collect()
@@ -299,7 +287,7 @@ mod tests {
     fn narrow_bands_hold_the_estimate_s_figures() {
         let (model, law) = mariner(1e-3);
         let settings = ManoeuvreSettings::default();
-        let sampling = Sampling { samples: 40, seed: 2, within_steps: true, figures_only: true };
+        let sampling = Sampling { samples: 40, seed: 2 };
         let bands = uncertainty_bands(&model, &law, &settings, None, sampling).unwrap();
         let ship = Ship::with_open_coefficients(&model, &law).unwrap();
         let own = ship.open_coefficient_values(&model).unwrap();

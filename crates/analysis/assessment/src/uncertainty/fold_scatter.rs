@@ -20,29 +20,14 @@ const DRAWS: usize = 40;
 /// Quantile of 97.5 % of the normal distribution.
 const NORMAL: f64 = 1.959_964;
 
-/// Quantile by which the folds' scatter becomes a band.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FoldQuantile {
-    /// Student's, as if the folds estimated the variance of a single figure; stored versions use
-    /// it. With six trials bands are wider by 1.3 and contain 100 % of the true figures instead of
-    /// 95 % (docs/evidence/plain.md).
-    Student,
-    /// The normal distribution's: the variance is a mean over some twenty figures.
-    Normal,
-}
-
 /// Returns the root of the ratio of the jackknife's variance to the posterior's, in the mean over
-/// the figures of the standard manoeuvres, times the ratio of the quantile to the normal one. At
-/// least 1, and 1 if fewer than three folds complete the manoeuvres.
-pub fn fold_factor(
-    model: &Model,
-    law: &Law,
-    folds: &[Model],
-    (quantile, figures_only): (FoldQuantile, bool),
-) -> f64 {
-    let sampling =
-        Sampling { samples: DRAWS, within_steps: true, figures_only, ..Sampling::default() };
-    let of = |models: &[Model]| figures_by_name(model, law, models, sampling);
+/// the figures of the standard manoeuvres. At least 1, and 1 if fewer than three folds complete the
+/// manoeuvres. The variance is a mean over some twenty figures, so that bands need no Student's
+/// quantile: with it, bands of six trials contain 100 % of the true figures instead of 95 %
+/// (docs/evidence/plain.md).
+pub fn fold_factor(model: &Model, law: &Law, folds: &[Model]) -> f64 {
+    let sampling = Sampling { samples: DRAWS, ..Sampling::default() };
+    let of = |models: &[Model]| figures_by_name(model, law, models);
     let drawn = draw_from_posterior(model, sampling).and_then(|draws| of(&draws));
     let left_out = of(folds).filter(|left_out| left_out.len() > 2);
     let (Some(drawn), Some(left_out)) = (drawn, left_out) else { return 1.0 };
@@ -59,11 +44,7 @@ pub fn fold_factor(
         })
         .collect();
     let mean = ratios.iter().sum::<f64>() / ratios.len().max(1) as f64;
-    let wider = match quantile {
-        FoldQuantile::Student => student_quantile(left_out.len() - 1) / NORMAL,
-        FoldQuantile::Normal => 1.0,
-    };
-    (wider * mean.sqrt()).max(1.0)
+    mean.sqrt().max(1.0)
 }
 
 /// Returns Student's quantile of 97.5 % for some degrees of freedom (Abramowitz and Stegun 1964,
@@ -93,7 +74,7 @@ mod tests {
     use super::*;
 
     /// Folds whose rudder coefficients lie so many deviations to either side.
-    fn factor(apart: f64, quantile: FoldQuantile) -> f64 {
+    fn factor(apart: f64) -> f64 {
         let zoo = Zoo::load_embedded().unwrap();
         let mut model = zoo.find_model("mariner").unwrap();
         let names = vec!["N_delta".to_owned()];
@@ -109,20 +90,16 @@ mod tests {
             fold
         };
         let law = zoo.law("abkowitz").unwrap();
-        fold_factor(&model, law, &[-1.0, -1.0, 1.0, 1.0].map(fold), (quantile, true))
+        fold_factor(&model, law, &[-1.0, -1.0, 1.0, 1.0].map(fold))
     }
 
     #[test]
     fn folds_that_lie_wider_than_the_posterior_widen_it() {
         // Of four folds at one deviation, the jackknife's variance is three times the posterior's.
-        let cases =
-            [(FoldQuantile::Normal, 1.0), (FoldQuantile::Student, student_quantile(3) / NORMAL)];
-        for (quantile, wider) in cases {
-            let (expected, at) = (wider * 3.0_f64.sqrt(), |apart| factor(apart, quantile));
-            assert!((at(1.0) / expected - 1.0).abs() < 0.25, "{} by {expected}", at(1.0));
-            assert!((at(2.0) / at(1.0) - 2.0).abs() < 0.1);
-            assert_eq!(at(0.1), 1.0);
-        }
+        let (expected, once) = (3.0_f64.sqrt(), factor(1.0));
+        assert!((once / expected - 1.0).abs() < 0.25, "{once} by {expected}");
+        assert!((factor(2.0) / once - 2.0).abs() < 0.1);
+        assert_eq!(factor(0.1), 1.0);
     }
 
     #[test]

@@ -10,6 +10,6 @@ mod sampling;
 pub use bands::{
     UncertaintyBand, UncertaintyBands, bands_over, figures_by_name, quantile, uncertainty_bands,
 };
-pub use fold_scatter::{FoldQuantile, fold_factor, student_quantile};
+pub use fold_scatter::{fold_factor, student_quantile};
 pub use next_trial::{DrawFigures, NextTrial};
 pub use sampling::{Sampling, TooManySamples, draw_from_posterior};

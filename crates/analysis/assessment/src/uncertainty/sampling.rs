@@ -19,20 +19,11 @@ pub struct Sampling {
     pub samples: usize,
     /// Seed of the draws.
     pub seed: u64,
-    /// Let draws reverse the rudder within a step, correct them by the estimate at a fine step, and
-    /// find the most informative trial. The default search sets it; versions from explicit requests
-    /// keep their bands.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub within_steps: bool,
-    /// End initial turns soon after the change of heading that defines their figures. The default
-    /// search sets it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub figures_only: bool,
 }
 
 impl Default for Sampling {
     fn default() -> Self {
-        Self { samples: 100, seed: 1, within_steps: false, figures_only: false }
+        Self { samples: 100, seed: 1 }
     }
 }
 

@@ -43,23 +43,8 @@ struct CalibrationInputs<'a> {
     trials: &'a [&'a Trial],
     /// Trials on which the noise model is learned.
     noise: &'a [&'a Trial],
-    settings: CalibrationSettings,
-    /// Least interval between independent readings on all trials, where it was requested.
-    reading_interval_s: Option<f64>,
-}
-
-/// Settings of a calibration; the settings of a refinement have the same names.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct CalibrationSettings {
-    /// Number of samples of the trials on which the noise model is learned; all where absent.
-    pub samples: Option<usize>,
-    /// Limits the computation: the noise model is searched in two rounds, and instruments are
-    /// searched among the errors that one linearisation shows.
-    pub economical: bool,
-    /// Instruments that depend on rates use the rates that the filter expects.
-    pub expected_rates: bool,
-    /// The interval between independent readings is determined on the recorded samples, and stored.
-    pub reading_interval: bool,
+    /// Least interval between independent readings on all trials, s.
+    reading_interval_s: f64,
 }
 
 /// Determines the uncertainty that remains after the trials on which a model was fitted, to be
@@ -67,9 +52,9 @@ pub struct CalibrationSettings {
 /// those trials show them; and the false-alarm levels of effects on these trials, which do not have
 /// them, are stored for later judgements.
 ///
-/// Given a number of samples, the noise model, which is evaluated repeatedly, is learned on
+/// Given a number of `samples`, the noise model, which is evaluated repeatedly, is learned on
 /// representative trials that have about so many samples together; each trial is then linearised
-/// when it is needed, and not kept.
+/// when it is needed, and not kept. Without one, it is learned on all trials.
 ///
 /// # Errors
 /// Returns an error that names the channel that a trial lacks, or one if the information is not
@@ -79,34 +64,25 @@ pub fn calibrate_model(
     law: &Law,
     effects: &[Arc<Effect>],
     trials: &[&Trial],
-    settings: CalibrationSettings,
+    samples: Option<usize>,
 ) -> Result<Uncertainty, RefineError> {
-    let places = representative_trials(trials, settings.samples.unwrap_or(usize::MAX));
+    let places = representative_trials(trials, samples.unwrap_or(usize::MAX));
     let noise: Vec<&Trial> = places.into_iter().map(|place| trials[place]).collect();
     // An earlier uncertainty belongs to other trials.
     let model = &Model { uncertainty: None, ..model.clone() };
-    let reading_interval_s =
-        settings.reading_interval.then(|| trial_reading_interval_s(model, law, trials));
-    let reading_interval_s = reading_interval_s.transpose()?;
-    let calibration =
-        CalibrationInputs { law, effects, trials, noise: &noise, settings, reading_interval_s };
+    let reading_interval_s = trial_reading_interval_s(model, law, trials)?;
+    let calibration = CalibrationInputs { law, effects, trials, noise: &noise, reading_interval_s };
     let learned = calibration.learn_noise_and_shift(model, None)?;
     let first = calibration.remaining_uncertainty(&learned)?;
     // Errors of instruments are searched under the first calibration; where there are some,
     // everything is learned again with them.
-    let systematic_errors = systematic_errors::find_systematic_errors(
-        model,
-        &first,
-        law,
-        effects,
-        (&noise, settings.economical),
-    )?;
+    let systematic_errors =
+        systematic_errors::find_systematic_errors(model, &first, law, effects, &noise)?;
     if systematic_errors.is_empty() {
         return calibration.judged_uncertainty(&learned);
     }
-    // The second calibration starts from the noise model of the first one where computation is
-    // limited.
-    let found = settings.economical.then_some(learned.found);
+    // The second calibration starts from the noise model of the first one.
+    let found = Some(learned.found);
     let erring = Uncertainty { systematic_errors, instruments: BTreeMap::new(), ..first };
     let erring = Model { uncertainty: Some(erring), ..model.clone() };
     calibration.judged_uncertainty(&calibration.learn_noise_and_shift(&erring, found)?)
@@ -132,6 +108,8 @@ struct LearnedCalibration<'a> {
     /// Noise of the instruments on the trials on which the noise model was learned.
     scatter: InstrumentNoise,
     found: NoiseModel,
+    /// Least interval between independent readings, s.
+    reading_interval_s: f64,
     /// All trials with all columns, and their products, where they are few enough to be kept.
     kept: Option<(LinearisedTrials<'a>, Vec<GramMatrix>)>,
 }
@@ -144,8 +122,7 @@ impl<'a> CalibrationInputs<'a> {
         model: &Model,
         start: Option<NoiseModel>,
     ) -> Result<LearnedCalibration<'a>, RefineError> {
-        let &Self { law, effects, trials, noise, settings, reading_interval_s } = self;
-        let economical = settings.economical;
+        let &Self { law, effects, trials, noise, reading_interval_s } = self;
         let terms = learned_terms(model, law, effects, trials);
         // Only terms with a regressor in this model can be columns.
         let extra: Vec<_> = terms
@@ -158,15 +135,15 @@ impl<'a> CalibrationInputs<'a> {
         let moved = |shift: &[f64]| -> Result<CalibratedModel, RefineError> {
             let moved = CalibratedModel::new(model, law, &terms, &nuisance, shift)?;
             Ok(CalibratedModel {
-                expected_rates: settings.expected_rates,
-                reading_interval_s,
+                expected_rates: true,
+                reading_interval_s: Some(reading_interval_s),
                 ..moved
             })
         };
         // The first shift is found about the given model; the noise is then learned about the
         // shifted one.
         let as_it_is = moved(&vec![0.0; nuisance.len()])?;
-        let (shift, rough) = first_shift(&as_it_is, &nuisance, &prior, (noise, start, economical))?;
+        let (shift, rough) = first_shift(&as_it_is, &nuisance, &prior, (noise, start))?;
         let fixed = prior.relative_to(&shift);
         let shifted = moved(&shift)?;
         let all_at_once = noise.len() == trials.len();
@@ -179,8 +156,7 @@ impl<'a> CalibrationInputs<'a> {
         let learned_on = LinearisedTrials::new(&shifted, columns, noise, None)?;
         // Noise by the readings alone, before the most probable one replaces it.
         let scatter = learned_on.noise.clone();
-        let found =
-            noise_model::most_probable_noise(&learned_on, &fixed, (Some(rough), economical))?;
+        let found = noise_model::most_probable_noise(&learned_on, &fixed, Some(rough))?;
         // Linearisations are kept only if all trials are used for the noise model.
         let kept = all_at_once.then(|| -> Result<_, RefineError> {
             let kept = learned_on.with_noise(&found.noise);
@@ -189,7 +165,17 @@ impl<'a> CalibrationInputs<'a> {
         });
         let kept = kept.transpose()?;
         let model = model.clone();
-        Ok(LearnedCalibration { model, shifted, shift, nuisance, fixed, scatter, found, kept })
+        Ok(LearnedCalibration {
+            model,
+            shifted,
+            shift,
+            nuisance,
+            fixed,
+            scatter,
+            found,
+            reading_interval_s,
+            kept,
+        })
     }
 
     /// Columns of coefficients and of all effects.
@@ -217,8 +203,8 @@ impl<'a> CalibrationInputs<'a> {
         learned.one_at_a_time(columns, trials)
     }
 
-    /// Uncertainty of the coefficients after the trials; where computation is limited, after those
-    /// of the noise model, on which alone systematic errors are searched.
+    /// Uncertainty of the coefficients after the trials of the noise model, on which alone
+    /// systematic errors are searched.
     fn remaining_uncertainty(
         &self,
         learned: &LearnedCalibration<'_>,
@@ -229,13 +215,9 @@ impl<'a> CalibrationInputs<'a> {
         };
         match &learned.kept {
             Some((all, grams)) => of(all, grams),
-            None if self.settings.economical => {
+            None => {
                 let all = self.without_effects(learned, self.noise)?;
                 of(&all, &all.products_per_trial(discrepancies)?)
-            }
-            None => {
-                let all = self.with_all_effects(learned)?;
-                of(&all, &all.coefficient_products_under(&all.noise, discrepancies)?)
             }
         }
     }
@@ -323,11 +305,11 @@ fn first_shift(
     as_it_is: &CalibratedModel,
     nuisance: &[NuisanceColumn],
     prior: &CoefficientPrior,
-    (trials, start, economical): (&[&Trial], Option<NoiseModel>, bool),
+    (trials, start): (&[&Trial], Option<NoiseModel>),
 ) -> Result<(Vec<f64>, NoiseModel), RefineError> {
     let columns = FilterColumns { nuisance: nuisance.to_vec(), candidates: Vec::new() };
     let mut workspace = LinearisedTrials::new(as_it_is, columns, trials, None)?;
-    let scatter = noise_model::most_probable_noise(&workspace, prior, (start, economical))?;
+    let scatter = noise_model::most_probable_noise(&workspace, prior, start)?;
     workspace.noise.clone_from(&scatter.noise);
     let grams = workspace.products_per_trial(&scatter.discrepancies)?;
     let shift = TrialInformation { fixed: prior, grams: &grams, scatter: 1.0 }
@@ -409,8 +391,7 @@ fn root_uncertainty(
         discrepancy,
         instruments: instrument_fits(&workspace.noise, &learned.scatter),
         systematic_errors: Vec::new(),
-        expected_rates: learned.shifted.expected_rates,
-        reading_interval_s: learned.shifted.reading_interval_s,
+        reading_interval_s: learned.reading_interval_s,
         false_alarm_levels: BTreeMap::new(),
         remainder: BTreeMap::new(),
         trials: workspace.trials.iter().map(|trial| trial.name.clone()).collect(),

@@ -75,13 +75,10 @@ impl NoiseModel {
 pub(super) fn most_probable_noise(
     workspace: &LinearisedTrials<'_>,
     fixed: &CoefficientPrior,
-    (start, economical): (Option<NoiseModel>, bool),
+    start: Option<NoiseModel>,
 ) -> Result<NoiseModel, RefineError> {
-    let rounds: &[[f64; 2]] = match economical {
-        true => &THRESHOLDS.calibration.factors_economical,
-        false => &THRESHOLDS.calibration.factors,
-    };
-    // A given start replaces the coarse rounds; only the last, finest one is needed.
+    let rounds = &THRESHOLDS.calibration.factors;
+    // A given start replaces the coarse round; only the last, finest one is needed.
     let first = if start.is_some() { rounds.len() - 1 } else { 0 };
     let mut best = match start {
         Some(start) => start,

@@ -28,7 +28,7 @@ pub(super) fn find_systematic_errors(
     known: &Uncertainty,
     law: &Law,
     effects: &[Arc<Effect>],
-    (trials, economical): (&[&Trial], bool),
+    trials: &[&Trial],
 ) -> Result<Vec<AppliedEffect>, RefineError> {
     // False-alarm levels are not applied yet: the effect may be present on these trials.
     let known = Uncertainty { false_alarm_levels: Default::default(), ..known.clone() };
@@ -48,9 +48,7 @@ pub(super) fn find_systematic_errors(
     if seeming.is_empty() {
         return Ok(Vec::new());
     }
-    if economical {
-        search.listed = seeming;
-    }
+    search.listed = seeming;
     let base = search.filter_with_candidates(&[], &search.levels)?;
     let choice = choose_effects(&search, &base, &settings)?;
     // Only the effects that the search has added to those of the model.

@@ -29,12 +29,10 @@ pub(crate) struct CalibrationThresholds {
     pub first_levels: [f64; 7],
     /// `f_rk`: factors by which each parameter of the noise model is then multiplied or divided, by
     /// round; coefficients are fitted again between rounds, dimensionless. Source: chosen as a
-    /// descending line search that ends within 20 % of the optimum.
-    pub factors: [[f64; 2]; 3],
-    /// Factors where computation is limited. Source: as [`Self::factors`]; without the round
-    /// between, models of the Esso Osaka and their instruments' errors are the same but for a last
-    /// factor of 1.2.
-    pub factors_economical: [[f64; 2]; 2],
+    /// descending line search that ends within 20 % of the optimum; with a round of 3.0 and 1.6 between
+    /// these two, models of the Esso Osaka and their instruments' errors are the same but for a
+    /// last factor of 1.2.
+    pub factors: [[f64; 2]; 2],
     /// `e_D`: least gain in deviance (minus twice the logarithm of the likelihood) of a change,
     /// dimensionless. Source: chosen; a twentieth of a unit of log-likelihood is far below the half
     /// unit of one standard error.
@@ -70,8 +68,7 @@ pub(super) const CALIBRATION: CalibrationThresholds = CalibrationThresholds {
     fallback_deviation: 1e-2,
     mass_prior: 1e-6,
     first_levels: [1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2],
-    factors: [[8.0, 3.0], [3.0, 1.6], [1.6, 1.2]],
-    factors_economical: [[8.0, 3.0], [1.6, 1.2]],
+    factors: [[8.0, 3.0], [1.6, 1.2]],
     least_gain: 0.1,
     scatter_share: 0.999,
     least_chance: 1e-3,

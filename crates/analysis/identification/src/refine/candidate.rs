@@ -107,7 +107,7 @@ impl CandidateFit {
             errors,
             horizons,
             each,
-            few: problem.settings.in_parts,
+            few: problem.settings.hold_out_parts,
             size,
             left_out: Vec::new(),
             search: None,

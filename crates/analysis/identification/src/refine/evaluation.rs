@@ -132,7 +132,7 @@ fn fold_models(problem: &RefinementProblem<'_>, left_out: &[Model]) -> Vec<FoldM
 /// Mean errors by trial. Parts of one trial count together, since they depend on each other, unless
 /// only parts of one or two trials can show a scatter.
 fn errors_by_trial(problem: &RefinementProblem<'_>, each: &[f64]) -> BTreeMap<String, f64> {
-    if problem.settings.in_parts {
+    if problem.settings.hold_out_parts {
         let named = |(k, (trial, error)): (usize, (&&Trial, &f64))| {
             (format!("{} ({})", trial.name, k + 1), *error)
         };

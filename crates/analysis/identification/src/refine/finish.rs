@@ -18,7 +18,7 @@ use super::ridge::{CoefficientFit, RidgeChoices};
 use super::thresholds::SELECTION;
 use super::variant::TermVariant;
 use crate::constraints::LimitError;
-use sistership_assessment::uncertainty::{FoldQuantile, fold_factor, uncertainty_bands};
+use sistership_assessment::uncertainty::{fold_factor, uncertainty_bands};
 use sistership_numerics::RidgeChoice;
 use sistership_propulsion::{PropulsionContext, PropulsionFault};
 
@@ -186,16 +186,9 @@ fn build_refinement(
     let coefficients = refined_model(problem, fitted.as_ref()).coefficients;
     let mut model = Model { coefficients, ..taken.model };
     model.posterior = coefficient_posterior(problem, &model, fitted.as_ref(), variants)?;
-    if problem.settings.posterior_by_folds {
-        let quantile = match problem.settings.folds_pooled {
-            true => FoldQuantile::Normal,
-            false => FoldQuantile::Student,
-        };
-        // The fold models' scatter widens the posterior; it never narrows it.
-        let how = (quantile, problem.settings.bands.figures_only);
-        let factor = fold_factor(&model, problem.law, &candidates[best].left_out, how);
-        widen_errors(&mut model, fitted.as_mut(), factor);
-    }
+    // The fold models' scatter widens the posterior; it never narrows it.
+    let factor = fold_factor(&model, problem.law, &candidates[best].left_out);
+    widen_errors(&mut model, fitted.as_mut(), factor);
     let propulsion = propulsion_context(problem);
     // The balance is weighted by the posterior, which is known only now.
     let model = propulsion.with_posterior(model);

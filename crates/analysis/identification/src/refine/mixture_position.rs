@@ -5,7 +5,11 @@ use rayon::prelude::*;
 
 use super::evaluation::CandidateEvaluation;
 use super::outcome::RefineError;
-use super::settings::RefinementSettings;
+use super::settings::{Prior, RefinementSettings};
+
+/// Default positions among which the trials choose: source, learned shares and estimate, and
+/// halfway between.
+const DEFAULT_POSITIONS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Returns the chosen position; `None` if there is no choice.
 ///
@@ -19,7 +23,7 @@ pub(super) fn choose_position(
     settings: &RefinementSettings,
     weigh: impl Fn(&RefinementSettings) -> Result<Vec<CandidateEvaluation>, RefineError> + Sync,
 ) -> Result<Option<f64>, RefineError> {
-    let mut positions = settings.mixture_positions.clone();
+    let mut positions = positions_to_try(settings);
     if positions.len() < 2 {
         return Ok(None);
     }
@@ -40,11 +44,19 @@ pub(super) fn choose_position(
     let mut best: Option<(f64, &CandidateEvaluation)> = None;
     for (position, weighed) in positions.iter().zip(&all) {
         let Some(weighed) = weighed else { continue };
-        if best.is_none_or(|(_, before)| is_better(weighed, before, settings.in_parts)) {
+        if best.is_none_or(|(_, before)| is_better(weighed, before, settings.hold_out_parts)) {
             best = Some((*position, weighed));
         }
     }
     Ok(best.map(|(position, _)| position))
+}
+
+/// The positions of the settings; the default ones if the settings name none.
+fn positions_to_try(settings: &RefinementSettings) -> Vec<f64> {
+    match settings.prior == Prior::Mixture && settings.mixture_positions.is_empty() {
+        true => DEFAULT_POSITIONS.to_vec(),
+        false => settings.mixture_positions.clone(),
+    }
 }
 
 /// The evaluation with the least error of those that can be chosen.
@@ -71,7 +83,6 @@ fn is_better(new: &CandidateEvaluation, old: &CandidateEvaluation, is_few: bool)
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::refine::Prior;
 
     /// Errors by part of a mixture that is best at a position.
     fn weighed(position: f64, best: f64, scatter: f64) -> Vec<CandidateEvaluation> {
@@ -88,12 +99,12 @@ mod tests {
         }]
     }
 
-    fn position(best: f64, scatter: f64, in_parts: bool) -> Option<f64> {
+    fn position(best: f64, scatter: f64, hold_out_parts: bool) -> Option<f64> {
         let positions = vec![0.0, 0.5, 1.0];
         let settings = RefinementSettings {
             prior: Prior::Mixture,
             mixture_positions: positions,
-            in_parts,
+            hold_out_parts,
             ..RefinementSettings::default()
         };
         let weigh = |one: &RefinementSettings| Ok(weighed(one.mixture_positions[0], best, scatter));
@@ -116,6 +127,14 @@ mod tests {
         let settings =
             RefinementSettings { mixture_positions: vec![0.5], ..RefinementSettings::default() };
         assert_eq!(choose_position(&settings, |_| panic!("weighed")).unwrap(), None);
+    }
+
+    #[test]
+    fn a_mixture_without_positions_tries_five() {
+        let settings =
+            RefinementSettings { prior: Prior::Mixture, ..RefinementSettings::default() };
+        let weigh = |one: &RefinementSettings| Ok(weighed(one.mixture_positions[0], 0.25, 0.0));
+        assert_eq!(choose_position(&settings, weigh).unwrap(), Some(0.25));
     }
 
     #[test]

@@ -59,7 +59,7 @@ pub use outcome::{
 };
 pub use population::PopulationShip;
 pub use progress::{FitIterate, IterateObserver, MonotoneProgress, Progress};
-pub use replayed_trials::{ReplayedTrials, ThinningSettings};
+pub use replayed_trials::ReplayedTrials;
 pub use request::RefinementSpec;
 pub use ridge::{
     CoefficientFit, FittedCoefficient, RegressionFold, RidgeChoices, fit_regressions, tune_choices,

@@ -23,7 +23,7 @@ pub(super) fn trial_parts(
 ) -> Vec<Trial> {
     let Some(part_s) = settings.part_s.or(settings.restart_s) else { return Vec::new() };
     let few_that_roll = law.has_roll() && training.len() < settings.folds;
-    if !settings.in_parts && (equations.are_differences() || !few_that_roll) {
+    if !settings.hold_out_parts && (equations.are_differences() || !few_that_roll) {
         return Vec::new();
     }
     training.iter().flat_map(|trial| divide_trial(trial, part_s)).collect()
@@ -84,8 +84,7 @@ mod tests {
         let one = trial(1000);
         let settings =
             RefinementSettings { restart_s: Some(100.0), ..RefinementSettings::default() };
-        let windows =
-            EquationForm::Windows(WindowSpacing { length_s: 20.0, hop_s: 2.0, in_means: false });
+        let windows = EquationForm::Windows(WindowSpacing { length_s: 20.0, hop_s: 2.0 });
         let count = |law: &str, trials: usize, equations| {
             trial_parts(&vec![&one; trials], zoo.law(law).unwrap(), equations, &settings).len()
         };
@@ -93,7 +92,7 @@ mod tests {
         assert_eq!(count("abkowitz-roll", 8, windows), 0);
         assert_eq!(count("abkowitz", 3, windows), 0);
         assert_eq!(count("abkowitz-roll", 3, EquationForm::Differences(None)), 0);
-        let asked = RefinementSettings { in_parts: true, ..settings.clone() };
+        let asked = RefinementSettings { hold_out_parts: true, ..settings.clone() };
         assert_eq!(trial_parts(&[&one], zoo.law("abkowitz").unwrap(), windows, &asked).len(), 5);
     }
 }

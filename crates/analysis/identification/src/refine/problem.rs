@@ -48,7 +48,7 @@ impl<'a> RefinementProblem<'a> {
         let training = trials.to_vec();
         let (whole, judged, transferred) = (training.clone(), Vec::new(), model.clone());
         let lpp_m = particulars::particular_value(&model.particulars, "lpp_m");
-        let replayed = ReplayedTrials::new(law, lpp_m, &training, (&settings).into());
+        let replayed = ReplayedTrials::new(law, lpp_m, &training, settings.smoothing_s);
         let deviations = standard_deviations(&training);
         Self {
             law,

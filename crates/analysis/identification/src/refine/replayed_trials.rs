@@ -7,7 +7,6 @@ use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::recorded::ReplaySettings;
 
-use super::settings::RefinementSettings;
 use super::smoothing::{ReadingsAbout, is_motion};
 use super::steps::step_s;
 use sistership_priors::transfer::trial_approach;
@@ -20,50 +19,40 @@ pub struct ReplayedTrials {
     pub step_s: f64,
 }
 
-/// Settings by which trials are thinned and smoothed.
-#[derive(Debug, Clone, Copy)]
-pub struct ThinningSettings {
-    /// True to use as few samples as a search needs, with means of the inputs between them.
-    pub economical: bool,
-    /// Window in which motions are smoothed, s; none leaves them as recorded.
-    pub smoothing_s: Option<f64>,
-}
-
-impl From<&RefinementSettings> for ThinningSettings {
-    fn from(settings: &RefinementSettings) -> Self {
-        Self { economical: settings.economical, smoothing_s: settings.smoothing_s }
-    }
-}
-
 impl ReplayedTrials {
-    /// Creates thinned trials; without a known length or approach speed no sample is dropped.
-    pub fn new(law: &Law, lpp_m: Option<f64>, training: &[&Trial], by: ThinningSettings) -> Self {
-        let economical = by.economical;
+    /// Creates thinned trials with motions smoothed in a window of `smoothing_s`; as recorded if
+    /// there is none. Without a known length or approach speed no sample is dropped.
+    pub fn new(
+        law: &Law,
+        lpp_m: Option<f64>,
+        training: &[&Trial],
+        smoothing_s: Option<f64>,
+    ) -> Self {
         let step_s = lpp_m
             .zip(trial_approach(training))
-            .map(|(l, approach)| step_s(law, l / approach.speed_m_s, economical));
+            .map(|(l, approach)| step_s(law, l / approach.speed_m_s));
         let usual_s = ReplaySettings::default().step_s;
         Self {
-            trials: training.iter().map(|trial| thin_trial(trial, step_s, by)).collect(),
-            // Ships that roll keep the usual step, as do settings that are not economical.
-            step_s: step_s.filter(|_| economical && !law.has_roll()).unwrap_or(usual_s),
+            trials: training.iter().map(|trial| thin_trial(trial, step_s, smoothing_s)).collect(),
+            // Ships that roll keep the usual step.
+            step_s: step_s.filter(|_| !law.has_roll()).unwrap_or(usual_s),
         }
     }
 }
 
 /// Thins a trial to samples as far apart as a simulation may step; no sample is joined to another
 /// across a gap. Keeps every sample if thinning would drop a part between gaps.
-fn thin_trial(trial: &Trial, step_s: Option<f64>, by: ThinningSettings) -> Trial {
+fn thin_trial(trial: &Trial, step_s: Option<f64>, smoothing_s: Option<f64>) -> Trial {
     // Without thinning and smoothing the trial is used as it is.
     let every = sample_stride(trial, step_s);
-    if every == 1 && by.smoothing_s.is_none() {
+    if every == 1 && smoothing_s.is_none() {
         return trial.clone();
     }
     let parts = trial.segments();
-    let kept = KeptSamples::new(trial, &parts, every, by.smoothing_s);
+    let kept = KeptSamples::new(trial, &parts, every, smoothing_s);
     let column = |channel: Channel, column: &[f64]| match channel {
         _ if is_motion(channel) => kept.smoothed_samples(channel, column),
-        _ if by.economical && is_averaged_input(channel) => kept.mean_samples(column),
+        _ if is_averaged_input(channel) => kept.mean_samples(column),
         _ => kept.select_samples(column),
     };
     let channels =
@@ -155,8 +144,6 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    const MEANS: ThinningSettings = ThinningSettings { economical: true, smoothing_s: None };
-
     fn trial(gap_s: f64) -> Trial {
         let t_s: Vec<f64> =
             (0..100).map(|k| 0.1 * f64::from(k) + if k < 51 { 0.0 } else { gap_s }).collect();
@@ -165,7 +152,7 @@ mod tests {
 
     #[test]
     fn samples_are_as_far_apart_as_a_step_may_be() {
-        let fewer = thin_trial(&trial(30.0), Some(0.35), MEANS);
+        let fewer = thin_trial(&trial(30.0), Some(0.35), None);
         assert_eq!((fewer.len(), fewer.segments().len()), (17 + 17, 2));
         assert!((fewer.interval_s() - 0.3).abs() < 1e-9);
         assert_eq!(fewer.channel(Channel::U).unwrap(), fewer.t_s);
@@ -177,20 +164,20 @@ mod tests {
         let mut trial = trial(30.0);
         let step = (0..100).map(|k| if (20..60).contains(&k) { 1.0 } else { 0.0 }).collect();
         trial.channels.insert(Channel::Delta, step);
-        let fewer = thin_trial(&trial, Some(0.35), MEANS);
+        let fewer = thin_trial(&trial, Some(0.35), None);
         let impulse = 0.3 * fewer.channel(Channel::Delta).unwrap().iter().sum::<f64>();
         assert!((impulse - 0.1 * 40.0).abs() < 0.1, "{impulse}");
     }
 
     #[test]
     fn slow_records_and_gaps_that_would_vanish_are_left_as_they_are() {
-        assert_eq!(thin_trial(&trial(30.0), Some(0.15), MEANS), trial(30.0));
+        assert_eq!(thin_trial(&trial(30.0), Some(0.15), None), trial(30.0));
         assert_eq!(
-            thin_trial(&trial(0.1), Some(0.35), MEANS),
+            thin_trial(&trial(0.1), Some(0.35), None),
             trial(0.1),
             "a gap of a fifth of a second"
         );
-        assert_eq!(thin_trial(&trial(30.0), None, MEANS), trial(30.0));
+        assert_eq!(thin_trial(&trial(30.0), None, None), trial(30.0));
     }
 
     #[test]
@@ -199,13 +186,12 @@ mod tests {
         let scatter = |k: usize| if k.is_multiple_of(2) { 0.1 } else { -0.1 };
         let scattered: Vec<f64> = (0..100).map(|k| 1.0 + scatter(k)).collect();
         trial.channels = [(Channel::U, scattered.clone()), (Channel::Delta, scattered)].into();
-        let by = ThinningSettings { economical: false, smoothing_s: Some(2.0) };
-        let smooth = thin_trial(&trial, None, by);
+        let smooth = thin_trial(&trial, None, Some(2.0));
         assert_eq!(smooth.t_s, trial.t_s);
         assert_eq!(smooth.channel(Channel::Delta), trial.channel(Channel::Delta));
         let far = |u: &f64| (u - 1.0).abs();
         assert!(smooth.channel(Channel::U).unwrap().iter().map(far).fold(0.0, f64::max) < 0.07);
-        let fewer = thin_trial(&trial, Some(0.35), by);
+        let fewer = thin_trial(&trial, Some(0.35), Some(2.0));
         let place = |t: f64| smooth.t_s.iter().position(|s| *s == t).unwrap();
         let same: Vec<f64> =
             fewer.t_s.iter().map(|t| smooth.channel(Channel::U).unwrap()[place(*t)]).collect();

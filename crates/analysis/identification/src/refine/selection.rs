@@ -26,7 +26,7 @@ use super::settings_check::combined_error;
 use super::starting_point::StartingPoint;
 use super::thresholds::SELECTION;
 use super::variant::{TermVariant, family_variants};
-use sistership_priors::steering::{RateWindow, measured_rate};
+use sistership_priors::steering::measured_rate;
 use sistership_priors::transfer::trial_approach;
 
 /// Refines a source model against trials.
@@ -164,20 +164,14 @@ fn with_candidates<T>(
     let parts = trial_parts(&whole, request.law, equations, &settings);
     let started = StartingPoint { request, known, whole: &whole, approach: trial_approach(&whole) };
     let (mut transferred, measure) = started.starting_prior(!parts.is_empty())?;
-    if settings.steering_from_trials {
-        let window = match settings.steering_above_noise {
-            true => RateWindow::AboveNoise,
-            false => RateWindow::OfLength,
-        };
-        steer_as_recorded(&mut transferred, request.target, &whole, window);
-    }
+    steer_as_recorded(&mut transferred, request.target, &whole);
     // Parts replace whole trials in fit and comparison alike.
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
     // A source with coefficients of zero is a placeholder and has no name.
     let named = Some(&*request.source.name).filter(|_| !has_only_zeros(request.source));
     let source = settings.prior_origin(named).to_owned();
     let (law, watch) = (request.law, Some(watch));
-    let replayed = ReplayedTrials::new(law, lpp_m, &training, (&settings).into());
+    let replayed = ReplayedTrials::new(law, lpp_m, &training, settings.smoothing_s);
     let deviations = standard_deviations(&training);
     let problem = RefinementProblem {
         law,
@@ -206,10 +200,9 @@ fn with_candidates<T>(
 }
 
 /// Sets a model's rudder rate to that of the recorded rudder movements, where these show it.
-fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial], window: RateWindow) {
+fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial]) {
     let length_s = target.particular("lpp_m").zip(trial_approach(trials));
-    let rate =
-        length_s.and_then(|(l, approach)| measured_rate(trials, l / approach.speed_m_s, window));
+    let rate = length_s.and_then(|(l, approach)| measured_rate(trials, l / approach.speed_m_s));
     if let Some(rate) = rate {
         model.steering.rate_deg_s = rate.to_degrees();
         model.steering.source = Some("the rudder's movements in the trials".to_owned());

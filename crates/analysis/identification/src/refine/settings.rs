@@ -9,6 +9,10 @@ use super::thresholds::ESTIMATE_POSITION;
 use crate::constraints::Constraints;
 use sistership_assessment::uncertainty::Sampling;
 
+/// Revision of the algorithm of this program. It rises with each change after which the same
+/// settings give another model.
+pub const ALGORITHM_REVISION: u32 = 1;
+
 /// The estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -72,10 +76,6 @@ pub enum Prior {
     Population,
 }
 
-/// Default positions of a mixture among which the trials choose: source, learned shares and
-/// estimate, and halfway between.
-const MIXTURE_POSITIONS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-
 /// Origin of a refinement without a source.
 pub const TRIALS_ALONE: &str = "the trials alone";
 
@@ -123,6 +123,10 @@ pub struct TuningRange {
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "RefinementSettings")]
 pub struct RefinementSettings {
+    /// Revision of the algorithm. Versions keep it, so that another revision is never taken for the
+    /// one that made them.
+    #[schemars(range(min = 1, max = 1))]
+    pub algorithm_revision: u32,
     /// The estimator.
     pub method: EstimationMethod,
     /// Mean of the prior.
@@ -133,8 +137,7 @@ pub struct RefinementSettings {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub regressions_sha256: Option<String>,
     /// Positions of the mean of a `mixture`: 0 at the source, 0.5 at the learned shares, 1 at the
-    /// estimate. Of several positions the trials choose one. Default of a new request: five
-    /// positions.
+    /// estimate. Of several positions the trials choose one. Default: five positions.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 20), extend("items" = { "type": "number", "format": "double", "minimum": 0, "maximum": 1 }))]
     pub mixture_positions: Vec<f64>,
@@ -217,61 +220,11 @@ pub struct RefinementSettings {
     /// for one or two trials, where holding a whole one out leaves too little. The default search
     /// sets it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub in_parts: bool,
-    /// Read the steering gear's rate from the rudder's movements in the trials, where these show
-    /// it; otherwise it is the source's, scaled. The default search sets it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub steering_from_trials: bool,
-    /// Choose the time over which that rate is read by the noise of the rudder's readings, not by
-    /// the ship's length alone. The default search sets it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub steering_above_noise: bool,
-    /// Omit terms of an input that no trial records, such as the wind, where the source has none.
-    /// The default search sets it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub recorded_terms: bool,
-    /// Give a source without roll the stiffness in roll from the ship's metacentric height and a
-    /// typical damping, where the fitted law has roll and agrees with the source's law in surge,
-    /// sway and yaw. Every new request and the default search set it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub hydrostatic_roll: bool,
-    /// Use a 3-DOF source of another law as prior of sway and yaw, too, for a ship that stays
-    /// upright, where the fitted law couples them with roll; roll begins with hydrostatics. Every
-    /// new request and the default search set it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub plane_source: bool,
+    pub hold_out_parts: bool,
     /// Strength of the prior of roll relative to the likeliest by the trials, dimensionless. The
     /// default search sets it where a model capsizes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub roll_strength: Option<f64>,
-    /// Let an estimate that replaces the source reach the approach speed at the revolutions that
-    /// the trials record, not at those that its own propeller needs. Every new request of a
-    /// `mixture` and the default search set it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub recorded_revolutions: bool,
-    /// Widen the posterior to the scatter of models that each missed some of the trials, where that
-    /// is wider than the noise of the readings implies. The default search sets it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub posterior_by_folds: bool,
-    /// Use the normal distribution's quantile for that width, not Student's: it is a mean over the
-    /// figures of all standard manoeuvres. The default search sets it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub folds_pooled: bool,
-    /// Compute no more than the accuracy needs: simulations step as far as the ship's motion
-    /// allows, the weak form uses means of neighbouring samples, and the noise model is searched in
-    /// two rounds. The default search sets it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub economical: bool,
-    /// Learn the effect of delayed instruments from the rates that the Kalman filter expects, not
-    /// from those on the recorded path, whose noise makes a right model seem delayed. Every new
-    /// request sets it; docs/evidence/diagnosis_unseen.md.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub expected_rates: bool,
-    /// Determine the interval between readings with independent noise from the trials as they were
-    /// recorded, and store it with the model's uncertainty, so that later trials are read alike.
-    /// Every new request sets it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub reading_interval: bool,
     /// Number of samples, about, of the whole trials on which the noise model is learned: those
     /// trials that differ most. Default: all samples. The default search sets it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -296,6 +249,7 @@ impl Default for RefinementSettings {
             alpha_max: (0.1 * f64::from(1 + exponent)).min(1.0),
         };
         Self {
+            algorithm_revision: ALGORITHM_REVISION,
             method: EstimationMethod::Published,
             prior: Prior::Source,
             regressions_sha256: None,
@@ -316,19 +270,8 @@ impl Default for RefinementSettings {
             smoothing_s: None,
             folds: 8,
             part_s: None,
-            in_parts: false,
-            steering_from_trials: false,
-            steering_above_noise: false,
-            recorded_terms: false,
-            hydrostatic_roll: false,
-            plane_source: false,
+            hold_out_parts: false,
             roll_strength: None,
-            recorded_revolutions: false,
-            posterior_by_folds: false,
-            folds_pooled: false,
-            economical: false,
-            expected_rates: false,
-            reading_interval: false,
             calibration_samples: None,
             held_out: Vec::new(),
             constraints: Constraints::default(),
@@ -338,20 +281,6 @@ impl Default for RefinementSettings {
 }
 
 impl RefinementSettings {
-    /// Returns the settings with the defaults of a new request. Settings of stored versions are
-    /// used as they are.
-    pub fn with_request_defaults(mut self) -> Self {
-        if self.prior == Prior::Mixture && self.mixture_positions.is_empty() {
-            self.mixture_positions = MIXTURE_POSITIONS.to_vec();
-        }
-        self.recorded_revolutions |= self.prior == Prior::Mixture;
-        self.hydrostatic_roll = true;
-        self.plane_source = true;
-        self.expected_rates = true;
-        self.reading_interval = true;
-        self
-    }
-
     /// Fills in the families and strengths among which model selection chooses, so that a version
     /// records them.
     pub(super) fn fill_selection(&mut self, families: &[TermFamily]) {

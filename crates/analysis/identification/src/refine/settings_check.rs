@@ -2,7 +2,7 @@
 
 use super::cma_es::CmaEs;
 use super::outcome::RefineError;
-use super::settings::{Prior, RefinementSettings, TuningRange};
+use super::settings::{ALGORITHM_REVISION, Prior, RefinementSettings, TuningRange};
 
 /// A setting that cannot be used.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -67,7 +67,9 @@ impl RefinementSettings {
     /// Rules for numbers of values, folds and samples, and for the methods that keep constraints.
     fn count_rules(&self) -> Vec<SettingRule> {
         let kept = self.method.keeps_constraints() || self.constraints.is_empty();
+        let is_own_revision = self.algorithm_revision == ALGORITHM_REVISION;
         vec![
+            ("algorithm_revision", OTHER_REVISION, is_own_revision),
             ("lambda_count", "must be from 2 to 1000", (2..=1000).contains(&self.lambda_count)),
             ("folds", "must be from 2 to 100", (2..=100).contains(&self.folds)),
             ("calibration_samples", "must be at least 1", self.calibration_samples != Some(0)),
@@ -108,6 +110,10 @@ pub(super) fn combined_error(faults: Vec<SettingFault>) -> RefineError {
     RefineError::Setting { field, message: message + &further }
 }
 
+/// Refusal of settings for another revision of the algorithm.
+const OTHER_REVISION: &str = "must be 1, the only revision that this program computes; leave it \
+    out, or use the version of sistership that made these settings";
+
 /// A rule: field, allowed values, and true if it is kept.
 type SettingRule = (&'static str, &'static str, bool);
 
@@ -123,6 +129,7 @@ mod tests {
     fn every_setting_that_cannot_be_used_is_named() {
         assert_eq!(RefinementSettings::default().check(), Ok(()));
         let settings = RefinementSettings {
+            algorithm_revision: 2,
             folds: 1,
             strengths: vec![1.0, f64::NAN],
             roll_strength: Some(-1.0),
@@ -138,6 +145,7 @@ mod tests {
             "mixture_positions",
             "mixture_positions",
             "roll_strength",
+            "algorithm_revision",
             "folds",
             "window_s",
             "hop_s",

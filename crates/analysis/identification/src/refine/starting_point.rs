@@ -50,7 +50,7 @@ impl StartingPoint<'_> {
         };
         // A law that agrees with the source's in the plane keeps the source's coefficients and adds
         // roll from hydrostatics; no regression is needed.
-        if settings.prior == Prior::Source && settings.hydrostatic_roll {
+        if settings.prior == Prior::Source {
             let carried = across::transfer_source((source, own), target, self.approach);
             if let Some(rolling) = with_roll((&carried, own), law, target, self.approach) {
                 let measure = PriorMeasure::for_own_law(&rolling, law, self.whole, in_parts);
@@ -64,9 +64,7 @@ impl StartingPoint<'_> {
     fn start_same_law(&self, in_parts: bool) -> Result<(Model, PriorMeasure), RefineError> {
         let RefinementSpec { target, source, law, settings, .. } = *self.request;
         let mut carried = across::transfer_source((source, law), target, self.approach);
-        if settings.recorded_terms {
-            unrecorded::remove_unrecorded_terms(&mut carried, law, self.whole);
-        }
+        unrecorded::remove_unrecorded_terms(&mut carried, law, self.whole);
         if settings.prior == Prior::Mixture {
             return mixture::mix_same_law(
                 carried,
@@ -86,13 +84,11 @@ impl StartingPoint<'_> {
             Prior::Mixture => self.mixed_start(own)?,
             Prior::Source | Prior::Population => self.blank_start(own)?,
         };
-        if settings.recorded_terms {
-            unrecorded::remove_unrecorded_terms(&mut model, law, self.whole);
-        }
+        unrecorded::remove_unrecorded_terms(&mut model, law, self.whole);
         if settings.prior == Prior::Population {
             return self.population_start(model, envelope);
         }
-        if settings.plane_source && law.has_roll() && !envelope.roll {
+        if law.has_roll() && !envelope.roll {
             let source = PlaneSource::from_upright(envelope, &mut model, law, self.whole)?;
             return Ok((model, PriorMeasure::Plane(source)));
         }
@@ -116,7 +112,7 @@ impl StartingPoint<'_> {
     /// A model without coefficients, and the envelope of a mixture. At the end of the mixture it is
     /// the envelope of the estimate by the estimate's own manoeuvres, not those of the source.
     fn mixed_start(&self, own: &Law) -> Result<(Model, Arc<OperatingEnvelope>), RefineError> {
-        let RefinementSpec { target, law, settings, .. } = *self.request;
+        let RefinementSpec { target, law, .. } = *self.request;
         let (model, envelope) = self.blank_start(own)?;
         if self.mixture_position() != ESTIMATE_POSITION {
             let by = (self.whole, self.mixture_position());
@@ -124,9 +120,9 @@ impl StartingPoint<'_> {
             return Ok((model, Arc::new(mixed)));
         }
         let (mut estimated, own) = mixture::particulars_estimate(target, model.speed_m_s)?;
-        if let Some(n_rps) = self.approach.and_then(|approach| approach.n_rps)
-            && settings.recorded_revolutions
-        {
+        // The trials' revolutions give the approach speed, not those that the estimate's own
+        // propeller would need.
+        if let Some(n_rps) = self.approach.and_then(|approach| approach.n_rps) {
             mixture::set_revolutions(&mut estimated, n_rps);
         }
         // The estimate's envelope is not shared: it depends on the ship's approach, not on a

@@ -46,14 +46,13 @@ pub(super) struct SelectionThresholds {
     /// strengths of those that the default search tries.
     pub near_strength: f64,
     /// `n_h`: steps of the classical Runge-Kutta method in `L/U`, and samples that a simulation
-    /// needs, a count. Source: derived: natural periods of roll are from half of `L/U` on, and a
-    /// step is then a fifteenth of one.
+    /// needs, where the ship does not roll, a count. Source: derived: sway and yaw settle in some
+    /// 0.3 `L/U`, of which a step is a fifth; the error of such a step, `(h/T)^5/120`, is 2e-6 of a
+    /// motion. `docs/evidence/plain.md` has half and double.
     pub steps_a_length: f64,
-    /// The same where the ship does not roll and no more is computed than needed, a count. Source:
-    /// derived: sway and yaw settle in some 0.3 `L/U`, of which a step is a fifth; the error of
-    /// such a step, `(h/T)^5/120`, is 2e-6 of a motion. `docs/evidence/plain.md` has half and
-    /// double.
-    pub steps_a_length_economical: f64,
+    /// The same where the ship rolls, a count. Source: derived: natural periods of roll are from
+    /// half of `L/U` on, and a step is then a fifteenth of one.
+    pub steps_a_length_with_roll: f64,
     /// `[lambda_0, lambda_1]`: range of roll's own strength, dimensionless. Source: chosen, from
     /// nothing to the common strength at which a source counts as much as all samples; the marginal
     /// likelihood decides within.
@@ -74,8 +73,8 @@ pub(super) const SELECTION: SelectionThresholds = SelectionThresholds {
     restart: 10.0,
     near_least: 1.5,
     near_strength: 10.0,
-    steps_a_length: 30.0,
-    steps_a_length_economical: 18.0,
+    steps_a_length: 18.0,
+    steps_a_length_with_roll: 30.0,
     roll_strengths: [1e-9, 1.0],
     roll_strength_count: 50,
 };

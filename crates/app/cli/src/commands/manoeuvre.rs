@@ -201,8 +201,7 @@ fn draw_bands(
     law: &Law,
 ) -> Result<Option<UncertaintyBands>, Failure> {
     let Some(samples) = manoeuvre.bands else { return Ok(None) };
-    let sampling =
-        Sampling { samples, seed: manoeuvre.seed, within_steps: true, figures_only: true };
+    let sampling = Sampling { samples, seed: manoeuvre.seed };
     sampling.check().map_err(|message| Failure::Call(format!("--bands: {message}")))?;
     let none = || {
         let why = "only a refined model whose coefficients are those that were estimated has one";

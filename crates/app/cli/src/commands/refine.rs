@@ -305,7 +305,7 @@ fn refinement_settings(arguments: &RefineArguments) -> Result<RefinementSettings
     settings.constraints.trust_sd = arguments.trust_sd.or(settings.constraints.trust_sd);
     // Held-out trials of file and flags add up; every other flag replaces the value of the file.
     settings.held_out.extend(arguments.held_out.iter().cloned());
-    Ok(settings.with_request_defaults())
+    Ok(settings)
 }
 
 fn named_files(arguments: &RefineArguments) -> Vec<PathBuf> {

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use sistership_diagnosis::{CalibrationSettings, calibrate_model};
+use sistership_diagnosis::calibrate_model;
 use sistership_identification::refine::Refinement;
 use sistership_model::trial::Trial;
 use sistership_model::{Effect, Law, Model};
@@ -21,13 +21,8 @@ pub fn with_uncertainty(
     let held_out = &refinement.settings.held_out;
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
-    let settings = CalibrationSettings {
-        samples: refinement.settings.calibration_samples,
-        economical: refinement.settings.economical,
-        expected_rates: refinement.settings.expected_rates,
-        reading_interval: refinement.settings.reading_interval,
-    };
-    match calibrate_model(&refinement.model, law, effects, &fitted, settings) {
+    let samples = refinement.settings.calibration_samples;
+    match calibrate_model(&refinement.model, law, effects, &fitted, samples) {
         Ok(uncertainty) => refinement.model.uncertainty = Some(uncertainty),
         Err(error) => refinement
             .remarks
@@ -45,13 +40,7 @@ pub fn correction_with_uncertainty(
     effects: &[Arc<Effect>],
     trials: &[&Trial],
 ) -> Model {
-    let settings = CalibrationSettings {
-        samples: Some(calibration_samples()),
-        economical: true,
-        expected_rates: true,
-        reading_interval: true,
-    };
-    match calibrate_model(&model, law, effects, trials, settings) {
+    match calibrate_model(&model, law, effects, trials, Some(calibration_samples())) {
         Ok(uncertainty) => Model { uncertainty: Some(uncertainty), ..model },
         Err(error) => {
             let note = model.note.clone().unwrap_or_default();

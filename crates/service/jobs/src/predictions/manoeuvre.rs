@@ -147,7 +147,7 @@ impl BandsRequest {
         let samples =
             usize::try_from(self.samples.unwrap_or_default().get()).unwrap_or(default.samples);
         let seed = self.seed.unwrap_or(default.seed);
-        let sampling = Sampling { samples, seed, within_steps: true, figures_only: true };
+        let sampling = Sampling { samples, seed };
         let none = || {
             let why = "only a refined one whose coefficients are those that were estimated has one";
             PredictionError::invalid_field(

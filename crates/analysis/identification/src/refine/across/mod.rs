@@ -65,8 +65,8 @@ mod tests {
     use crate::testing::simulated_trials;
 
     /// The Mariner, which does not roll, as the source of a container ship that does.
-    fn by_the_mariner(hydrostatic_roll: bool) -> Refinement {
-        by("mariner", RefinementSettings { hydrostatic_roll, ..RefinementSettings::default() })
+    fn by_the_mariner() -> Refinement {
+        by("mariner", RefinementSettings::default())
     }
 
     fn by(source: &str, settings: RefinementSettings) -> Refinement {
@@ -92,18 +92,8 @@ mod tests {
     }
 
     #[test]
-    fn a_law_that_lists_no_coefficient_is_held_by_a_source_of_another() {
-        let made = by_the_mariner(false);
-        assert!(made.model.coefficients.contains_key("Y_phi"), "third order");
-        assert!(made.transferred.coefficients.get("K_heel").is_none_or(|heel| heel.value == 0.0));
-    }
-
-    #[test]
     fn a_source_of_the_plane_turns_the_ship_and_hydrostatics_roll_it() {
-        let alone = by("kcs", RefinementSettings::default()).transferred;
-        assert!(alone.coefficients.is_empty(), "surge, sway and yaw are not asked");
-        let made =
-            by("kcs", RefinementSettings { plane_source: true, ..RefinementSettings::default() });
+        let made = by("kcs", RefinementSettings::default());
         let begun = &made.transferred;
         assert!(begun.coefficient("Y_v") < 0.0 && begun.coefficient("N_delta") != 0.0);
         assert!(begun.coefficient("K_heel") < 0.0 && !begun.coefficients.contains_key("K_v"));
@@ -115,7 +105,7 @@ mod tests {
 
     #[test]
     fn what_the_plane_does_not_say_is_held_where_it_is() {
-        let weak = RefinementSettings { plane_source: true, ..RefinementSettings::default() };
+        let weak = RefinementSettings::default();
         let strong = RefinementSettings { roll_strength: Some(1e12), ..weak.clone() };
         let moved = |settings| {
             let made = by("kcs", settings);
@@ -130,8 +120,9 @@ mod tests {
     }
 
     #[test]
-    fn roll_begins_with_hydrostatics_where_that_is_asked() {
-        let made = by_the_mariner(true);
+    fn roll_begins_with_hydrostatics() {
+        let made = by_the_mariner();
+        assert!(made.model.coefficients.contains_key("Y_phi"), "third order");
         assert!(made.transferred.coefficient("K_heel") < 0.0);
         assert!(made.remarks.iter().any(|remark| remark.contains("metacentric height")));
         let of = |errors: &std::collections::BTreeMap<_, f64>| {

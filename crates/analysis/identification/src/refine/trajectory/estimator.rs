@@ -26,14 +26,10 @@ impl Estimator for TrajectoryForm {
         length_s: Option<f64>,
     ) {
         weak::resolve_windows(settings, length_s, &TermFamily::ALL);
-        let economical = settings.economical;
-        settings.step_s = settings.step_s.or(length_s.map(|s| step_s(law, s, economical)));
+        settings.step_s = settings.step_s.or(length_s.map(|s| step_s(law, s)));
         settings.segment_s = settings.segment_s.or(length_s.map(|s| TRAJECTORY.segment * s));
-        let residuals_a_length = match economical {
-            true => TRAJECTORY.residuals_a_length_economical,
-            false => TRAJECTORY.residuals_a_length,
-        };
-        settings.residual_s = settings.residual_s.or(length_s.map(|s| s / residuals_a_length));
+        settings.residual_s =
+            settings.residual_s.or(length_s.map(|s| s / TRAJECTORY.residuals_a_length));
     }
 
     fn equation_form(&self, settings: &RefinementSettings) -> EquationForm {

@@ -7,12 +7,9 @@
 /// Constants by which trajectories are divided and fitted.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TrajectoryThresholds {
-    /// `n_r`: residuals in `L/U`, a count. Source: chosen, every fourth step; neighbours have the
-    /// same information.
+    /// `n_r`: residuals in `L/U`, a count. Source: chosen, every third step, or fifth where the
+    /// ship rolls; neighbours have the same information.
     pub residuals_a_length: f64,
-    /// The same where no more is computed than needed, a count. Source: chosen, every third step,
-    /// or fifth where the ship rolls.
-    pub residuals_a_length_economical: f64,
     /// `T_s`: length of a segment by `L/U`, dimensionless. Source: chosen, long enough to turn by a
     /// manoeuvre's angles and short enough for a wrong model to stay in range.
     pub segment: f64,
@@ -20,7 +17,7 @@ pub(super) struct TrajectoryThresholds {
     /// the order of [`Self::segment`].
     pub fallback_steps: f64,
     /// `n_d`: steps from one residual to the next where no length is known, a count. Source:
-    /// derived: `n_h/n_r`.
+    /// chosen, about `n_h/n_r`.
     pub fallback_stride: f64,
     /// `s_t`: a rest of a trial is kept as a segment if it is at least a segment divided by this, a
     /// count. Source: chosen.
@@ -80,8 +77,7 @@ pub(super) struct TrajectoryThresholds {
 
 /// The values.
 pub(super) const TRAJECTORY: TrajectoryThresholds = TrajectoryThresholds {
-    residuals_a_length: 7.5,
-    residuals_a_length_economical: 6.0,
+    residuals_a_length: 6.0,
     segment: 5.0,
     fallback_steps: 120.0,
     fallback_stride: 4.0,

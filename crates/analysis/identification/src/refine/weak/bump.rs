@@ -13,8 +13,6 @@ pub struct WindowSpacing {
     pub length_s: f64,
     /// Time from one window's start to the next, s; at least a sampling interval.
     pub hop_s: f64,
-    /// True to use means of neighbouring samples where a window has many.
-    pub in_means: bool,
 }
 
 impl WindowSpacing {

@@ -59,7 +59,7 @@ pub(in super::super) fn resolve_windows(
 pub(in super::super) fn window_form(settings: &RefinementSettings) -> EquationForm {
     let length_s = settings.window_s.unwrap_or(0.0);
     let hop_s = settings.hop_s.unwrap_or(WEAK.hop * length_s);
-    EquationForm::Windows(WindowSpacing { length_s, hop_s, in_means: settings.economical })
+    EquationForm::Windows(WindowSpacing { length_s, hop_s })
 }
 
 /// Adds one candidate for each strength of the prior, from the source outwards.

@@ -53,7 +53,7 @@ pub fn weak_tables(
     trial: &Trial,
     windows: WindowSpacing,
 ) -> Result<Vec<RegressionTable>, RefineError> {
-    let averaged = windows.in_means.then(|| average_samples(trial, windows.length_s)).flatten();
+    let averaged = average_samples(trial, windows.length_s);
     let trial = averaged.as_ref().unwrap_or(trial);
     let sampled = sample_columns(blocks, trial)?;
     let mut tables: Vec<RegressionTable> =

@@ -13,7 +13,7 @@ fn a_rate_by_parts_is_the_mean_rate_under_the_bump() {
     let (wave, slope) = (column(&|t| (0.5 * t).sin()), column(&|t| 0.5 * (0.5 * t).cos()));
     let (mass, moving) =
         (column(&|t| 2.0 + 0.1 * t), column(&|t| (2.0 + 0.1 * t) * 0.5 * (0.5 * t).cos()));
-    for bump in (WindowSpacing { length_s: 10.0, hop_s: 1.0, in_means: false }).bumps_over(&trial) {
+    for bump in (WindowSpacing { length_s: 10.0, hop_s: 1.0 }).bumps_over(&trial) {
         assert!((bump.mean_rate(None, &wave) - bump.mean(&slope)).abs() < 2e-4);
         assert!((bump.mean_rate(Some(&mass), &wave) - bump.mean(&moving)).abs() < 1e-3);
         assert!(bump.mean_rate(None, &vec![3.0; 400]).abs() < 1e-12);
@@ -25,7 +25,7 @@ fn a_rate_by_parts_is_the_mean_rate_under_the_bump() {
 fn windows_do_not_reach_over_gaps() {
     let t_s: Vec<f64> = (0..100).map(|k| f64::from(k) + if k < 40 { 0.0 } else { 30.0 }).collect();
     let trial = Trial { t_s, ..Trial::default() };
-    let windows = WindowSpacing { length_s: 10.0, hop_s: 2.0, in_means: false };
+    let windows = WindowSpacing { length_s: 10.0, hop_s: 2.0 };
     assert_eq!(windows.bumps_over(&trial).len(), 15 + 25);
     let short = Trial { t_s: vec![0.0, 1.0, 2.0], ..Trial::default() };
     assert!(windows.bumps_over(&short).is_empty());
@@ -48,12 +48,8 @@ fn a_known_resistance_is_found_through_noise() {
     for channel in [Channel::V, Channel::R, Channel::Delta] {
         trial.channels.insert(channel, vec![0.0; 3000]);
     }
-    let table = &weak_tables(
-        &blocks,
-        &trial,
-        WindowSpacing { length_s: 10.0, hop_s: 1.0, in_means: false },
-    )
-    .unwrap()[0];
+    let table =
+        &weak_tables(&blocks, &trial, WindowSpacing { length_s: 10.0, hop_s: 1.0 }).unwrap()[0];
     let target = table.last().unwrap();
     // The rate of cos(0.2 t) in the mean under each bump.
     let worst = target.iter().enumerate().map(|(k, rate)| {

@@ -73,16 +73,10 @@ const MEANINGS: [(&str, &str); 13] = [
     ),
     ("part_s", "where manoeuvres are left out part by part, how long a part is, s"),
     ("folds", "most groups of manoeuvres that are left out in turn"),
-    (
-        "hydrostatic_roll",
-        "a source without roll begins with the stiffness of the metacentric height",
-    ),
-    (
-        "plane_source",
-        "a source of another law that does not roll says sway and yaw of a ship that stays upright",
-    ),
+    ("hold_out_parts", "manoeuvres are left out part by part"),
     ("roll_strength", "how much stronger than the likeliest the prior of roll is"),
     ("held_out", "trials kept out of fit and choice altogether"),
+    ("algorithm_revision", "revision of the algorithm"),
 ];
 
 /// Table of all settings with their meaning.
