@@ -39,7 +39,7 @@ pub struct Uncertainty {
     pub reading_interval_s: f64,
     /// Level that each form of an effect explained in these trials, which do not have the effect:
     /// by `effect/form`.
-    #[serde(rename = "feigned", default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub false_alarm_levels: BTreeMap<String, FalseAlarmLevel>,
     /// Largest unexplained remainder of any segment of these trials, in standard deviations, by
     /// channel.

@@ -39,10 +39,8 @@ pub enum VersionRecipe {
         /// The ships of the population prior, in order.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         population: Vec<PopulationMember>,
-        /// The library of effects with which its calibration was learned; absent in recipes of
-        /// releases with a single library.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        effects_sha256: Option<String>,
+        /// The library of effects with which its calibration was learned.
+        effects_sha256: String,
         /// The trials, in the order in which they were given.
         trials: Vec<RecipeTrial>,
         /// All settings.

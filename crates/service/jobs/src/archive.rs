@@ -62,7 +62,7 @@ impl Archive {
             other => other?,
         }
         let store = Store::connect(database_url, Arc::new(SystemClock)).await?;
-        match library::store_libraries(&store).await {
+        match library::store_library(&store).await {
             // Not fatal: derivations of this release wait for space on the disk, too.
             Err(error) if error.is_out_of_space() => {
                 tracing::error!(%error, "the library of effects could not be kept")

@@ -31,6 +31,8 @@ pub mod sorted_json;
 pub mod start;
 #[cfg(test)]
 mod test_rows;
+#[cfg(test)]
+mod testing;
 pub mod training;
 pub mod upkeep;
 pub mod validation;

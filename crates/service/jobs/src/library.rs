@@ -1,6 +1,6 @@
 //! Libraries of effects: the effects that a diagnosis tests and that a calibration uses. A library
 //! is one document, the files of its effects one after another, stored under its hash. The store
-//! keeps the libraries of earlier releases.
+//! keeps the libraries that recipes name.
 
 use std::sync::{Arc, OnceLock};
 
@@ -8,10 +8,6 @@ use sistership_model::version::sha256_hex;
 use sistership_model::{Effect, FileError, Zoo};
 use sistership_store::{Store, StoreError};
 
-/// SHA-256 of the library of recipes that do not name one, which were made by the first releases.
-/// It never changes.
-pub const FIRST_SHA256: &str = "4ffa596faa665cb151e92fab50bfd47e95ca36c187ac9218ee4a6d1a04b0e769";
-const FIRST_LIBRARY: &str = include_str!("../../../../models/libraries/first.yaml");
 /// First line of the file of each effect.
 const FIRST_LINE: &str = "kind: effect";
 
@@ -76,18 +72,11 @@ fn parse_embedded(zoo: &Zoo) -> Result<EffectLibrary, FileError> {
     )
 }
 
-/// Stores the libraries that are embedded in this program, in addition to existing ones.
-pub async fn store_libraries(store: &Store) -> Result<(), StoreError> {
-    let current = match embedded_library() {
-        Ok(library) => &library.document,
-        Err(error) => {
-            return Err(StoreError::Invalid { field: "effects", message: error.to_string() });
-        }
-    };
-    for document in [FIRST_LIBRARY, current] {
-        store.effect_libraries().insert_absent(document).await?;
-    }
-    Ok(())
+/// Stores the library that is embedded in this program, in addition to existing ones.
+pub async fn store_library(store: &Store) -> Result<(), StoreError> {
+    let library = embedded_library()
+        .map_err(|error| StoreError::Invalid { field: "effects", message: error.to_string() })?;
+    store.effect_libraries().insert_absent(&library.document).await.map(drop)
 }
 
 #[cfg(test)]
@@ -106,17 +95,11 @@ mod tests {
     }
 
     #[test]
-    fn the_first_library_is_what_it_was() {
-        let first = EffectLibrary::parse(FIRST_LIBRARY).unwrap();
-        assert_eq!((first.sha256.as_str(), first.effects.len()), (FIRST_SHA256, 15));
-        assert!(first.effects.iter().any(|effect| effect.name == "current"));
-    }
-
-    #[test]
     fn the_effect_that_does_not_read_is_named() {
-        let error = EffectLibrary::parse(&FIRST_LIBRARY.replace("name: wind\n", "nome: wind\n"))
-            .unwrap_err()
-            .to_string();
-        assert!(error.contains("effect 14"), "{error}");
+        let library = embedded_library().unwrap();
+        let place = library.effects.iter().position(|effect| effect.name == "wind").unwrap();
+        let damaged = library.document.replace("name: wind\n", "nome: wind\n");
+        let error = EffectLibrary::parse(&damaged).unwrap_err().to_string();
+        assert!(error.contains(&format!("effect {}", place + 1)), "{error}");
     }
 }

@@ -3,17 +3,17 @@
 
 use std::collections::BTreeSet;
 
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 use sistership_fleet::bulk::BulkSettings;
 use sistership_learned::CorrectionTraining;
 use sistership_model::version::{self, PopulationMember, RecipeTrial, SourceVersion};
 
 use crate::input::{DerivationInput, InputKind};
-use crate::library::FIRST_SHA256;
 
 /// Derivation of a version.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum DerivationRecipe {
     /// Addition of the effects that a diagnosis finds.
@@ -153,6 +153,21 @@ pub struct PriorName {
     pub sha256: String,
 }
 
+/// Reads a recipe by its kind, so that an error names the field of that kind.
+impl<'de> Deserialize<'de> for DerivationRecipe {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let recipe = Value::deserialize(deserializer)?;
+        let read = match recipe.get("kind").and_then(Value::as_str) {
+            Some("diagnosis") => serde_json::from_value(recipe).map(Self::Diagnosis),
+            Some("family") => serde_json::from_value(recipe).map(Self::Family),
+            Some("branch") => serde_json::from_value(recipe).map(Self::Training),
+            Some("registered") => serde_json::from_value(recipe).map(Self::Registered),
+            _ => serde_json::from_value(recipe).map(Self::Plain),
+        };
+        read.map_err(|error| D::Error::custom(format!("recipe: {error}")))
+    }
+}
+
 impl DerivationRecipe {
     /// Returns the hash of the law's file.
     pub fn law_sha256(&self) -> &str {
@@ -215,14 +230,13 @@ impl DerivationRecipe {
         }
     }
 
-    /// Returns the hash of the library of effects; for a refinement that does not name one, that of
-    /// the first library.
+    /// Returns the hash of the library of effects, if it names one.
     pub fn effects_sha256(&self) -> Option<&str> {
         match self {
             Self::Diagnosis(recipe) => Some(&recipe.effects_sha256),
             Self::Training(recipe) => Some(&recipe.effects_sha256),
             Self::Plain(version::VersionRecipe::Refinement { effects_sha256, .. }) => {
-                Some(effects_sha256.as_deref().unwrap_or(FIRST_SHA256))
+                Some(effects_sha256)
             }
             Self::Family(_)
             | Self::Plain(version::VersionRecipe::Published { .. })
@@ -323,8 +337,19 @@ mod tests {
             assert_eq!(serde_json::to_value(&recipe).unwrap(), value);
             assert_eq!(recipe.law_sha256(), "b");
         }
-        assert!(
-            serde_json::from_value::<DerivationRecipe>(json!({ "kind": "diagnosis" })).is_err()
-        );
+    }
+
+    #[test]
+    fn what_a_recipe_may_not_have_or_lacks_is_named() {
+        let refused = |recipe: Value| {
+            serde_json::from_value::<DerivationRecipe>(recipe).unwrap_err().to_string()
+        };
+        let registered = json!({ "kind": "registered", "law_sha256": "b", "origin": "x", "by": 1 });
+        assert!(refused(registered).contains("unknown field `by`"));
+        let lacking = refused(json!({ "kind": "refinement", "ship_sha256": "a", "law_sha256": "b",
+            "trials": [], "settings": {}, "code_revision": "1" }));
+        assert!(lacking.contains("missing field `effects_sha256`"), "{lacking}");
+        let other = refused(json!({ "kind": "another" }));
+        assert!(other.contains("unknown variant `another`"), "{other}");
     }
 }

@@ -26,10 +26,6 @@ pub struct RefinementJob {
     pub trials: Vec<String>,
     /// Every setting.
     pub settings: RefinementSettings,
-    /// SHA-256 of the request's idempotency key in rows of earlier releases; the store keeps the
-    /// key now.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub key_sha256: Option<String>,
 }
 
 /// Kind of diagnosis jobs.
@@ -51,10 +47,6 @@ pub struct DiagnosisJob {
     pub with_earlier: bool,
     /// Every setting.
     pub settings: sistership_diagnosis::Settings,
-    /// SHA-256 of the request's idempotency key in rows of earlier releases; the store keeps the
-    /// key now.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub key_sha256: Option<String>,
 }
 
 /// Kind of jobs that train learned corrections.

@@ -37,7 +37,7 @@ async fn copy_zoo(store: &Store, catalogue: &ZooCache) -> Result<(), SeedError> 
     let embedded = tokio::task::spawn_blocking(Zoo::load_embedded)
         .await
         .map_err(|error| zoo_error(&error))??;
-    library::store_libraries(store).await?;
+    library::store_library(store).await?;
     // Laws before ships, ships before versions: each row refers to the ones before.
     insert_laws(store, &embedded).await?;
     insert_ships(store, &embedded).await?;

@@ -94,7 +94,7 @@ impl RefinementStart {
             law_sha256: law.sha256,
             across,
             population,
-            effects_sha256: Some(stored_library(archive).await?.sha256.clone()),
+            effects_sha256: stored_library(archive).await?.sha256.clone(),
             trials,
             settings: sort_keys(serde_json::to_value(&self.settings)?),
             code_revision: code_revision().to_owned(),
@@ -133,7 +133,7 @@ impl RefinementStart {
 /// # Errors
 /// Returns an error if the store does not answer.
 pub async fn stored_library(archive: &Archive) -> Result<&'static EffectLibrary> {
-    library::store_libraries(&archive.store).await?;
+    library::store_library(&archive.store).await?;
     embedded_library().map_err(DeriveError::File)
 }
 

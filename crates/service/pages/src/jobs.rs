@@ -118,11 +118,8 @@ impl JobPage {
     }
 }
 
-/// Formats the stored request, without the hash of its key.
+/// Formats the stored request.
 fn format_request(request: &str) -> String {
-    let mut asked: Value = serde_json::from_str(request).unwrap_or_default();
-    if let Some(fields) = asked.as_object_mut() {
-        fields.remove("key_sha256");
-    }
+    let asked: Value = serde_json::from_str(request).unwrap_or_default();
     serde_json::to_string_pretty(&asked).unwrap_or_default()
 }

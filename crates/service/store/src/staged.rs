@@ -45,7 +45,7 @@ impl ObjectStorage {
 
     /// Removes the partial files of processes that have ended, and returns their number. An
     /// exclusive lock on the folder excludes writes meanwhile; recently written files stay, because
-    /// programs of earlier releases take no lock.
+    /// some shared file systems keep locks on one host only.
     pub async fn clear_staged(&self) -> Result<usize> {
         let Some(root) = self.folder.clone() else { return Ok(0) };
         run_blocking(move || {

@@ -5,16 +5,12 @@ use std::fs::{self, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, SystemTime};
 
 use tempfile::{Builder, NamedTempFile, TempDir};
 use uuid::Uuid;
 
 use sistership_store::is_out_of_space;
 
-/// Age from which files next to the folders, written by earlier releases, count as leftovers of a
-/// killed process.
-const STALE: Duration = Duration::from_secs(3600);
 const PREFIX: &str = "upload-";
 const FOLDER: &str = "process-";
 
@@ -64,8 +60,6 @@ impl SpoolFolder {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             if name.starts_with(FOLDER) {
                 clear_folder(&path)?;
-            } else if name.starts_with(PREFIX) {
-                clear_stale(&path)?;
             }
         }
         Ok(())
@@ -143,18 +137,6 @@ fn clear_folder(folder: &Path) -> io::Result<()> {
         Err(TryLockError::WouldBlock) => Ok(()),
         // A file system without locks: what is there stays.
         Err(TryLockError::Error(_)) => Ok(()),
-    }
-}
-
-fn clear_stale(file: &Path) -> io::Result<()> {
-    let modified = match fs::metadata(file) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        about => about?.modified()?,
-    };
-    if modified < SystemTime::now() - STALE {
-        ignore_missing(fs::remove_file(file))
-    } else {
-        Ok(())
     }
 }
 

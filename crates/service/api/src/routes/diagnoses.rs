@@ -99,8 +99,7 @@ async fn resolve_request(app: &App, request: DiagnosisRequest) -> Result<Diagnos
         }
         None => unseen_trials(app, &version).await?,
     };
-    let (number, with_earlier, key_sha256) = (version.head.number, false, None);
-    Ok(DiagnosisJob { ship, number, trials, with_earlier, settings, key_sha256 })
+    Ok(DiagnosisJob { ship, number: version.head.number, trials, with_earlier: false, settings })
 }
 
 /// Returns the trials of the ship that a version was not fitted to; all of them if there are no

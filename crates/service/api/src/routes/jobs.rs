@@ -93,11 +93,7 @@ impl From<JobStateName> for JobState {
 
 impl JobView {
     pub(super) fn from_job(job: Job) -> Self {
-        let mut request: Value = serde_json::from_str(&job.request).unwrap_or_default();
-        // The hash of the idempotency key is internal.
-        if let Some(fields) = request.as_object_mut() {
-            fields.remove("key_sha256");
-        }
+        let request: Value = serde_json::from_str(&job.request).unwrap_or_default();
         let result = job.result.as_deref().and_then(|result| serde_json::from_str(result).ok());
         let state = job.state.as_str();
         let Job {

@@ -153,7 +153,6 @@ async fn resolve_request(app: &App, request: RefinementRequest) -> Result<Refine
         search: false,
         trials,
         settings,
-        key_sha256: None,
     })
 }
 

@@ -75,9 +75,7 @@ fn follow_up_job(ship: &str, number: i64, kept: &[StoredTrial]) -> Option<NewJob
     let trials: Vec<String> =
         kept.iter().filter(|trial| trial.new).map(|trial| trial.row.id.clone()).collect();
     let (ship, settings) = (ship.to_owned(), Default::default());
-    let (with_earlier, key_sha256) = (true, None);
-    let asked =
-        DiagnosisJob { ship: ship.clone(), number, trials, with_earlier, settings, key_sha256 };
+    let asked = DiagnosisJob { ship: ship.clone(), number, trials, with_earlier: true, settings };
     // An upload without a new trial needs no diagnosis.
     let request = serde_json::to_string(&asked).ok().filter(|_| !asked.trials.is_empty())?;
     Some(NewJob { kind: DIAGNOSIS_JOB_KIND.to_owned(), ship: Some(ship), request })

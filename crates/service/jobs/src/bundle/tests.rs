@@ -2,61 +2,35 @@
 #![allow(clippy::unwrap_used)]
 
 use std::io::{Cursor, Read as _, Write as _};
-use std::path::PathBuf;
 
-use serde_json::Value;
+use sistership_model::version::sha256_hex;
 use sistership_store::testing::TestDatabase;
 use sistership_store::{ExpectedRevision, NewReport, NewShip, NewTrial, NewVersion};
 
 use super::{Bundle, BundleError, SigningKey, check_signer, collect_bundle, import_bundle};
 use crate::aliases::{CHAMPION, server_move};
 use crate::archive::Archive;
+use crate::testing::{DEMO_SHIP, demo_rows};
 use crate::verify::verify_version;
 
-const SHIP: &str = "demo-ship";
-
-fn text(value: &Value) -> String {
-    value.as_str().unwrap().to_owned()
-}
+const SHIP: &str = DEMO_SHIP;
 
 async fn opened(database: &TestDatabase) -> Archive {
     Archive::open(&database.url, database.folder.path()).await.unwrap()
 }
 
-/// An archive with three versions of a ship and what they were derived from (`tests/data/recipes`),
-/// a parent, a trial, a report and a champion among them.
+/// An archive with three versions of a ship and what they were derived from, a parent, a trial, a
+/// report and a champion among them.
 async fn filled(database: &TestDatabase) -> Archive {
-    let archive = opened(database).await;
-    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../tests/data/recipes"));
-    let kept: Value =
-        serde_json::from_str(&std::fs::read_to_string(folder.join("store.json")).unwrap()).unwrap();
-    for law in kept["laws"].as_array().unwrap() {
-        archive.store.laws().insert(&text(&law["name"]), &text(&law["document"])).await.unwrap();
-    }
-    for ship in kept["ships"].as_array().unwrap() {
-        let field = |name: &str| text(&ship[name]);
-        let (name, title, category, document) =
-            (field("name"), field("title"), field("category"), field("document"));
-        archive.store.ships().create(&NewShip { name, title, category, document }).await.unwrap();
-    }
-    for file in std::fs::read_dir(&folder).unwrap().map(|file| file.unwrap().path()) {
-        if file.extension().is_some_and(|extension| extension == "parquet") {
-            let key = archive.objects.put(std::fs::read(file).unwrap().into()).await.unwrap();
-            archive.store.trials().insert(&trial(&key)).await.unwrap();
-        }
+    let rows = demo_rows().await;
+    let archive = rows.open_archive(database).await;
+    for samples in &rows.samples {
+        archive.store.trials().insert(&trial(&sha256_hex(samples))).await.unwrap();
     }
     let mut parent = None;
-    for row in kept["versions"].as_array().unwrap() {
-        let field = |name: &str| text(&row[name]);
-        let own = field("model") == SHIP;
-        let new = NewVersion {
-            model: field("model"),
-            parent: parent.clone().filter(|_| own),
-            law: field("law"),
-            method: field("method"),
-            document: field("document"),
-            weights: None,
-        };
+    for version in &rows.versions {
+        let own = version.model == SHIP;
+        let new = NewVersion { parent: parent.clone().filter(|_| own), ..version.clone() };
         let made = archive.store.versions().create(&new, &[]).await.unwrap();
         if own {
             let report = NewReport {

@@ -71,7 +71,8 @@ fn diagnose_trials(
     trials: &[Trial],
     progress: &ProgressCallback,
 ) -> Result<Diagnosis, DeriveError> {
-    let settings: Settings = serde_json::from_value(recipe.settings.clone())?;
+    let settings: Settings = serde_json::from_value(recipe.settings.clone())
+        .map_err(|error| DeriveError::Lost(format!("the recipe's settings: {error}")))?;
     let trials: Vec<&Trial> = trials.iter().collect();
     let request = DiagnosisInputs {
         model,

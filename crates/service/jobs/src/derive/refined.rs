@@ -15,7 +15,6 @@ use super::calibrated::with_uncertainty;
 use super::derived::{DerivedVersion, ProgressCallback, RefinementInputs, RefinementRun};
 use crate::error::DeriveError;
 use crate::inputs::DerivationInputs;
-use crate::library::FIRST_SHA256;
 use crate::recipe;
 use crate::sorted_json::sort_keys;
 use crate::version::VersionDocument;
@@ -41,10 +40,10 @@ pub(super) async fn load_inputs(
     else {
         return Err(DeriveError::Lost("the recipe is not that of a refinement".into()));
     };
-    let settings: RefinementSettings = serde_json::from_value(recorded.clone())?;
+    let settings: RefinementSettings = serde_json::from_value(recorded.clone())
+        .map_err(|error| DeriveError::Lost(format!("the recipe's settings: {error}")))?;
     let target = inputs.read_ship(ship, ship_sha256).await?;
-    // Recipes of the first release name no library; they used the first one.
-    let library = inputs.read_effects(effects_sha256.as_deref().unwrap_or(FIRST_SHA256)).await?;
+    let library = inputs.read_effects(effects_sha256).await?;
     let trials = inputs.read_trials(trials).await?;
     let (model, law, source_law) = match source {
         Some(source) => {

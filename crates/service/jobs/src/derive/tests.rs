@@ -1,6 +1,5 @@
-//! Versions of the tree before recipes named their library of effects (`tests/data/recipes`, see
-//! the README there), in stores of this one: each verifies, each reads what its recipe names and
-//! nothing else, and what is lost or damaged is named.
+//! Versions of each kind of recipe: each verifies, each reads what its recipe names and nothing
+//! else, and what is lost or damaged is named.
 
 #![allow(clippy::unwrap_used)]
 
@@ -8,73 +7,31 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use serde_json::Value;
 use sistership_model::version::sha256_hex;
+use sistership_store::NewVersion;
 use sistership_store::testing::TestDatabase;
-use sistership_store::{NewShip, NewVersion};
 
 use super::derive;
 use crate::archive::{Archive, version_document};
 use crate::input::InputKind;
-use crate::library::{EffectLibrary, FIRST_SHA256, embedded_library};
+use crate::library::{EffectLibrary, embedded_library};
 use crate::recipe::DerivationRecipe;
+use crate::testing::{DEMO_SHIP as SHIP, demo_rows};
 use crate::upkeep::{check_archive, collect_garbage};
 use crate::verify::{memory_demand, verify_version};
 use crate::version::VersionDocument;
 
-const SHIP: &str = "demo-ship";
-/// The numbers of its versions, and what each is.
-const KINDS: [(i64, &str); 3] = [(1, "published"), (2, "diagnosis"), (3, "statistics")];
-
-fn folder() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../tests/data/recipes"))
+/// Returns the hash of the program's library of effects.
+fn library_sha256() -> &'static str {
+    &embedded_library().unwrap().sha256
 }
 
-fn kept() -> Value {
-    serde_json::from_str(&std::fs::read_to_string(folder().join("store.json")).unwrap()).unwrap()
-}
-
-fn text(value: &Value) -> String {
-    value.as_str().unwrap().to_owned()
-}
-
-fn version_of(row: &Value) -> NewVersion {
-    let field = |name: &str| text(&row[name]);
-    NewVersion {
-        model: field("model"),
-        parent: None,
-        law: field("law"),
-        method: field("method"),
-        document: field("document"),
-        weights: None,
-    }
-}
-
-/// An archive that holds the versions and their inputs, and of the program's own nothing but
-/// libraries of effects.
+/// An archive with the versions and their inputs.
 async fn archive(database: &TestDatabase) -> Archive {
-    let archive = Archive::open(&database.url, database.folder.path()).await.unwrap();
-    let kept = kept();
-    for law in kept["laws"].as_array().unwrap() {
-        archive.store.laws().insert(&text(&law["name"]), &text(&law["document"])).await.unwrap();
-    }
-    for ship in kept["ships"].as_array().unwrap() {
-        let field = |name: &str| text(&ship[name]);
-        let (name, title, category, document) =
-            (field("name"), field("title"), field("category"), field("document"));
-        archive.store.ships().create(&NewShip { name, title, category, document }).await.unwrap();
-    }
-    for file in std::fs::read_dir(folder()).unwrap().map(|file| file.unwrap().path()) {
-        if file.extension().is_some_and(|extension| extension == "parquet") {
-            archive.objects.put(std::fs::read(file).unwrap().into()).await.unwrap();
-        }
-    }
-    for row in kept["versions"].as_array().unwrap() {
-        let made = archive.store.versions().create(&version_of(row), &[]).await.unwrap();
-        assert_eq!(
-            (made.number, &made.sha256),
-            (row["number"].as_i64().unwrap(), &text(&row["sha256"]))
-        );
+    let rows = demo_rows().await;
+    let archive = rows.open_archive(database).await;
+    for version in &rows.versions {
+        archive.store.versions().create(version, &[]).await.unwrap();
     }
     archive
 }
@@ -114,32 +71,31 @@ async fn a_verification_has_the_memory_of_the_samples_that_it_reads() {
 async fn another_library_gives_another_calibration_by_its_own_hash() {
     let database = TestDatabase::new_sqlite();
     let archive = archive(&database).await;
-    let first = archive.effect_library(FIRST_SHA256).await.unwrap();
-    let small = first
+    let whole = archive.effect_library(library_sha256()).await.unwrap();
+    let small = whole
         .document
         .split("kind: effect\n")
-        .filter(|file| file.starts_with("name: rudder"))
+        .filter(|file| file.starts_with("name: rudder-"))
         .fold(String::new(), |all, file| all + "kind: effect\n" + file);
     let hash = archive.store.effect_libraries().insert_absent(&small).await.unwrap();
-    assert_eq!(EffectLibrary::parse(&small).unwrap().effects.len(), 2);
-    let mut old = stored(&archive, 1).await;
-    let before = old.to_canonical_json().unwrap();
+    assert_eq!(EffectLibrary::parse(&small).unwrap().effects.len(), 3);
+    let mut changed = stored(&archive, 1).await;
+    let before = changed.clone();
     if let DerivationRecipe::Plain(sistership_model::version::VersionRecipe::Refinement {
         effects_sha256,
         ..
-    }) = &mut old.recipe
+    }) = &mut changed.recipe
     {
-        *effects_sha256 = Some(hash.clone());
+        effects_sha256.clone_from(&hash);
     }
-    assert_eq!(old.recipe.effects_sha256(), Some(hash.as_str()));
-    let now = derived(&archive, &old.recipe).await;
+    assert_eq!(changed.recipe.effects_sha256(), Some(hash.as_str()));
+    let now = derived(&archive, &changed.recipe).await;
     let now: VersionDocument = serde_json::from_str(&now).unwrap();
-    let before: VersionDocument = serde_json::from_str(&before).unwrap();
     assert_ne!(now.model.uncertainty, before.model.uncertainty);
     assert_eq!(now.model.coefficients, before.model.coefficients);
     let row = NewVersion {
         document: now.to_canonical_json().unwrap(),
-        ..version_of(&kept()["versions"][1])
+        ..demo_rows().await.versions[1].clone()
     };
     let number = archive.store.versions().create(&row, &[]).await.unwrap().number;
     assert!(verify_version(&archive, SHIP, number).await.unwrap().identical);
@@ -181,7 +137,7 @@ async fn every_kind_of_version_reads_what_its_recipe_names() {
             .iter()
             .all(|input| unread.contains(&format!("the recipe names {input}, which was not read")));
         assert!(every, "{unread}");
-        inputs.read_effects(FIRST_SHA256).await.unwrap();
+        inputs.read_effects(library_sha256()).await.unwrap();
         let unnamed = inputs.check_recipe(&recipe).unwrap_err().to_string();
         assert_eq!(
             unnamed.contains("was read, but the recipe does not name it"),
@@ -189,7 +145,8 @@ async fn every_kind_of_version_reads_what_its_recipe_names() {
             "{unnamed}"
         );
         // Deriving ends in the same check, with success.
-        derived(&archive, &recipe).await;
+        let verified = verify_version(&archive, SHIP, number).await.unwrap();
+        assert!(verified.identical, "{:?}", verified.remarks);
     }
 }
 
@@ -206,9 +163,9 @@ async fn an_input_that_is_not_what_it_was_is_named() {
         (1, "UPDATE ship_revisions SET document = document || ' '", ship),
         (1, "UPDATE versions SET document = document || ' ' WHERE model = 'sr108'", source),
         (1, "UPDATE effect_libraries SET document = document || ' '", library),
-        (1, "DELETE FROM effect_libraries", FIRST_SHA256),
+        (1, "DELETE FROM effect_libraries", library_sha256()),
         (2, "UPDATE effect_libraries SET document = document || ' '", library),
-        (2, "DELETE FROM effect_libraries", FIRST_SHA256),
+        (2, "DELETE FROM effect_libraries", library_sha256()),
         (
             2,
             "UPDATE versions SET document = replace(document, '0', '1') WHERE number = 1",
@@ -234,7 +191,7 @@ async fn an_input_that_is_not_what_it_was_is_named() {
 async fn samples_that_are_lost_are_named() {
     let database = TestDatabase::new_sqlite();
     let archive = archive(&database).await;
-    for (number, _) in KINDS {
+    for number in 1..=3 {
         let key = stored(&archive, number).await.recipe.trials()[0].sha256.clone();
         let file = database.folder.path().join("objects").join(&key[..2]).join(&key[2..]);
         let bytes = std::fs::read(&file).unwrap();
@@ -262,7 +219,7 @@ async fn libraries_stay_beside_each_other_and_are_backed_up() {
             .insert_absent("kind: effect\nname: later\n")
             .await
             .unwrap();
-        crate::library::store_libraries(&archive.store).await.unwrap();
+        crate::library::store_library(&archive.store).await.unwrap();
         let page = sistership_store::PageRequest::first_page(10);
         let all: Vec<String> = archive
             .store
@@ -274,11 +231,7 @@ async fn libraries_stay_beside_each_other_and_are_backed_up() {
             .into_iter()
             .map(|library| library.sha256)
             .collect();
-        let expected = BTreeSet::from([
-            later,
-            FIRST_SHA256.to_owned(),
-            embedded_library().unwrap().sha256.clone(),
-        ]);
+        let expected = BTreeSet::from([later, library_sha256().to_owned()]);
         assert_eq!(all, Vec::from_iter(expected));
     }
     let (database, other) = (TestDatabase::new_sqlite(), TestDatabase::new_sqlite());
@@ -291,10 +244,8 @@ async fn libraries_stay_beside_each_other_and_are_backed_up() {
         sistership_store::Store::connect(&other.url, Arc::new(sistership_store::SystemClock))
             .await
             .unwrap();
-    assert_eq!(
-        sha256_hex(store.effect_libraries().get(FIRST_SHA256).await.unwrap().document.as_bytes()),
-        FIRST_SHA256
-    );
+    let library = store.effect_libraries().get(library_sha256()).await.unwrap();
+    assert_eq!(sha256_hex(library.document.as_bytes()), library_sha256());
 }
 
 /// Every setting that was used is in the recipe of a new version, and the spelled out recipe gives

@@ -58,8 +58,7 @@ pub fn refine_member(
     // The surge balance is computed anew below, because the coefficients have changed.
     let refined = refined_model(&model, &coefficients, &loaded.describe_prior());
     let mut refined = with_balance(refined, &loaded.law);
-    // The wording of stored versions: it is part of their bytes, so it must not change.
-    refined.note = Some("refined from the statistics of her trials".to_owned());
+    refined.note = Some("refined from the statistics of its trials".to_owned());
     let report = sort_keys(serde_json::to_value(&refinement)?);
     check_finite(&report)?;
     let document = VersionDocument {
