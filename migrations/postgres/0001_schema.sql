@@ -90,7 +90,7 @@ CREATE TABLE versions (
     sha256      TEXT COLLATE "C" NOT NULL,
     created_us  BIGINT NOT NULL,
     weights_key TEXT COLLATE "C",
-    author      TEXT,
+    author      TEXT NOT NULL,
     UNIQUE (model, number)
 );
 CREATE INDEX versions_by_parent ON versions (parent, id);
@@ -163,7 +163,7 @@ CREATE TABLE jobs (
     finished_us      BIGINT,
     cancel_requested BIGINT NOT NULL CHECK (cancel_requested IN (0, 1)),
     lost_workers     BIGINT NOT NULL DEFAULT 0,
-    author           TEXT
+    author           TEXT NOT NULL
 );
 CREATE INDEX jobs_by_ship ON jobs (ship, id);
 CREATE INDEX jobs_to_claim ON jobs (id) WHERE state IN ('queued', 'running');

@@ -86,7 +86,7 @@ CREATE TABLE versions (
     sha256      TEXT NOT NULL,
     created_us  INTEGER NOT NULL,
     weights_key TEXT,
-    author      TEXT,
+    author      TEXT NOT NULL,
     UNIQUE (model, number)
 ) STRICT;
 CREATE INDEX versions_by_parent ON versions (parent, id);
@@ -163,7 +163,7 @@ CREATE TABLE jobs (
     finished_us      INTEGER,
     cancel_requested INTEGER NOT NULL CHECK (cancel_requested IN (0, 1)),
     lost_workers     INTEGER NOT NULL DEFAULT 0,
-    author           TEXT
+    author           TEXT NOT NULL
 ) STRICT;
 CREATE INDEX jobs_by_ship ON jobs (ship, id);
 CREATE INDEX jobs_to_claim ON jobs (id) WHERE state IN ('queued', 'running');

@@ -168,7 +168,7 @@ Validation = TypedDict('Validation', {'draws': 'int', 'law': 'str', 'model': 'st
 Verdict = Any  # What a comparison says.
 Verification = TypedDict('Verification', {'checked_by': 'str', 'derived_sha256': 'str', 'identical': 'bool', 'made_by': 'Union[str, None]', 'model': 'str', 'number': 'int', 'remarks': 'List[str]', 'sha256': 'str', 'stored_sha256': 'str'}, total=False)
 VersionDetail = TypedDict('VersionDetail', {'document': 'Dict[str, Any]', 'version': 'VersionHead'}, total=True)
-VersionHead = TypedDict('VersionHead', {'author': 'Union[str, None]', 'created_us': 'int', 'id': 'str', 'law': 'str', 'method': 'str', 'model': 'str', 'number': 'int', 'parent': 'Union[str, None]', 'report': 'Union[str, None]', 'sha256': 'str'}, total=False)
+VersionHead = TypedDict('VersionHead', {'author': 'str', 'created_us': 'int', 'id': 'str', 'law': 'str', 'method': 'str', 'model': 'str', 'number': 'int', 'parent': 'Union[str, None]', 'report': 'Union[str, None]', 'sha256': 'str'}, total=False)
 VesselConventions = TypedDict('VesselConventions', {'rudder_positive': 'RudderSign'}, total=False)
 VesselFile = TypedDict('VesselFile', {'category': 'str', 'conventions': 'VesselConventions', 'free_running': 'List[FreeRunning]', 'kind': 'VesselKind', 'licences': 'Dict[str, str]', 'models': 'List[PublishedModelFile]', 'name': 'str', 'particulars': 'Section', 'quoted_vectors': 'Dict[str, QuotedVectorFile]', 'scale': 'Union[float, None]', 'sources': 'Dict[str, Source]', 'title': 'str', 'type': 'Union[str, None]'}, total=False)
 VesselKind = Any  # The word `vessel`.

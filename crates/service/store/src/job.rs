@@ -119,8 +119,8 @@ record! {
         /// Number of its workers whose lease ran out without a heartbeat, as happens when a process
         /// dies.
         pub lost_workers: i64,
-        /// Author of the request; none for jobs from before authors were recorded.
-        pub author: Option<String>,
+        /// Author of the request, as the audit names it.
+        pub author: String,
     }
 }
 

@@ -19,9 +19,7 @@ statements! {
     GET = same("SELECT value FROM settings WHERE name = $1");
     PUT = same("INSERT INTO settings (name, value, changed_us) VALUES ($1, $2, $3) \
         ON CONFLICT (name) DO UPDATE SET value = excluded.value, changed_us = excluded.changed_us");
-    // Versions without an author are from before authors were recorded; anyone may promote them.
-    AUTHOR = same("SELECT author AS value FROM versions WHERE model = $1 AND number = $2 AND \
-        author IS NOT NULL");
+    AUTHOR = same("SELECT author AS value FROM versions WHERE model = $1 AND number = $2");
 }
 
 record! {

@@ -33,8 +33,8 @@ record! {
         pub sha256: String,
         /// When it was made.
         pub created_us: i64,
-        /// Author; none for versions from before authors were recorded.
-        pub author: Option<String>,
+        /// Author, as the audit names it.
+        pub author: String,
     }
 }
 

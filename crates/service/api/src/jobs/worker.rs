@@ -136,8 +136,7 @@ impl Worker {
         tracing::info!("begun");
         let (progress, seen) = JobProgress::new();
         // The job acts in the name of the user who queued it; the audit names both.
-        let author = job.author.clone().unwrap_or_else(|| Actor::current().name);
-        let actor = Actor::new(author, format!("job {}", job.id));
+        let actor = Actor::new(job.author.clone(), format!("job {}", job.id));
         let work = run_work(self.app.clone(), job.clone(), progress.clone());
         let work = tokio::spawn(actor.run_scoped(work));
         let mut watched = WatchedWork { work, progress, seen };

@@ -45,8 +45,8 @@ pub(super) struct VersionHead {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub report: Option<String>,
     pub created_us: i64,
-    /// Author in the audit; null for versions older than this record.
-    pub author: Option<String>,
+    /// Author, as the audit names it.
+    pub author: String,
 }
 
 /// A version.

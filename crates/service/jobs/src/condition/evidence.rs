@@ -200,7 +200,7 @@ mod tests {
             method: "weak".into(),
             sha256: String::new(),
             created_us: 0,
-            author: None,
+            author: "ann".into(),
         }
     }
 

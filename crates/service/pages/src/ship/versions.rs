@@ -91,7 +91,7 @@ async fn version_row(
             .await?
             .map_or_else(String::new, |error| format_significant(error, 2)),
         created: format_date(*created_us),
-        author: author.clone().unwrap_or_default(),
+        author: author.clone(),
         report: reports.items.into_iter().next().map(|report| report.id),
     })
 }
