@@ -2,7 +2,7 @@
 //! by the deviations of the unknowns.
 
 use nalgebra::{DMatrix, DVector};
-use sistership_assessment::uncertainty::{DrawFigures, Sampling, figures_by_name};
+use sistership_assessment::uncertainty::{DrawFigures, figures_by_name};
 use sistership_model::Model;
 use sistership_model::law::Law;
 
@@ -51,8 +51,7 @@ pub(crate) fn design_targets(
                 .flat_map(|j| [1.0, -1.0].map(|side| unknowns.move_coefficients(model, j, side))),
         )
         .collect();
-    let sampling = Sampling::default();
-    let sailed = figures_by_name(&models[0], law, &models, sampling)?;
+    let sailed = figures_by_name(&models[0], law, &models)?;
     let (estimate, moved) = sailed.split_first()?;
     let of = |(name, unit): &(&'static str, &'static str)| {
         let value = *estimate.get(*name)?;

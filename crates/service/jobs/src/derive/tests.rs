@@ -21,6 +21,9 @@ use crate::upkeep::{check_archive, collect_garbage};
 use crate::verify::{memory_demand, verify_version};
 use crate::version::VersionDocument;
 
+/// Versions of the demonstration ship, with the kind of their recipe.
+const KINDS: [(i64, &str); 3] = [(1, "refinement"), (2, "diagnosis"), (3, "statistics")];
+
 /// Returns the hash of the program's library of effects.
 fn library_sha256() -> &'static str {
     &embedded_library().unwrap().sha256
