@@ -80,10 +80,19 @@ fn read(zoo: &Zoo, folder: &Path) -> Model {
     model
 }
 
+/// Error of the best correction by that of the law alone, on trials held out of both.
+fn held_out_ratio(branch: &Value) -> f64 {
+    let ratio = |tried: &Value| Some(tried["branch"].as_f64()? / tried["foundation"].as_f64()?);
+    let tried = branch["tried"].as_array().expect("kinds of corrections");
+    tried.iter().filter_map(ratio).fold(f64::INFINITY, f64::min)
+}
+
+/// Where a rudder stalls a correction explains more than half of what the law leaves on trials held
+/// out; whether it is taken depends on its checks, and what is taken is better on unseen trials.
 #[test]
-fn a_branch_is_taken_where_a_rudder_stalls_and_not_where_the_law_holds() {
+fn a_correction_explains_a_rudder_that_stalls_and_is_not_taken_where_the_law_holds() {
     let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
-    for (ship, is_taken) in [(&Stalled(container()) as &dyn Truth, true), (&tanker(), false)] {
+    for (ship, is_stalled) in [(&Stalled(container()) as &dyn Truth, true), (&tanker(), false)] {
         let instruments = Instruments::of(ship);
         let seen = trials(ship, &PROGRAMME, &instruments, 1);
         let unseen = trials(ship, &UNSEEN, &instruments.without_noise(), 1);
@@ -95,8 +104,10 @@ fn a_branch_is_taken_where_a_rudder_stalls_and_not_where_the_law_holds() {
         let lines = said["ladder"]["lines"].as_array().expect("what was tried");
         assert!(lines.iter().any(|line| line["source"] == "population"), "of twelve trials, too");
         assert_eq!(lines.iter().filter(|line| line["reference"] == true).count(), 1);
-        assert_eq!(both.branch.is_some(), is_taken, "{}", said["ladder"]["branch"]);
-        assert!(!is_taken || with < alone, "{with} against {alone}");
+        let branch = &said["ladder"]["branch"];
+        assert_eq!(held_out_ratio(branch) < 0.5, is_stalled, "{branch}");
+        assert!(is_stalled || both.branch.is_none(), "{branch}");
+        assert!(both.branch.is_none() || with < alone, "{with} against {alone}");
     }
 }
 

@@ -143,10 +143,10 @@ fn standardised(moments: &RegressionMoments, lambda: f64) -> (DMatrix<f64>, [f64
 #[test]
 fn a_regressor_that_does_not_vary_keeps_its_source() {
     let (path, _) = two_target_path();
-    for target in 0..2 {
+    for (target, source) in SOURCES.iter().enumerate() {
         for (lambda, alpha) in [(0.2, 0.0), (3.0, 0.4)] {
-            let solved = path.solve_target(target, RidgeChoice { lambda, alpha }, &SOURCES[target]);
-            assert_eq!(solved[2], SOURCES[target][2]);
+            let solved = path.solve_target(target, RidgeChoice { lambda, alpha }, source);
+            assert_eq!(solved[2], source[2]);
         }
     }
 }

@@ -85,10 +85,10 @@ fn bands_follow_from_the_seed_and_hold_most_draws() {
 fn what_is_missing_is_named_all_at_once() {
     let (_, library, law) = setting();
     let text = "kind: vessel\nname: box\ntitle: A box\ncategory: barge\nsources: { a: { citation: \
-                test } }\nparticulars: { source: a, values: { lpp_m: 60.0, beam_m: 12.0 } }\n";
+                test } }\nparticulars: { source: a, values: { lpp_m: 60.0 } }\n";
     let vessel = Vessel::parse("box.yaml", text).unwrap();
     let refused = estimate_ship(&library, &vessel, &law, 4.0).unwrap_err();
-    let names = vec!["draught_m".to_owned(), "block_coefficient".to_owned()];
+    let names = vec!["beam_m".to_owned(), "draught_m".to_owned()];
     assert_eq!(refused, EstimateError::Missing { ship: "box".into(), names });
 }
 

@@ -3,6 +3,8 @@
 //! Relations between columns are computed from integrals rather than from differences of samples,
 //! which suppresses the noise of instruments.
 
+use std::cmp::Ordering;
+
 use crate::data::RecordingSample;
 use crate::summary::{ColumnSummary, continuous_signal};
 
@@ -64,7 +66,7 @@ fn continuous_ranges(t: &[f64], breaks: &[usize], step: f64) -> Vec<(usize, usiz
         // Negated, so that a time that is not a number ends the range too.
         let ends = k == t.len()
             || breaks.contains(&k)
-            || !(t[k] > t[k - 1])
+            || t[k].partial_cmp(&t[k - 1]) != Some(Ordering::Greater)
             || t[k] - t[k - 1] > 4.0 * step;
         if ends {
             if k - first > 2 {

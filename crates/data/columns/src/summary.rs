@@ -184,7 +184,10 @@ fn unwrap_direction(values: &[f64], period: f64) -> Vec<f64> {
     while k < values.len() {
         // If the next value is far, it may be an average across the wrap: look ahead for a value
         // near the last one, and skip those between; without one the step is real.
-        let far = |at: usize| !(wrap(values[at] - before).abs() <= 0.12 * period);
+        let far = |at: usize| {
+            let step = wrap(values[at] - before).abs();
+            step > 0.12 * period || step.is_nan()
+        };
         let end = values.len().min(k + AVERAGED);
         let at = if far(k) { (k..end).find(|&at| !far(at)).unwrap_or(k) } else { k };
         if values[at].is_finite() {

@@ -34,9 +34,12 @@ pub(crate) fn read_csv(
     stream::read_whole(CsvRows::open(input, mapping, findings)?, mapping, findings)
 }
 
+/// Lines that were read ahead, and the rest of the file.
+type WholeText<R> = Chain<Cursor<Vec<u8>>, MeteredReader<R>>;
+
 /// Rows of a CSV file whose header has been read.
 pub(crate) struct CsvRows<R> {
-    reader: csv::Reader<TabbedReader<Chain<Cursor<Vec<u8>>, MeteredReader<R>>>>,
+    reader: csv::Reader<TabbedReader<WholeText<R>>>,
     meter: RowMeter,
     columns: Vec<TableColumn>,
     room: usize,

@@ -222,8 +222,8 @@ fn stays_inside(path: &str) -> bool {
 }
 
 fn convention_problem(manifest: &Manifest) -> Option<ManifestProblem> {
-    // Negated comparison, so that NaN is refused.
-    if let Some(limit) = manifest.conventions.bridge_s.filter(|limit| !(*limit >= 0.0)) {
+    let is_refused = |limit: &f64| *limit < 0.0 || limit.is_nan();
+    if let Some(limit) = manifest.conventions.bridge_s.filter(is_refused) {
         return Some(ManifestProblem {
             field: "conventions.bridge_s".into(),
             near: "bridge_s:".into(),

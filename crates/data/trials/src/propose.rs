@@ -151,7 +151,7 @@ impl FileSet {
             let start = sample.start.as_ref().filter(|start| start.dated);
             let from = start.map_or(0.0, |start| start.at_s);
             let values = column.values.iter().filter(|value| value.is_finite());
-            let ends = (values.clone().next(), values.last());
+            let ends = (values.clone().next(), values.clone().next_back());
             if let (Some(first), Some(last)) = ends {
                 let (from_s, to_s) = (from + first * factor, from + last * factor);
                 file.span = Some(ClockSpan { from_s, to_s, is_dated: start.is_some() });
@@ -211,8 +211,10 @@ impl FileSet {
 
     fn manifest_trial(&self, at: usize, first: usize) -> ManifestTrial {
         let file = &self.files[at];
-        let own = file.shape != first;
-        let columns = own.then(|| self.shapes[file.shape].columns.clone()).unwrap_or_default();
+        let columns = match file.shape == first {
+            true => indexmap::IndexMap::default(),
+            false => self.shapes[file.shape].columns.clone(),
+        };
         ManifestTrial { columns, ..ManifestTrial::from_file_name(&file.name) }
     }
 

@@ -135,7 +135,7 @@ fn start_rows() -> DemoRows {
         ..ship.clone()
     };
     let mut model = zoo.find_model(SOURCE_SHIP).unwrap();
-    model.coefficients.get_mut("N_delta").unwrap().value *= 1.1;
+    model.coefficients.get_mut("N_v").unwrap().value *= 1.1;
     let law = (LAW.to_owned(), zoo.law_text(LAW).unwrap().to_owned());
     let samples = [None, Some(rudder_offset(&zoo))].into_iter().flat_map(|effect| {
         let mut model = model.clone();

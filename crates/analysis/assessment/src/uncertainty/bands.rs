@@ -238,9 +238,7 @@ mod tests {
     #[test]
     fn draws_have_the_posterior_s_covariance_and_the_estimate_in_their_midst() {
         let (model, _) = mariner(0.1);
-        let draws =
-            draw_from_posterior(&model, Sampling { samples: 4000, seed: 3, ..Sampling::default() })
-                .unwrap();
+        let draws = draw_from_posterior(&model, Sampling { samples: 4000, seed: 3 }).unwrap();
         let moved = |name: &str| {
             draws
                 .iter()
@@ -266,7 +264,7 @@ mod tests {
                 &law,
                 &ManoeuvreSettings::default(),
                 None,
-                Sampling { samples: 20, seed, ..Sampling::default() },
+                Sampling { samples: 20, seed },
             )
             .unwrap();
             let band = bands

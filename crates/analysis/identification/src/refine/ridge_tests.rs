@@ -114,7 +114,7 @@ fn coefficients_come_back_through_the_mixture() {
     let is_mixed = coupled.mixing[(0, 1)] != 0.0 || coupled.mixing[(1, 0)] != 0.0;
     assert!(is_mixed, "{}", coupled.mixing);
     for i in 0..coupled.regressor_count() {
-        let seen = DVector::from_fn(2, |target, _| mixed[target][i]);
+        let seen = DVector::from_iterator(2, mixed.iter().take(2).map(|target| target[i]));
         let own = &coupled.unmixing * seen;
         for axis in 0..2 {
             let value = model.coefficient(&coupled.names[axis][i]);

@@ -31,7 +31,7 @@ struct Maker {
 
 /// The shape of a seed.
 pub fn shape(sources: &[Source], seed: u64, with_names: bool) -> Shape {
-    let is_port = seed % 3 == 0;
+    let is_port = seed.is_multiple_of(3);
     let mut maker = Maker { random: ChaCha8Rng::seed_from_u64(seed), is_port };
     // Each of the four sets as often as the others, whatever its number of files.
     let sets = ["gunnerus", "patrol ship", "tank", "catamaran"];

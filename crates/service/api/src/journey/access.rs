@@ -312,8 +312,10 @@ async fn one_client_behind_a_proxy_does_not_shut_out_others() {
     let user = json!({ "name": "ann", "password": PASSWORD, "roles": [{ "role": "reader" }] });
     let (status, made) = harness.sends(OWNER, Method::POST, "/v1/users", &user).await;
     assert_eq!(status, StatusCode::CREATED, "{made}");
+    let page = harness.client.get(harness.url("/sign-in")).send().await.unwrap();
+    let token = super::sessions::token(&page.text().await.unwrap());
     let sign_in = async |from: &str, password: &str| {
-        let form = [("name", "ann"), ("password", password)];
+        let form = [("form_token", &*token), ("name", "ann"), ("password", password)];
         let body = serde_urlencoded::to_string(form).unwrap();
         let post = harness.client.post(harness.url("/sign-in")).body(body);
         let post = post.header("content-type", "application/x-www-form-urlencoded");

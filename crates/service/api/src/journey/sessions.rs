@@ -22,7 +22,7 @@ async fn text(response: Response) -> (StatusCode, String) {
     (response.status(), response.text().await.unwrap())
 }
 
-fn token(page: &str) -> String {
+pub(super) fn token(page: &str) -> String {
     let rest = page.split("name=\"form_token\" value=\"").nth(1).unwrap_or_default();
     rest.split('"').next().unwrap_or_default().to_owned()
 }

@@ -61,7 +61,7 @@ impl StartingModels<'_> {
         let revision = champion.as_ref().map(|alias| alias.revision);
         if let (Start::Champion, Some(alias)) = (start, champion) {
             let version = store.versions().get(ship, alias.version_number).await?;
-            return Ok(StartingModel { champion: revision, ..self.from_champion(version)? });
+            return Ok(StartingModel { champion: revision, ..self.champion_start(version)? });
         }
         let row = store.ships().get(ship).await?;
         let model = transfer_model(self.model, self.law, &parse_vessel(ship, &row.document)?, None);
@@ -76,7 +76,7 @@ impl StartingModels<'_> {
         })
     }
 
-    fn from_champion(&self, version: Version) -> Result<StartingModel, DeriveError> {
+    fn champion_start(&self, version: Version) -> Result<StartingModel, DeriveError> {
         let whole = version_document(&version)?.model;
         let is_reduced = whole.branch.is_some() || !whole.effects.is_empty();
         let model = without_extras(whole);

@@ -51,7 +51,7 @@ pub struct InitialState {
 
 impl InitialState {
     /// Returns the state vector, with the rudder amidships.
-    pub(super) fn to_state_vector(&self) -> StateVector {
+    pub(super) fn to_state_vector(self) -> StateVector {
         let mut state = StateVector::zeros();
         for ((_, value), (_, place)) in self.channel_values().into_iter().zip(RECORDED_CHANNELS) {
             state[place] = value;

@@ -59,8 +59,7 @@ impl PredictionSession {
 
 impl SessionRequest {
     fn initial_state(&self, ship: &Ship) -> StateVector {
-        let given =
-            self.start.as_ref().map(crate::predictions::inputs::InitialState::to_state_vector);
+        let given = self.start.map(crate::predictions::inputs::InitialState::to_state_vector);
         let mut state = given.unwrap_or_else(|| straight_state(ship.approach_speed_m_s()));
         // The rudder is a state, given apart from the motion.
         state[at::DELTA] = self.delta_rad;
@@ -84,7 +83,7 @@ impl SessionRequest {
                  are those that were estimated has one",
             )
         };
-        let drawn = draw_from_posterior(model, Sampling { samples, seed, ..Sampling::default() });
+        let drawn = draw_from_posterior(model, Sampling { samples, seed });
         let drawn = drawn.ok_or_else(none)?;
         let ship = prepare_ship(
             Ship::with_open_coefficients(model, law).map_err(model_error)?,

@@ -1,6 +1,7 @@
 //! What is damaged is named: rows, objects, sources.
 
 use serde_json::json;
+use sistership_identification::refine::RefinementSettings;
 use sistership_store::testing::TestDatabase;
 use sistership_store::{ExpectedRevision, sha256_hex};
 
@@ -54,7 +55,7 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     (
         "UPDATE effect_libraries SET document = document || ' '",
         "effects-hash",
-        "library of effects 4ffa",
+        "library of effects ",
     ),
     ("DELETE FROM laws WHERE name = 'abkowitz'", "version-law", "version "),
     (
@@ -259,7 +260,9 @@ async fn a_source_that_has_changed_is_named() {
     document["recipe"] = json!({ "kind": "refinement",
         "source": { "ship": "mariner", "number": 1, "sha256": "00" },
         "ship_sha256": recipe["ship_sha256"], "law_sha256": recipe["law_sha256"],
-        "trials": [{ "name": "gone.csv", "sha256": sha256_hex(b"gone") }], "settings": {},
+        "trials": [{ "name": "gone.csv", "sha256": sha256_hex(b"gone") }],
+        "settings": RefinementSettings::default(),
+        "effects_sha256": crate::library::embedded_library().unwrap().sha256,
         "code_revision": "1" });
     let new = sistership_store::NewVersion {
         model: "mariner".into(),
