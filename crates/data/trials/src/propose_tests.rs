@@ -60,7 +60,7 @@ fn further_files_are_trials_or_sensors() {
     let second = write("two_rudder.csv", "t_s,rudder port %\n0,50\n1,60\n");
     let proposal = propose_manifest("a", &[&one, &two, &second]).unwrap();
     assert_eq!(proposal.manifest.sensors[1][0].file, "two_rudder.csv");
-    assert!(proposal.guesses[5].why.contains("`maximum` of delta_p"), "{:?}", proposal.guesses);
+    assert_eq!(proposal.guesses[5].channel.as_deref(), Some("delta_p"), "{:?}", proposal.guesses);
     let picture = write("scan.png", "");
     std::fs::write(&picture, b"\x89PNG\r\n\x1a\n").unwrap();
     let missing = folder.path().join("lost.csv");
