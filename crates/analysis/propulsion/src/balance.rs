@@ -24,10 +24,21 @@ pub struct PropulsionEvidence<'a> {
     pub model: &'a Model,
     /// Its law.
     pub law: &'a Law,
+    /// Source of the refinement, transferred to the ship by a law with a propeller of its own.
+    pub source: Option<SourcePropeller<'a>>,
     /// Estimate of the ship from its particulars, of the law `mmg`.
     pub estimate: Option<&'a Model>,
     /// Trials on which it was fitted.
     pub trials: &'a [&'a Trial],
+}
+
+/// A source model of a law with a propeller of its own.
+#[derive(Debug, Clone, Copy)]
+pub struct SourcePropeller<'a> {
+    /// The source, transferred to the ship.
+    pub model: &'a Model,
+    /// Its law.
+    pub law: &'a Law,
 }
 
 /// The propeller at the self-propulsion point.
@@ -41,6 +52,7 @@ struct SelfPropulsionPoint {
 }
 
 const TYPICAL: &str = "typical of ships: no estimate from particulars";
+const OF_SOURCE: &str = "propeller and resistance of the source";
 const ESTIMATED: &str = "estimated from particulars";
 const TRIALS: &str = "self-propulsion point of the trials";
 const RANGE: &str = "range of the trials";
@@ -52,11 +64,7 @@ pub fn model_balance(of: &PropulsionEvidence<'_>) -> Option<Propulsion> {
     let approach = of.model.speed_m_s.filter(|speed| *speed > 0.0)?;
     let n_rps = of.model.revolutions_rps.filter(|n_rps| *n_rps > 0.0)?;
     let speed = steady_speed(of, [approach, n_rps]);
-    let working = of.estimate.and_then(self_propulsion_point).unwrap_or(SelfPropulsionPoint {
-        loading: BALANCE.loading,
-        advance: BALANCE.advance,
-        source: TYPICAL,
-    });
+    let working = working_point(of);
     let mut parameters: BTreeMap<String, Quantity> = BTreeMap::new();
     let mut add = |name: &str, quantity| parameters.insert(name.to_owned(), quantity);
     add("resistance", approach_resistance(of, working, [speed, n_rps])?);
@@ -85,6 +93,17 @@ pub fn model_balance(of: &PropulsionEvidence<'_>) -> Option<Propulsion> {
     Some(Propulsion { parameters })
 }
 
+/// The self-propulsion point of the source, else of the estimate, else a typical one.
+fn working_point(of: &PropulsionEvidence<'_>) -> SelfPropulsionPoint {
+    let source = of.source.and_then(|source| self_propulsion_point(source.model, OF_SOURCE));
+    let estimated = || self_propulsion_point(of.estimate?, ESTIMATED);
+    source.or_else(estimated).unwrap_or(SelfPropulsionPoint {
+        loading: BALANCE.loading,
+        advance: BALANCE.advance,
+        source: TYPICAL,
+    })
+}
+
 /// Returns the speed at which the model is steady at the revolutions of the approach, within the
 /// speeds of the trials: trials at low speed need not begin in a steady motion. The speed of the
 /// approach if the model has none.
@@ -108,14 +127,14 @@ fn add_range(parameters: &mut BTreeMap<String, Quantity>, of: char, range: Cover
     }
 }
 
-/// The self-propulsion point of an estimate, where thrust and resistance balance; `None` if a
-/// quantity is missing.
-fn self_propulsion_point(estimate: &Model) -> Option<SelfPropulsionPoint> {
-    let parameter = |name: &str| estimate.parameters.get(name).map(|quantity| quantity.value);
-    let diameter_m = particulars::particular_value(&estimate.particulars, "propeller_diameter_m")?;
-    let inflow = (1.0 - parameter("w_P0")?) * estimate.speed_m_s?;
-    // Advance ratio `J = u_P / (n D)` at the estimate's approach.
-    let ratio = inflow / (estimate.revolutions_rps? * diameter_m);
+/// The self-propulsion point of a model by its parameters, where thrust and resistance balance;
+/// `None` if a quantity is missing.
+fn self_propulsion_point(model: &Model, source: &'static str) -> Option<SelfPropulsionPoint> {
+    let parameter = |name: &str| model.parameters.get(name).map(|quantity| quantity.value);
+    let diameter_m = particulars::particular_value(&model.particulars, "propeller_diameter_m")?;
+    let inflow = (1.0 - parameter("w_P0")?) * model.speed_m_s?;
+    // Advance ratio `J = u_P / (n D)` at the model's approach.
+    let ratio = inflow / (model.revolutions_rps? * diameter_m);
     let [k_0, k_1, k_2] = [parameter("k_0")?, parameter("k_1")?, parameter("k_2")?];
     // The smaller positive root of k_0 + k_1 J + k_2 J^2, which falls from k_0 above zero.
     let root = (k_1 * k_1 - 4.0 * k_0 * k_2).sqrt();
@@ -125,7 +144,7 @@ fn self_propulsion_point(estimate: &Model) -> Option<SelfPropulsionPoint> {
     (loading.is_finite() && loading > 0.0).then(|| SelfPropulsionPoint {
         loading: loading.clamp(least, most),
         advance: ratio / (0.7 * std::f64::consts::PI),
-        source: ESTIMATED,
+        source,
     })
 }
 
@@ -165,6 +184,23 @@ fn weighted_mean(a: UncertainValue, b: UncertainValue) -> UncertainValue {
 
 /// Prior knowledge of the resistance, N; `None` without the length of the ship.
 fn prior_resistance(of: &PropulsionEvidence<'_>, speed_m_s: f64) -> Option<UncertainValue> {
+    let source = of.source.and_then(|source| source_resistance(source, speed_m_s));
+    source.or_else(|| known_resistance(of, speed_m_s))
+}
+
+/// Resistance of the source by its coefficient `X_0`, N; `None` if its law has none.
+fn source_resistance(source: SourcePropeller<'_>, speed_m_s: f64) -> Option<UncertainValue> {
+    let n_rps = source.model.revolutions_rps?;
+    let surge = StraightSurge::new(source.model, source.law, n_rps).ok()?;
+    let place = surge.coefficients.iter().position(|name| name == "X_0")?;
+    let x_0 = source.model.coefficients.get("X_0")?.value;
+    let mean = -x_0 * surge.terms(speed_m_s)[place];
+    let deviation = BALANCE.estimate_deviation * mean;
+    (mean > 0.0).then_some(UncertainValue { mean, deviation })
+}
+
+/// Resistance by the estimate, else a typical one, N; `None` without the length of the ship.
+fn known_resistance(of: &PropulsionEvidence<'_>, speed_m_s: f64) -> Option<UncertainValue> {
     let [particulars, estimate] =
         [Some(&of.model.particulars), of.estimate.map(|estimate| &estimate.particulars)];
     let value = |name: &str| {

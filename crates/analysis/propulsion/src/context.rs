@@ -5,7 +5,7 @@ use sistership_model::{Law, Model, Trial};
 use sistership_simulation::Ship;
 use sistership_simulation::validity::covered_region;
 
-use crate::balance::{PropulsionEvidence, model_balance, needs_balance};
+use crate::balance::{PropulsionEvidence, SourcePropeller, model_balance, needs_balance};
 use crate::check::{PropulsionFault, check_straight};
 
 /// Inputs for the choice of a model's propulsion.
@@ -15,6 +15,8 @@ pub struct PropulsionContext<'a> {
     pub law: &'a Law,
     /// Trials on which the model was fitted.
     pub trials: &'a [&'a Trial],
+    /// Source of the refinement, transferred to the ship by a law with a propeller of its own.
+    pub source: Option<SourcePropeller<'a>>,
     /// Estimate of the ship from its particulars, of the law `mmg`.
     pub estimate: Option<Model>,
 }
@@ -50,8 +52,13 @@ impl PropulsionContext<'_> {
         model.propulsion = None;
         let own = self.estimate.as_ref().and_then(|estimate| estimate.revolutions_rps);
         model.revolutions_rps = model.revolutions_rps.or(own);
-        let (estimate, trials) = (self.estimate.as_ref(), self.trials);
-        let evidence = PropulsionEvidence { model: &model, law: self.law, estimate, trials };
+        let evidence = PropulsionEvidence {
+            model: &model,
+            law: self.law,
+            source: self.source,
+            estimate: self.estimate.as_ref(),
+            trials: self.trials,
+        };
         model.propulsion = model_balance(&evidence);
         self.with_range(model)
     }

@@ -9,6 +9,6 @@ mod slope;
 mod straight_surge;
 mod thresholds;
 
-pub use balance::{PropulsionEvidence, model_balance, needs_balance};
+pub use balance::{PropulsionEvidence, SourcePropeller, model_balance, needs_balance};
 pub use check::{PropulsionFault, check_straight, check_turning};
 pub use context::{PropulsionContext, describe_balance};

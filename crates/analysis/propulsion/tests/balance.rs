@@ -37,7 +37,8 @@ fn models(zoo: &Zoo) -> Vec<(Model, Law)> {
 
 fn balanced(model: &Model, law: &Law) -> Model {
     let trial = trial(model);
-    let evidence = PropulsionEvidence { model, law, estimate: None, trials: &[&trial] };
+    let evidence =
+        PropulsionEvidence { model, law, source: None, estimate: None, trials: &[&trial] };
     Model { propulsion: model_balance(&evidence), ..model.clone() }
 }
 

@@ -136,7 +136,10 @@ impl OwnEvidence {
             Role::Psi | Role::Course if summary.period.is_none() => summary.spread,
             _ => summary.largest,
         } * what.unit.to_si;
-        let out = if size < low { low / size.max(1e-12) } else { (size / high).max(1.0) };
+        // A constant says nothing of how small a quantity is: a straight run has no rudder, no drift
+        // and one heading.
+        let is_small = size < low && summary.spread > 0.0;
+        let out = if is_small { low / size.max(1e-12) } else { (size / high).max(1.0) };
         // A log-normal tail outside the usual range, bounded so that relations may outweigh it.
         let faded = 0.5 * (out.ln() / FADE).powi(2);
         -(faded.min(OUT_OF_RANGE)) + self.shape_odds(what)

@@ -60,7 +60,8 @@ pub fn with_balance(model: Model, law: &Law) -> Model {
     if model.propulsion.is_some() || !needs_balance(law) {
         return model;
     }
-    let evidence = PropulsionEvidence { model: &model, law, estimate: None, trials: &[] };
+    let evidence =
+        PropulsionEvidence { model: &model, law, source: None, estimate: None, trials: &[] };
     Model { propulsion: model_balance(&evidence), ..model }
 }
 

@@ -20,7 +20,7 @@ use super::variant::TermVariant;
 use crate::constraints::LimitError;
 use sistership_assessment::uncertainty::{fold_factor, uncertainty_bands};
 use sistership_numerics::RidgeChoice;
-use sistership_propulsion::{PropulsionContext, PropulsionFault};
+use sistership_propulsion::{PropulsionContext, PropulsionFault, SourcePropeller};
 
 /// The error type for a candidate that cannot be chosen.
 #[derive(Debug, thiserror::Error)]
@@ -162,7 +162,8 @@ fn propulsion_context<'a>(problem: &'a RefinementProblem<'_>) -> PropulsionConte
     let of_ship =
         |target| mixture::particulars_estimate(target, problem.transferred.speed_m_s).ok();
     let estimate = problem.target.and_then(of_ship).map(|(estimate, _)| estimate);
-    PropulsionContext { law: problem.law, trials: &problem.whole, estimate }
+    let source = problem.propeller.as_ref().map(|(model, law)| SourcePropeller { model, law });
+    PropulsionContext { law: problem.law, trials: &problem.whole, source, estimate }
 }
 
 /// The refined model; the transferred source if nothing was fitted.

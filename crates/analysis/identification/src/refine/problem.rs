@@ -31,6 +31,8 @@ pub(super) struct RefinementProblem<'a> {
     /// Standard deviations of the channels over the training trials, which standardise errors.
     pub deviations: BTreeMap<Channel, f64>,
     pub transferred: Model,
+    /// The source, transferred by its own law, where that has a propeller of its own.
+    pub propeller: Option<(Model, &'a Law)>,
     /// Measure by which the prior weights coefficients.
     pub measure: PriorMeasure,
     pub settings: RefinementSettings,
@@ -60,6 +62,7 @@ impl<'a> RefinementProblem<'a> {
             judged,
             deviations,
             transferred,
+            propeller: None,
             measure: PriorMeasure::Trials,
             settings,
             watch: None,

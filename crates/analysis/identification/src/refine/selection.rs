@@ -163,6 +163,7 @@ fn with_candidates<T>(
     let equations = estimator.equation_form(&settings);
     let parts = trial_parts(&whole, request.law, equations, &settings);
     let started = StartingPoint { request, known, whole: &whole, approach: trial_approach(&whole) };
+    let propeller = started.source_propeller();
     let (mut transferred, measure) = started.starting_prior(!parts.is_empty())?;
     steer_as_recorded(&mut transferred, request.target, &whole);
     // Parts replace whole trials in fit and comparison alike.
@@ -183,6 +184,7 @@ fn with_candidates<T>(
         judged,
         deviations,
         transferred,
+        propeller,
         measure,
         settings,
         watch,

@@ -20,17 +20,27 @@ use super::unrecorded;
 use sistership_numerics::merge_trials;
 use sistership_priors::rolling::with_roll;
 use sistership_priors::transfer::TrialApproach;
+use sistership_propulsion::needs_balance;
 
 /// The request and the trials by which it is refined.
-pub(super) struct StartingPoint<'a> {
-    pub request: &'a RefinementSpec<'a>,
-    pub known: &'a SourceEnvelopes,
+pub(super) struct StartingPoint<'s, 'a> {
+    pub request: &'s RefinementSpec<'a>,
+    pub known: &'s SourceEnvelopes,
     /// The whole trials that are used.
-    pub whole: &'a [&'a Trial],
+    pub whole: &'s [&'a Trial],
     pub approach: Option<TrialApproach>,
 }
 
-impl StartingPoint<'_> {
+impl<'a> StartingPoint<'_, 'a> {
+    /// Returns the source as it is transferred by its own law, if it is the prior and that law has
+    /// a propeller of its own.
+    pub fn source_propeller(&self) -> Option<(Model, &'a Law)> {
+        let RefinementSpec { target, source, source_law, law, settings, .. } = *self.request;
+        let own = source_law.unwrap_or(law);
+        (settings.prior == Prior::Source && !needs_balance(own))
+            .then(|| (across::transfer_source((source, own), target, self.approach), own))
+    }
+
     /// Returns the mean of the prior, which is the transferred source or its regression on another
     /// law, and the prior's measure.
     ///
