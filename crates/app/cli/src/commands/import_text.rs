@@ -110,8 +110,41 @@ fn format_laws(needs: &[LawNeeds]) -> String {
         needs.iter().partition(|need| need.lacks.is_empty());
     let names: Vec<&str> = ready.iter().map(|need| need.law.as_str()).collect();
     let can = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-    let lines: String =
-        lacking.iter().map(|need| format!("  {}: {}\n", need.law, need.lacks.join("; "))).collect();
-    let others = if lines.is_empty() { String::new() } else { format!("Others:\n{lines}") };
-    format!("Laws that these trials can be fitted with: {can}\n{others}")
+    format!("Laws that these trials can be fitted with: {can}\n{}", format_missing(&lacking))
+}
+
+/// Formats each missing channel once, with the laws that need it.
+fn format_missing(lacking: &[&LawNeeds]) -> String {
+    let mut causes: Vec<(&str, Vec<&str>)> = Vec::new();
+    for (need, cause) in lacking.iter().flat_map(|need| need.lacks.iter().map(move |c| (need, c))) {
+        match causes.iter_mut().find(|(known, _)| known == cause) {
+            Some((_, laws)) => laws.push(&need.law),
+            None => causes.push((cause, vec![&need.law])),
+        }
+    }
+    causes.sort_by_key(|(_, laws)| std::cmp::Reverse(laws.len()));
+    let line = |(cause, laws): &(&str, Vec<&str>)| match laws.len() == lacking.len() {
+        true => format!("  {cause} (all other laws)\n"),
+        false => format!("  {cause} ({})\n", laws.join(", ")),
+    };
+    let lines: String = causes.iter().map(line).collect();
+    if lines.is_empty() { lines } else { format!("Missing for other laws:\n{lines}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn needs(law: &str, lacks: &[&str]) -> LawNeeds {
+        LawNeeds { law: law.into(), lacks: lacks.iter().map(ToString::to_string).collect() }
+    }
+
+    #[test]
+    fn a_channel_that_several_laws_lack_is_named_once() {
+        let all = [needs("a", &[]), needs("b", &["n", "phi"]), needs("c", &["n"])];
+        let text = format_laws(&all);
+        let lines: Vec<&str> = text.lines().skip(1).collect();
+        assert_eq!(lines, ["Missing for other laws:", "  n (all other laws)", "  phi (b)"]);
+        assert!(text.starts_with("Laws that these trials can be fitted with: a\n"), "{text}");
+    }
 }
