@@ -1,6 +1,8 @@
 //! The ships of the truth, by which the program is judged: symmetric, stable or unstable as they
 //! are named, of bounded energy.
 
+use std::sync::LazyLock;
+
 use proptest::prelude::*;
 use sistership_simulation::StateVector;
 use sistership_simulation::state::{at, straight_state};
@@ -16,7 +18,7 @@ use sistership_tests::truth::stability::growth_rate;
 use sistership_tests::truth::tanker::tanker;
 use sistership_tests::truth::trials;
 
-fn ships() -> Vec<Box<dyn Truth>> {
+fn ships() -> Vec<Box<dyn Truth + Send>> {
     vec![
         Box::new(tanker()),
         Box::new(ferry()),
@@ -26,6 +28,9 @@ fn ships() -> Vec<Box<dyn Truth>> {
         Box::new(family::twin_screw(1)),
     ]
 }
+
+/// The same, made once: some find their steady approach by simulation.
+static SHIPS: LazyLock<Vec<Box<dyn Truth + Send>>> = LazyLock::new(ships);
 
 /// Kinetic energy of the rigid body by its mass, m2/s2.
 fn energy(ship: &dyn Truth, state: &StateVector) -> f64 {
@@ -116,7 +121,7 @@ proptest! {
     fn mirrored_motion_has_mirrored_accelerations(
         u in 0.2..1.1_f64, v in -0.4..0.4_f64, r in -0.8..0.8_f64, phi in -0.3..0.3_f64, delta in -0.6..0.6_f64,
     ) {
-        for ship in ships() {
+        for ship in SHIPS.iter() {
             let size = ship.dimensions();
             let mut state = StateVector::zeros();
             state[at::U] = u * size.speed_m_s;
