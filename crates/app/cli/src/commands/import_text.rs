@@ -79,10 +79,10 @@ fn format_group(files: &[&str], rows: &[&GuessRow]) -> String {
     let left = rows.iter().filter(|row| row.channel.is_none() && !row.column.is_empty());
     let left: Vec<String> = left.map(|row| format!("`{}`", row.column)).collect();
     let left =
-        if left.is_empty() { String::new() } else { format!("  left out: {}\n", left.join(", ")) };
+        if left.is_empty() { String::new() } else { format!("  ignored: {}\n", left.join(", ")) };
     let told: String = rows
         .iter()
-        .filter(|row| row.channel.is_some() && (!row.certain || row.why.contains("other way")))
+        .filter(|row| row.channel.is_some() && (!row.certain || row.why.contains("reversed")))
         .map(|row| format!("  `{}`: {}\n", row.column, row.why))
         .collect();
     let questions = format_questions(rows.iter().copied());
@@ -113,5 +113,5 @@ fn format_laws(needs: &[LawNeeds]) -> String {
     let lines: String =
         lacking.iter().map(|need| format!("  {}: {}\n", need.law, need.lacks.join("; "))).collect();
     let others = if lines.is_empty() { String::new() } else { format!("Others:\n{lines}") };
-    format!("Laws that these trials can be fitted with: {can}\n{others}")
+    format!("Laws that can be fitted to these trials: {can}\n{others}")
 }
