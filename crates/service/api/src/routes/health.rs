@@ -51,13 +51,13 @@ async fn readyz(State(app): State<App>) -> Result<Json<Health>> {
     app.store().check_health().await.map_err(|error| not_ready("database", &error))?;
     app.objects().check_health().await.map_err(|error| not_ready("object store", &error))?;
     let no_room = app.is_out_of_space().load(Ordering::Relaxed);
-    Ok(healthy(Some(if no_room { "no space" } else { "ok" })))
+    Ok(healthy(Some(if no_room { "no free space" } else { "ok" })))
 }
 
 fn not_ready(what: &str, error: &StoreError) -> Problem {
     tracing::warn!(%error, "the {what} does not answer");
     Problem::new(
         StatusCode::SERVICE_UNAVAILABLE,
-        format!("the {what} does not answer; the server's log tells why"),
+        format!("the {what} does not answer; see the server's log"),
     )
 }
