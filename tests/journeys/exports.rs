@@ -130,5 +130,5 @@ async fn a_ship_moves_to_another_server() {
     };
     assert_eq!(hashes(&trials["items"]), hashes(&uploaded["trials"]));
     let broken = with(&there, &["import", "--bundle", "/dev/null"]);
-    assert!(String::from_utf8_lossy(&broken.stderr).contains("is no bundle"));
+    assert!(String::from_utf8_lossy(&broken.stderr).contains("is not a bundle"));
 }

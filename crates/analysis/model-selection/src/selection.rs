@@ -340,7 +340,7 @@ mod tests {
         let line = &ladder.lines[1];
         assert!(line.reference && !line.chosen && !ladder.lines[0].reference);
         assert_eq!((line.error, line.reason.as_str()), (Some(0.1), "does not sail"));
-        assert_eq!(ladder.lines[0].reason.split(' ').next(), Some("of"), "chosen");
+        assert_eq!(ladder.lines[0].reason.split(' ').next(), Some("selected:"), "chosen");
         let words = ladder.reference_summary();
         assert!(words.contains("mariner/") && words.contains("0.50 times"), "{words}");
     }

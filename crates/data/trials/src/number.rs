@@ -174,7 +174,7 @@ mod tests {
             ("1_000", "without separators"),
             ("\u{2212}3", "minus sign"),
             ("12:00:01", "seconds"),
-            ("0x1p3", "in decimals"),
+            ("0x1p3", "as a decimal number"),
             ("1\0", "NUL"),
         ];
         for (text, wanted) in told {

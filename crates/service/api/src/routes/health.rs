@@ -51,7 +51,7 @@ async fn readyz(State(app): State<App>) -> Result<Json<Health>> {
     app.store().check_health().await.map_err(|error| not_ready("database", &error))?;
     app.objects().check_health().await.map_err(|error| not_ready("object store", &error))?;
     let no_room = app.is_out_of_space().load(Ordering::Relaxed);
-    Ok(healthy(Some(if no_room { "no free space" } else { "ok" })))
+    Ok(healthy(Some(if no_room { "no space" } else { "ok" })))
 }
 
 fn not_ready(what: &str, error: &StoreError) -> Problem {

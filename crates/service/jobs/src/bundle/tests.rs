@@ -138,7 +138,7 @@ async fn a_damaged_file_is_refused() {
         Err(BundleError::File(message)) => message,
         other => panic!("{other:?}"),
     };
-    assert!(refused(b"no archive").contains("is no bundle"));
+    assert!(refused(b"no archive").contains("is not a bundle"));
     let mut changed = bundle.clone();
     changed.content.lines.get_mut(SHIP).unwrap()[0].document.push(' ');
     assert!(

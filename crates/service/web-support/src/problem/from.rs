@@ -263,7 +263,7 @@ mod tests {
     fn a_full_disk_is_no_failure_of_the_server() {
         let problem = Problem::from(StoreError::out_of_space());
         assert_eq!((problem.status, problem.kind), (507, "urn:sistership:problem:no-room"));
-        assert!(problem.detail.contains("no room"), "{}", problem.detail);
+        assert!(problem.detail.contains("no free space"), "{}", problem.detail);
     }
 
     /// Failures of each part, and the problems that they become.
