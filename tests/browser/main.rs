@@ -68,10 +68,10 @@ async fn upload(browser: &Browser, server: &TestServer, files: &[String], name: 
     browser.go(&format!("{}/ships/{SHIP}/upload", server.url())).await;
     browser.keys("#files", &files.join("\n")).await;
     browser.leave_by("main form button").await;
-    browser.until("What was read").await;
+    browser.until("Check the upload").await;
     shown(browser, name).await;
     // The compass stands in degrees under a name that says nothing.
-    let column = "select[aria-label='What kompass is taken for']";
+    let column = "select[aria-label='Channel of kompass']";
     let chosen = format!(
         "const list = document.querySelector(\"{column}\");
         list.value = 'psi'; document.querySelector(\"input[aria-label='Unit of kompass']\").value = 'deg';
@@ -79,7 +79,7 @@ async fn upload(browser: &Browser, server: &TestServer, files: &[String], name: 
     );
     browser.run(&chosen).await;
     browser.leave_by("button[value='look']").await;
-    browser.until("Every file can be kept").await;
+    browser.until("All files can be read").await;
     browser.leave_by("button[value='keep']").await;
 }
 
@@ -108,7 +108,7 @@ async fn compared(browser: &Browser, server: &TestServer) {
     browser.until("Lineage").await;
     shown(browser, "version").await;
     browser.leave_by("main a[href*='/validation']").await;
-    browser.until("There is nothing to validate this model by").await;
+    browser.until("There are no data to validate this model").await;
     browser.go(&format!("{}/ships/kcs/versions/1", server.url())).await;
     browser.leave_by("main a[href*='/validation']").await;
     browser.until("ITTC 7.5-02-06-03").await;
@@ -169,7 +169,7 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
     assert!(ship.contains("current"), "{ship}");
     shown(&browser, "ship-does-not-hold").await;
     browser.leave_by("main a[href^='/trials/']").await;
-    browser.until("What the champion leaves").await;
+    browser.until("Errors of the champion").await;
     shown(&browser, "trial").await;
 
     // Its model with the current is promoted by mistake, and rolled back.

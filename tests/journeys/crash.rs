@@ -81,7 +81,11 @@ async fn set_aside(database: TestDatabase) {
     let failed = server.finished(&poison).await;
     assert_eq!((&failed["state"], &failed["attempt"]), (&"failed".into(), &2.into()), "{failed}");
     let error = failed["error"].as_str().unwrap_or_default();
-    assert!(error.contains("ended its process twice") && error.contains("set aside"), "{error}");
+    assert!(
+        error.contains("the process of the job ended twice")
+            && error.contains("not restarted automatically"),
+        "{error}"
+    );
     let done = server.finished(&healthy).await;
     assert_eq!(done["state"], "succeeded", "{done}");
     let again = server

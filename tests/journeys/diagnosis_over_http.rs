@@ -309,7 +309,7 @@ async fn one_by_one(server: TestServer) {
     }
     let (last, both) = diagnosed(&server, sound().remove(0)).await;
     assert_eq!(both["verdict_of_new"], "complete", "{both}");
-    assert_eq!(both["trials"].as_array().map(Vec::len), Some(4), "the whole: {both}");
+    assert_eq!(both["trials"].as_array().map(Vec::len), Some(4), "all trials: {both}");
     let condition = condition(&server).await;
     assert_eq!(condition["model"], "does_not_hold", "{condition}");
     assert_eq!(condition["since"]["trial"], first, "{condition}");

@@ -114,7 +114,7 @@ async fn a_ship_moves_to_another_server() {
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let refused = with(&there, &["import", "--bundle", &file, "--signed-by", &other]);
     let says = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(says.contains("which is none of the keys"), "{says}");
+    assert!(says.contains("which is not one of the given keys"), "{says}");
     let done = with(&there, &["import", "--bundle", &file, "--signed-by", &public, "--json"]);
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let taken: serde_json::Value = serde_json::from_slice(&done.stdout).expect("a document");
@@ -130,5 +130,5 @@ async fn a_ship_moves_to_another_server() {
     };
     assert_eq!(hashes(&trials["items"]), hashes(&uploaded["trials"]));
     let broken = with(&there, &["import", "--bundle", "/dev/null"]);
-    assert!(String::from_utf8_lossy(&broken.stderr).contains("is no bundle"));
+    assert!(String::from_utf8_lossy(&broken.stderr).contains("is not a bundle"));
 }

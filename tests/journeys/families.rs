@@ -119,7 +119,7 @@ async fn a_family_is_learned_from_and_refined(database: TestDatabase) {
     let early = server.send(Method::POST, &format!("{FAMILY}/refinements"), &json!({}), &[]).await;
     assert_eq!(early.0, 422, "{}", early.1);
     assert!(
-        early.1["detail"].as_str().is_some_and(|detail| detail.contains("has taught nothing yet")),
+        early.1["detail"].as_str().is_some_and(|detail| detail.contains("has no prior yet")),
         "{}",
         early.1
     );
@@ -241,7 +241,7 @@ async fn drift_is_seen(server: &TestServer, store: &Store) {
         .text()
         .await
         .expect("its text");
-    assert!(page.contains("Whose model no longer holds") && page.contains(&name(5)), "{page}");
+    assert!(page.contains("Condition of the members") && page.contains(&name(5)), "{page}");
 }
 
 /// Four workers, three of which are killed in the middle of a chunk: no outcome can be written

@@ -68,7 +68,8 @@ async fn eight_uploads_of_millions_of_constants() {
     assert!(statuses.iter().all(|status| *status == 413), "{statuses:?}");
     let detail = said["detail"].as_str().unwrap_or_default();
     assert!(
-        detail.contains("4900000 rows of 8 columns") && detail.contains("more than the 256 MiB"),
+        detail.contains("4900000 rows of 8 columns")
+            && detail.contains("more than the limit of 256 MiB"),
         "{detail}"
     );
     let (statuses, said) = at_once(

@@ -121,7 +121,7 @@ fn odd_files(trials: &[Trial]) -> Vec<Part> {
 
 /// The value of the field `name` that belongs to a column, by the label of its list.
 fn key_of(mapping: &str, column: &str) -> String {
-    let label = format!("\" aria-label=\"What {column} is taken for\"");
+    let label = format!("\" aria-label=\"Channel of {column}\"");
     let (before, _) = mapping.split_once(&label).expect("the column");
     before.rsplit("name=\"channel.").next().expect("a key").to_owned()
 }
@@ -181,7 +181,7 @@ async fn upload(server: &TestServer) -> String {
     let ask =
         async |all: &[(String, String)]| form(server, &at, all).send().await.expect("an answer");
     let looked = read(ask(&all).await, &at).await;
-    assert!(looked.contains("Every file can be kept") && looked.contains("heading ψ"), "{looked}");
+    assert!(looked.contains("All files can be read") && looked.contains("heading ψ"), "{looked}");
     let listed = server.get(&format!("/v1/trials?ship={NAME}")).await;
     assert_eq!(listed["items"].as_array().map(Vec::len), Some(0), "nothing is kept unasked");
     all.last_mut().expect("the button").1 = "keep".to_owned();
@@ -271,7 +271,7 @@ async fn trial(server: &TestServer) {
     let listed = server.get(&format!("/v1/trials?ship={NAME}")).await;
     let id = listed["items"][0]["id"].as_str().expect("a trial");
     let trial = page(server, &format!("/trials/{id}")).await;
-    for part in [SHOWN, "class=\"hull", "What the champion leaves", "Version 2", "psi"] {
+    for part in [SHOWN, "class=\"hull", "Errors of the champion", "Version 2", "psi"] {
         assert!(trial.contains(part), "the trial's page lacks {part}");
     }
 }
@@ -320,7 +320,7 @@ async fn promoted(server: &TestServer) {
     let ship = read(send(server, &at, &to, &back).await, &to).await;
     assert!(ship.contains("Its model does not hold"), "{ship}");
     let tagged = send(server, &at, &format!("{at}/tag"), &[("tag", "own")]).await;
-    assert!(read(tagged, &at).await.contains("Take off the tag own"));
+    assert!(read(tagged, &at).await.contains("Remove the tag own"));
     assert!(page(server, "/?tag=own&sort=name").await.contains(NAME));
 }
 
@@ -341,7 +341,7 @@ async fn refused(server: &TestServer) {
     let missing = server.request(Method::GET, "/ships/nobody").header("accept", "text/html");
     let missing = missing.send().await.expect("an answer");
     assert_eq!(missing.status(), 404);
-    assert!(read(missing, "/ships/nobody").await.contains("There is no such thing"));
+    assert!(read(missing, "/ships/nobody").await.contains("Not found"));
 }
 
 #[tokio::test]

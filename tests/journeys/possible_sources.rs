@@ -137,8 +137,8 @@ async fn journey(server: TestServer) {
         let [model, law, eligible, reasons] = &said[&sister];
         let reason = reasons.as_array().and_then(|all| all.last()).expect("a reason").to_string();
         match sister.as_str() {
-            WITHOUT => assert!(reason.contains("known by particulars only"), "{reason}"),
-            WITH_EFFECT => assert!(reason.contains("carries the effect rudder-offset"), "{reason}"),
+            WITHOUT => assert!(reason.contains("no model, only particulars"), "{reason}"),
+            WITH_EFFECT => assert!(reason.contains("has the effect rudder-offset"), "{reason}"),
             _ => {
                 let expected = json!([format!("{sister}/refined"), "son-nomoto", true]);
                 assert_eq!(json!([model, law, eligible]), expected, "{sister}: {reasons}");

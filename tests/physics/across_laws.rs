@@ -109,7 +109,7 @@ fn an_mmg_source_keeps_the_turn_of_a_polynomial_that_saw_only_zigzags() {
     let said = across
         .remarks
         .iter()
-        .find(|remark| remark.contains("the source `kvlcc2/mmg` is of law `mmg`"));
+        .find(|remark| remark.contains("the source `kvlcc2/mmg` has the law `mmg`"));
     assert!(said.is_some_and(|said| said.contains("low-speed")), "{:?}", across.remarks);
 }
 

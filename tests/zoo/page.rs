@@ -205,9 +205,8 @@ fn overshoots(sailed: &StandardManoeuvres, rudder_deg: f64) -> String {
 
 fn comparisons_table(appraised: &[(&Vessel, Vec<ModelAppraisal>)]) -> String {
     let mut text = String::from(
-        "## Against published free-running trials\n\n\
-         | model | figure | published | sailed | error | allowed | within | source |\n\
-         | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+        "## Against published free-running trials\n\n| model | figure | published | simulated | \
+         error | allowed | within | source |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n",
     );
     for model in appraised.iter().flat_map(|(_, models)| models) {
         for one in &model.comparisons {
@@ -235,8 +234,8 @@ fn comparisons_table(appraised: &[(&Vessel, Vec<ModelAppraisal>)]) -> String {
 fn estimates_table(zoo: &Zoo, appraised: &[(&Vessel, Vec<ModelAppraisal>)]) -> String {
     let mut text = String::from(
         "## Estimates from particulars against the same trials\n\n\
-         What `sistership estimate` sails, which knows the particulars only and takes every ship \
-         for one with one screw and one rudder\n(docs/evidence/estimates.md has the bands).\n\n\
+         Manoeuvres simulated by `sistership estimate`, from the particulars only, with one screw \
+         and one rudder for every ship\n(docs/evidence/estimates.md has the bands).\n\n\
          | ship | figure | published | estimate | error | source |\n\
          | --- | --- | --- | --- | --- | --- |\n",
     );

@@ -66,7 +66,7 @@ class Journey(unittest.TestCase):
             self.assertEqual(caught.exception.errors[0]["row"], 9)
             manifest["conventions"]["missing"] = "drop"
             read, = ship.upload_files([file.name], manifest, folder, diagnose=False)
-        self.assertIn("row 9 left out", read.warnings[0]["message"])
+        self.assertIn("row 9 skipped", read.warnings[0]["message"])
         last = read.csv().splitlines()[-1].split(",")
         delta_rad = float(last[read.csv().splitlines()[0].split(",").index("delta_rad")])
         self.assertAlmostEqual(delta_rad, math.radians(5.9))

@@ -86,7 +86,7 @@ fn refused(folder: &Path, manifest: &str) {
     for (line, wanted) in [
         ("from: 1.0e9", "must be before `to`"),
         ("from: -5", "`from`: -5 s lies before the first row of the file"),
-        ("from: '09:00:00'", "`from`: `09:00:00` is a time of a clock"),
+        ("from: '09:00:00'", "`from`: `09:00:00` is a clock time"),
     ] {
         std::fs::write(&bad, manifest.replacen(from.trim(), line, 1)).expect("written");
         let output = binary::run(&["check", text(&bad)]);
@@ -101,7 +101,7 @@ fn refused(folder: &Path, manifest: &str) {
 fn told(call: &[&str], out: &Path) {
     let output = binary::run(&[call, &["--out", text(out)]].concat());
     let said = String::from_utf8_lossy(&output.stdout);
-    for wanted in ["a log of 13.9 h and 100000 rows; 4 manoeuvres", "pull-out", "for drift"] {
+    for wanted in ["a log of 13.9 h and 100000 rows with 4 manoeuvres", "pull-out", "for drift"] {
         assert!(said.contains(wanted), "{said}");
     }
 }

@@ -148,7 +148,7 @@ fn formats() -> &'static [String] {
     FORMATS.get_or_init(|| {
         let refused = binary::run(&["export", "mariner", "--format", "none", "--out", "none"]);
         let text = String::from_utf8_lossy(&refused.stderr).into_owned();
-        let listed = text.split("there are").nth(1).unwrap_or_else(|| panic!("{text}"));
+        let listed = text.split("choose one of").nth(1).unwrap_or_else(|| panic!("{text}"));
         let quoted = listed.split('`').skip(1).step_by(2).map(str::to_owned);
         let formats: Vec<String> = quoted.filter(|name| name != "bundle").collect();
         assert!(formats.len() >= 6, "{formats:?}");

@@ -1,4 +1,4 @@
-"""Client of Sistership: ships, trials, refinements, and their models as something to call."""
+"""Client of Sistership: ships, trials, refinements, and models as callable objects."""
 
 from .client import Client, Ship
 from .http import NoAnswer, Refused

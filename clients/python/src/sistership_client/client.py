@@ -1,4 +1,4 @@
-"""A server and its ships: what a person at a prompt begins with, over `core`."""
+"""Servers and ships: the convenient interface on top of `core`."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ class Client:
         return f"Client({self.core.http.url!r})"
 
     def ship(self, name: str) -> "Ship":
-        """A ship that is there."""
+        """Returns an existing ship."""
         self.core.get_ships_ship(name)
         return Ship(self.core, name)
 
     def ships(self, **search: Any) -> Iterator["Ship"]:
-        """Ships, by what `GET /v1/ships` can be asked for: `category`, `tag`, `similar_to`, ..."""
+        """Ships by the parameters of `GET /v1/ships`: `category`, `tag`, `similar_to`, ..."""
         after = None
         while True:
             page = self.core.get_ships(after=after, **search)
@@ -38,7 +38,7 @@ class Client:
                 return
 
     def create(self, document: Union[str, Mapping[str, Any]]) -> "Ship":
-        """A new ship, from the text of a vessel's YAML file or from its fields."""
+        """Creates a ship from the text of a vessel's YAML file or from its fields."""
         if isinstance(document, str):
             answer = self.core.http.json(
                 "POST", "/v1/ships", body=document.encode(), media="application/yaml")
@@ -47,13 +47,13 @@ class Client:
         return Ship(self.core, answer["name"])
 
     def version(self, name: str) -> Version:
-        """A version by its name, `ship/number`; that of `ship` alone is its champion."""
+        """Returns a version by `ship/number`, or the champion by `ship`."""
         ship, _, number = name.partition("/")
         return Ship(self.core, ship).version(int(number)) if number else self.ship(ship).champion()
 
     def compare(self, versions: Sequence[Union[str, Version]],
                 trials: Sequence[Union[str, Trial]] = ()) -> Comparison:
-        """Two to five versions side by side, and their errors on the same trials."""
+        """Compares two to five versions, also by their errors on the same trials."""
         names = [version if isinstance(version, str) else version.name for version in versions]
         return self.core.get_compare(version=names, trial=ids(trials) or None)
 
@@ -74,7 +74,7 @@ class Ship:
 
     def upload(self, trial: Any, name: str, manoeuvre: Optional[str] = None,
                depth_m: Optional[float] = None, diagnose: Optional[bool] = None) -> Trial:
-        """Keeps a trial: a pandas frame with canonical columns (`t_s, u_m_s, v_m_s, r_rad_s,
+        """Uploads a trial: a pandas frame with canonical columns (`t_s, u_m_s, v_m_s, r_rad_s,
         psi_rad, delta_rad, ...`; other units by suffix, such as `u_kn`, `r_deg_s`), the text of
         such a CSV file, or its bytes."""
         if hasattr(trial, "to_csv"):
@@ -86,8 +86,8 @@ class Ship:
 
     def upload_files(self, files: Sequence[str], manifest: Union[str, Mapping[str, Any]],
                      folder: PathLike = ".", diagnose: Optional[bool] = None) -> List[Trial]:
-        """Keeps trials of files as a manifest reads them, all of them or none. The manifest is a
-        text, or its `columns`, `conventions` and `trials`; it names the files as here, below
+        """Uploads the trials of a manifest with their files, all or none. The manifest is a
+        text, or its `columns`, `conventions` and `trials`; its files are relative to
         `folder`."""
         if not isinstance(manifest, str):
             manifest = json.dumps({"kind": "trials", "ship": self.name, **manifest})
@@ -96,7 +96,7 @@ class Ship:
         return [Trial(self.core, about) for about in answer["trials"]]
 
     def trials(self) -> List[Trial]:
-        """Every trial of the ship."""
+        """All trials of the ship."""
         found: List[Trial] = []
         after = None
         while True:
@@ -107,7 +107,7 @@ class Ship:
                 return found
 
     def refine(self, trials: Optional[Sequence[Union[str, Trial]]] = None, **asked: Any) -> Job:
-        """Refines a model against all trials or some of them: plainly, or with `source`, `law`
+        """Refines a model against all or some trials, with default settings or with `source`, `law`
         and `settings`."""
         if trials is not None:
             asked["trials"] = ids(trials)
@@ -115,7 +115,7 @@ class Ship:
         return Job(self.core, self.core.post_refinements(request))
 
     def champion(self) -> Version:
-        """The model that the ship stands for."""
+        """The champion of the ship: the version in use."""
         head = self.core.get_ships_ship_model(self.name)["version"]
         return Version(self.core, head["model"], head["number"])
 

@@ -1,4 +1,4 @@
-"""Requests and their refusals, by the standard library alone."""
+"""Requests and errors, with the standard library only."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, List, Mapping, Optional
 
 
 class Refused(Exception):
-    """The server's reason: its problem document (RFC 9457)."""
+    """Refusal by the server, with its problem document (RFC 9457)."""
 
     def __init__(self, status: int, problem: Mapping[str, Any]) -> None:
         self.status = status
@@ -21,16 +21,16 @@ class Refused(Exception):
 
     @property
     def errors(self) -> List[Mapping[str, Any]]:
-        """Each thing at fault: `field`, `row` and `column` where it has them, `message`."""
+        """The faults: `message`, and `field`, `row` and `column` if known."""
         return self.problem.get("errors") or []
 
 
 class NoAnswer(ConnectionError):
-    """Nobody answers at the server's address."""
+    """The server does not respond at its address."""
 
 
 def _place(error: Mapping[str, Any]) -> str:
-    """Where an error is, such as `turn.csv, row 3, psi_deg`."""
+    """Location of an error, such as `turn.csv, row 3, psi_deg`."""
     row = f"row {error['row']}" if error.get("row") is not None else None
     return ", ".join(str(part) for part in (error.get("field"), row, error.get("column")) if part)
 
@@ -40,7 +40,7 @@ def _text(value: Any) -> str:
 
 
 class Http:
-    """A server by its address, with the key that it asks for."""
+    """A server by its address, with an optional key."""
 
     def __init__(self, url: str, key: Optional[str] = None, timeout_s: float = 600.0) -> None:
         self.url = url.rstrip("/")
@@ -50,7 +50,7 @@ class Http:
     def send(self, method: str, path: str, *, query: Optional[Mapping[str, Any]] = None,
              headers: Optional[Mapping[str, Any]] = None, json: Any = None,
              body: Optional[bytes] = None, media: Optional[str] = None) -> bytes:
-        """The bytes of the answer."""
+        """Sends a request and returns the body of the response."""
         address = self.url + urllib.parse.quote(path)
         given = {name: value for name, value in (query or {}).items() if value is not None}
         if given:
@@ -77,16 +77,16 @@ class Http:
             raise NoAnswer(f"no server answers at {self.url}: {error.reason}") from None
 
     def json(self, method: str, path: str, **given: Any) -> Any:
-        """The answer as JSON."""
+        """Sends a request and returns the response as JSON."""
         given["headers"] = {"Accept": "application/json", **(given.get("headers") or {})}
         return _json.loads(self.send(method, path, **given))
 
     def bytes(self, method: str, path: str, **given: Any) -> bytes:
-        """The answer as it is."""
+        """Sends a request and returns the response as bytes."""
         return self.send(method, path, **given)
 
     def none(self, method: str, path: str, **given: Any) -> None:
-        """Nothing is answered."""
+        """Sends a request whose response has no body."""
         self.send(method, path, **given)
 
 

@@ -1,4 +1,4 @@
-"""Long work on the server, and the bar that shows how far it is."""
+"""Jobs on the server, and a progress bar."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ ENDED = ("succeeded", "failed", "cancelled")
 
 
 class JobFailed(Exception):
-    """A job that came to no result, with its reason."""
+    """A job that failed or was cancelled, with the reason."""
 
 
 class Job:
-    """Long work."""
+    """A job on the server."""
 
     def __init__(self, core: Core, view: Mapping[str, Any]) -> None:
         self.core, self.view = core, dict(view)
@@ -30,17 +30,17 @@ class Job:
         return self.view["id"]
 
     def refresh(self) -> "Job":
-        """Looks how far it is."""
+        """Reads the present state."""
         self.view = dict(self.core.get_jobs_id(self.id))
         return self
 
     def cancel(self) -> None:
-        """Asks it to stop."""
+        """Cancels the job."""
         self.view = dict(self.core.delete_jobs_id(self.id))
 
     def wait(self, progress: Union[bool, Callable[[float, str], None]] = True,
              every_s: float = 0.5) -> Dict[str, Any]:
-        """Its result, when it has one; `progress` draws a bar, or is called with share and words.
+        """Waits for the result; `progress` draws a bar, or is called with share and message.
 
         Raises `JobFailed` with the server's reason."""
         tell = _bar if progress is True and _watched() else progress
@@ -58,7 +58,7 @@ class Job:
 
 
 def _watched() -> bool:
-    """Whether a person sees what is drawn: at a terminal, or under a notebook's cell."""
+    """True if the output is visible: in a terminal or a notebook."""
     return sys.stderr.isatty() or "ipykernel" in sys.modules
 
 

@@ -20,7 +20,7 @@ class Track:
 
     @classmethod
     def of(cls, trajectory: Mapping[str, Sequence[float]]) -> "Track":
-        """Of the `trajectory` of a prediction."""
+        """Creates a track from the `trajectory` of a prediction."""
         columns = list(trajectory)
         return cls(columns, list(zip(*(trajectory[name] for name in columns))))
 
@@ -29,13 +29,13 @@ class Track:
         return [row[place] for row in self.rows]
 
     def frame(self) -> Any:
-        """As a frame of pandas."""
+        """Returns a pandas frame."""
         import pandas
 
         return pandas.DataFrame(self.rows, columns=self.columns)
 
     def plot(self, axes: Any = None, **line: Any) -> Any:
-        """Draws where the ship went, north up, by matplotlib; `line` is for its `plot`, such as
+        """Draws the track, north up, by matplotlib; `line` has options of its `plot`, such as
         `label` and `color`."""
         from matplotlib import pyplot
 

@@ -1,4 +1,4 @@
-"""Trials as the server keeps them."""
+"""Trials on the server."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 
 class Trial:
-    """A trial that was read: `about` has its name, manoeuvre, rows, duration, warnings."""
+    """A stored trial: `about` has its name, manoeuvre, rows, duration, warnings."""
 
     def __init__(self, core: Core, about: Mapping[str, Any]) -> None:
         self.core, self.about = core, dict(about)
@@ -33,7 +33,7 @@ class Trial:
 
     @property
     def warnings(self) -> List[Dict[str, Any]]:
-        """What the checks remarked: `row`, `column`, `message`."""
+        """Warnings of the checks: `row`, `column`, `message`."""
         return self.about["warnings"]
 
     def csv(self) -> str:
@@ -43,14 +43,14 @@ class Trial:
         return kept.decode()
 
     def frame(self) -> Any:
-        """Its samples as a frame of pandas."""
+        """Its samples as a pandas frame."""
         import pandas
 
         return pandas.read_csv(io.StringIO(self.csv()))
 
 
 def ids(trials: Sequence[Union[str, Trial]]) -> List[str]:
-    """The ids of trials that are given as such or as ids."""
+    """The ids of trials that are given as trials or ids."""
     return [trial if isinstance(trial, str) else trial.id for trial in trials]
 
 

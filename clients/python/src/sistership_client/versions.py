@@ -1,4 +1,4 @@
-"""Versions of models: something to call, to export, and to have under way."""
+"""Versions of models: to call, to export, and to simulate in sessions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .trials import PathLike
 
 
 class Version:
-    """A version of a model. Called with the inputs of a run it simulates on this machine."""
+    """A version of a model. A call simulates it on this machine."""
 
     def __init__(self, core: Core, ship: str, number: int) -> None:
         self.core, self.ship, self.number = core, ship, number
@@ -33,13 +33,13 @@ class Version:
 
     @property
     def coefficients(self) -> Dict[str, Dict[str, Any]]:
-        """Its coefficients by name: `value`, `source`, and `standard_error` where it is refined."""
+        """Its coefficients by name: `value`, `source`, and `standard_error` if it was refined."""
         return self.document["model"]["coefficients"]
 
     def manoeuvre(self, *, turn_deg: Optional[float] = None,
                   zigzag: Optional[Sequence[float]] = None, **further: Any) -> Dict[str, Any]:
         """A turning circle, a zigzag (rudder and change of heading), or all standard manoeuvres,
-        sailed by the server; `further` holds `speed_m_s`, `n_rps`, `bands`."""
+        simulated by the server; `further` has `speed_m_s`, `n_rps`, `bands`."""
         asked: Dict[str, Any] = {key: value for key, value in further.items() if value is not None}
         if turn_deg is not None:
             asked["turn_deg"] = turn_deg
@@ -51,8 +51,8 @@ class Version:
         return self.core.post_predictions({"model": self.name, "manoeuvre": manoeuvre})
 
     def under_way(self, **asked: Any) -> "UnderWay":
-        """The ship under way on the server: `start` (`{"u_m_s": 7.0}`), `wind`, `current`,
-        `depth_m`, `draws`. Use it in a `with`, which ends the session."""
+        """Opens a simulation session on the server: `start` (`{"u_m_s": 7.0}`), `wind`, `current`,
+        `depth_m`, `draws`. Use it in a `with` statement, which ends the session."""
         request = cast(SessionRequest, {"model": self.name, **asked})
         return UnderWay(self.core, self.core.post_sessions(request))
 
@@ -62,7 +62,7 @@ class Version:
             self.ship, self.number, format=format)  # type: ignore[arg-type]
 
     def save(self, format: str, path: PathLike) -> str:
-        """The same as a file; gives its path."""
+        """Exports the version to a file and returns its path."""
         given = self.export(format)
         with open(path, "wb") as file:
             file.write(given)
@@ -78,7 +78,7 @@ class Version:
         return self._module
 
     def __call__(self, duration_s: float, **given: Any) -> Track:
-        """Sails here: `version(600.0, delta_order=0.6)`; an input (`module.INPUTS` has them all) is
+        """Simulates here: `version(600.0, delta_order=0.6)`; an input (all are in `module.INPUTS`) is
         a number, or a function of time and state. `state`, `step_s` and `coefficients` may be
         given, too."""
         rows = list(self.module.run(duration_s, **given))
@@ -86,7 +86,7 @@ class Version:
 
 
 class UnderWay:
-    """A ship under way on the server, who sails on as orders come."""
+    """A simulation session on the server, advanced step by step with orders."""
 
     def __init__(self, core: Core, view: Mapping[str, Any]) -> None:
         self.core, self.id = core, view["id"]
@@ -98,14 +98,14 @@ class UnderWay:
         self.end()
 
     def step(self, dt_s: float, steps: int = 1, **orders: Any) -> Dict[str, Any]:
-        """Sails on: `ship.step(0.5, delta_rad=0.3, n_rps=1.2)`. What is not ordered stays; the
+        """Advances: `ship.step(0.5, delta_rad=0.3, n_rps=1.2)`. Other orders are unchanged; the
         answer has `trajectory` (for `Track.of`), `band`, `stopped`."""
         asked: Dict[str, Any] = {"dt_s": dt_s, "steps": steps, "orders": orders}
         return self.core.post_sessions_id_steps(self.id, asked)  # type: ignore[arg-type]
 
     @property
     def now(self) -> Dict[str, Any]:
-        """Where it is."""
+        """The present state."""
         return self.core.get_sessions_id(self.id)
 
     def end(self) -> None:

@@ -107,7 +107,7 @@ fn trials_that_a_model_was_fitted_on_and_single_records_judge_nothing() {
     let all = trials(&zoo, &own);
     let fitted = validated(&zoo, &own, &all, &[], true);
     assert!(recorded(&fitted).is_empty());
-    assert!(fitted.remarks.iter().any(|remark| remark.contains("6 trials are left out")));
+    assert!(fitted.remarks.iter().any(|remark| remark.contains("6 trials are not used")));
     let single = validated(&zoo, &own, &all[..1], &[], false);
     assert!(
         single.quantities.iter().filter(|one| one.records.is_some()).all(|one| {

@@ -219,7 +219,7 @@ impl MarginalInformation {
 
 /// Error for information that is not positive definite.
 pub(super) fn not_positive_error() -> RefineError {
-    RefineError::Data("the trials' information is not positive".into())
+    RefineError::Data("the information matrix of the trials is not positive definite".into())
 }
 
 #[cfg(test)]
@@ -244,6 +244,6 @@ mod tests {
         assert!((reduced.deviance - (9.0 - 2.5 * 2.5 / 5.0 + 5.0_f64.ln())).abs() < 1e-12);
         gram.products[(1, 1)] = -2.0;
         let refusal = MarginalInformation::new(&gram, &fixed).unwrap_err().to_string();
-        assert!(refusal.contains("information is not positive"), "{refusal}");
+        assert!(refusal.contains("information matrix of the trials is not positive"), "{refusal}");
     }
 }

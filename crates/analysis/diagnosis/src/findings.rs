@@ -129,16 +129,15 @@ fn hypothesis_parameters(
 /// if they were.
 pub(super) fn describe_method(request: &DiagnosisInputs<'_>, refit: Option<&str>) -> String {
     let fitted = match request.trials.len() {
-        1 => {
-            "there is one trial only: these are errors on the trial that the effects were fitted on"
-                .to_owned()
-        }
-        count => format!("each of {count} trials simulated with effects fitted on the others"),
+        1 => "there is only one trial: these are errors on the trial that the effects were fitted \
+             to"
+        .to_owned(),
+        count => format!("each of {count} trials is simulated with effects fitted to the others"),
     };
     match refit {
         Some(refit) => format!(
-            "{fitted}, and so were the coefficients, in the way that does best on the others \
-             ({refit})"
+            "{fitted}; the coefficients were fitted again likewise, with the settings of the \
+             least held-out error ({refit})"
         ),
         None => fitted,
     }
@@ -152,17 +151,16 @@ pub(super) fn collect_remarks(
 ) -> Vec<String> {
     let one = |name: &String| {
         format!(
-            "`{name}` would explain a part of what remains, but in one size here and in another \
-             there: it resembles what is missing and is not named"
+            "`{name}` would explain a part of the residual, but with sizes that differ between \
+             trials: it only resembles the missing effect and is not reported"
         )
     };
-    let worse = "with what was found the model does not simulate trials better that the fit has \
-        not seen: no model is given";
+    let worse = "the effects found do not reduce the errors on held-out trials: no new model is \
+                 made";
     let together = |found: &MissingEffect| {
         format!(
-            "in the model that is given, `{}` was fitted once more, together with the \
-             coefficients, so that simulated trials follow the measured: its parameters there are \
-             not those that the diagnosis estimates",
+            "in the new model, `{}` was fitted again together with the coefficients, by simulated \
+             trials: its parameters there differ from those that the diagnosis estimates",
             found.name
         )
     };

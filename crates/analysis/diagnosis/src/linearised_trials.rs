@@ -168,13 +168,16 @@ impl<'a> LinearisedTrials<'a> {
         let CalibratedModel { model, law, expected_rates, .. } = learned;
         let lpp_m = particulars::particular_value(&model.particulars, "lpp_m");
         let lpp_m = lpp_m.ok_or_else(|| {
-            RefineError::Law(format!("the model `{}` does not give `lpp_m`", model.name))
+            RefineError::Law(format!(
+                "the model `{}` lacks `lpp_m`; add it to its particulars",
+                model.name
+            ))
         })?;
         // The approach of the trials takes precedence over the model's speed.
         let approach = trial_approach(trials).map(|approach| approach.speed_m_s);
-        let speed_m_s = approach
-            .or(model.speed_m_s)
-            .ok_or_else(|| RefineError::Data("the trials have no speed".into()))?;
+        let speed_m_s = approach.or(model.speed_m_s).ok_or_else(|| {
+            RefineError::Data("the trials have no channel `u`; map its column".into())
+        })?;
         // Both intervals scale with the time in which the ship covers its length.
         let least_step_s = least_step_s.unwrap_or(THRESHOLDS.trials.least_step * lpp_m / speed_m_s);
         let settles_s = THRESHOLDS.trials.settles * lpp_m / speed_m_s;

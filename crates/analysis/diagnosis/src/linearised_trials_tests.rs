@@ -40,7 +40,7 @@ fn a_channel_of_which_no_noise_can_be_told_is_refused_with_its_trial() {
     };
     assert_eq!(made(40).unwrap(), [Channel::Psi, Channel::U, Channel::V, Channel::R]);
     let refusal = made(6).unwrap_err().to_string();
-    assert!(refusal.starts_with("trial `straight`: no noise is known of the channel"), "{refusal}");
+    assert!(refusal.starts_with("trial `straight`: the noise of the channel"), "{refusal}");
     assert!(refusal.contains("seven readings"), "{refusal}");
 }
 
@@ -57,7 +57,7 @@ fn instruments_that_are_stated_have_every_channel_that_is_read() {
     let planned =
         LinearisedTrials::planned_trials(&model, FilterColumns::default(), &trials, &less);
     let refusal = planned.map(|_| ()).unwrap_err().to_string();
-    assert!(refusal.contains("no noise is known of the channel `r`"), "{refusal}");
+    assert!(refusal.contains("the noise of the channel `r`"), "{refusal}");
     let own = all.noise[&Channel::R];
     less.insert(Channel::U, NoiseLevel::from_deviation(7.0));
     let under = all.with_noise(&less);

@@ -38,14 +38,16 @@ pub fn diagnose(
         .check_values()
         .map_err(|(field, message)| RefineError::Setting { field, message })?;
     if request.trials.is_empty() {
-        return Err(RefineError::Data("there is no trial to diagnose on".into()));
+        return Err(RefineError::Data(
+            "no trial is given; give one that the model was not fitted to".into(),
+        ));
     }
-    report_progress(progress, 0.05, "which effects can be tried on these trials")?;
+    report_progress(progress, 0.05, "selecting the effects that these trials can show")?;
     let search = with_level_below(prepare_search(request)?);
-    report_progress(progress, 0.1, "every effect alone, then together")?;
+    report_progress(progress, 0.1, "evaluating effects, alone and in combination")?;
     let base = search.filter_with_candidates(&[], &search.levels)?;
     let choice = choose_effects(&search, &base, request.settings)?;
-    report_progress(progress, 0.8, "what remains")?;
+    report_progress(progress, 0.8, "analysing the residual")?;
     let selected = select_effects(request, (&search, &base), choice, progress)?;
     // The filtered columns are large, and are not needed any more.
     drop(base);
@@ -62,9 +64,9 @@ fn assemble_answer(
     selected: SelectedEffects<'_>,
     progress: Progress<'_>,
 ) -> Result<Diagnosis, RefineError> {
-    report_progress(progress, 0.85, "simulating each trial by a fit on the others")?;
+    report_progress(progress, 0.85, "cross-validating the result")?;
     let fitted = fit_and_simulate(request, &selected.settled)?;
-    report_progress(progress, 0.95, "what these trials cannot tell apart")?;
+    report_progress(progress, 0.95, "finding effects that these trials cannot distinguish")?;
     let named = name_effects(request, &selected, &fitted)?;
     build_diagnosis(request, first, selected, (fitted, named))
 }

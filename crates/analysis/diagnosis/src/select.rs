@@ -45,7 +45,7 @@ pub(super) fn select_effects<'a>(
         let varying = state.inconstant_places(request.settings.least_evidence)?;
         let is_asked = refused.is_empty() || varying.is_empty();
         if is_asked && !state.remaining.is_empty() && !state.accepted_effects().is_empty() {
-            report_progress(progress, "whether something changed within trials instead")?;
+            report_progress(progress, "comparing with changes within trials")?;
             let steady = state.effect_names(|place| !varying.contains(&place));
             // All accepted effects only resembled the changes.
             if let Some((state, changes)) = only_changes(request, first, &choice, &steady)? {
@@ -57,14 +57,14 @@ pub(super) fn select_effects<'a>(
             }
         }
         if varying.is_empty() {
-            report_progress(progress, "what changes within trials")?;
+            report_progress(progress, "finding changes within trials")?;
             let changes = state.find_changes(request, first)?;
             return Ok(state.into_selection(choice, changes, refused));
         }
         // Refused effects are removed from the search before it is repeated.
         let names = state.effect_names(|place| varying.contains(&place)).into_iter();
         refused.extend(names.inspect(|name| search.remove_effect(name)));
-        report_progress(progress, "effects without those that only resemble what is missing")?;
+        report_progress(progress, "removing effects with inconsistent sizes")?;
         choice = choose_effects(&search, base, request.settings)?.merge_earlier(choice);
     }
 }

@@ -102,9 +102,9 @@ pub(super) fn prepare_search<'a>(
             THRESHOLDS.discrepancy.unknown_factors.map(unknown_level).to_vec(),
         ),
     };
-    let shift = fixed
-        .expected_shift(&nuisance)
-        .ok_or_else(|| RefineError::Law("what it knows of itself is not positive".into()))?;
+    let shift = fixed.expected_shift(&nuisance).ok_or_else(|| {
+        RefineError::Law("its covariance of coefficients is not positive definite".into())
+    })?;
     let mut search = HypothesisSearch {
         model: request.model,
         law: request.law,

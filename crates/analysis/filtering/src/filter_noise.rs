@@ -31,7 +31,8 @@ impl FilterNoise {
     ) -> Result<Self, RefineError> {
         if discrepancies.len() != part.sizes.axes {
             return Err(RefineError::Law(format!(
-                "the filter has discrepancies of {} accelerations, and the model has {}",
+                "the filter has discrepancies of {} accelerations, but the model has {} \
+                 accelerations",
                 discrepancies.len(),
                 part.sizes.axes
             )));
@@ -82,8 +83,8 @@ impl FilterNoise {
 /// Error for readings of a channel whose noise is unknown.
 pub fn unknown_noise_error(channel: Channel) -> RefineError {
     RefineError::Data(format!(
-        "no noise is known of the channel `{}`: it is told from seven readings that follow each \
-         other without a gap; give a trial that has them, or leave the channel out",
+        "the noise of the channel `{}` cannot be estimated: this needs seven readings in sequence \
+         without a gap; give a trial with such readings, or do not map the channel",
         channel.name()
     ))
 }

@@ -107,7 +107,8 @@ pub fn select_kind(
         }
         let training = settings.with_kind(kind).complete_training(model, on.law, on.trials)?;
         let Some(judged) = evaluate_folds(on, &training, kinds.step_s())? else {
-            let reason = "there is one trial only, and none is left to judge on".to_owned();
+            let reason =
+                "there is only one trial, so that cross-validation is not possible".to_owned();
             // The number of trials is the same for all kinds, so the first kind decides this.
             return Ok(Some(BranchChoice::without_evaluation(reason)));
         };
@@ -143,23 +144,23 @@ fn reason_text(kind: BranchKind, judged: &CorrectionEvaluation, tried: usize) ->
     let CorrectionEvaluation { foundation, branch, trials, .. } = judged;
     let Some(standard_error) = judged.standard_error else {
         return format!(
-            "`{}` was tried on one trial, error {branch:.4} with it and {foundation:.4} without: one \
-             trial does not say how sure the difference is, and no branch is taken",
+            "`{}` was tested on one held-out trial, error {branch:.4} with it and {foundation:.4} \
+             without: the uncertainty of the difference is unknown, and no correction is used",
             kind.name()
         );
     };
-    let of = if tried > 1 { "is the best of the kinds" } else { "was tried" };
+    let of = if tried > 1 { "is the best kind" } else { "was compared" };
     let said = format!(
-        "`{}` {of}: on {} trials left out, error {branch:.4} with it and \
-         {foundation:.4} without, the difference sure to {standard_error:.4}",
+        "`{}` {of}: on {} held-out trials, error {branch:.4} with it and {foundation:.4} without, \
+         standard error of the difference {standard_error:.4}",
         kind.name(),
         trials.len()
     );
     match judged.is_better() {
         true => said,
         false if tried > 1 => {
-            format!("{said}: it does not win by more than that, and no branch is taken")
+            format!("{said}: the difference is not significant, and no correction is used")
         }
-        false => format!("{said}: it loses by more than that, and no branch is taken"),
+        false => format!("{said}: it is significantly worse, and no correction is used"),
     }
 }

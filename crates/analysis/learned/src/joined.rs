@@ -14,7 +14,7 @@ use crate::weights::{CorrectionWeights, WeightsError};
 #[derive(Debug, thiserror::Error)]
 pub enum JoinError {
     /// The model has no learned correction.
-    #[error("`{0}` has no learned branch")]
+    #[error("`{0}` has no learned correction")]
     None(String),
     /// The document of the correction is invalid.
     #[error("branch.{0}")]
@@ -26,10 +26,13 @@ pub enum JoinError {
     #[error(transparent)]
     Foundation(#[from] PlantError),
     /// The correction uses channels that a simulation does not provide.
-    #[error("branch: its domain or an output has channels beside u, v, r, delta and n")]
+    #[error("branch: only the channels u, v, r, delta and n are allowed in its domain and outputs")]
     Channels,
     /// The correction acts outside the physical range.
-    #[error("branch.fade: {fade} lets it act beyond the physical range; give less")]
+    #[error(
+        "branch.fade: {fade} lets the correction act outside the physical range; give a \
+             smaller value"
+    )]
     Reach {
         /// Fade of the correction.
         fade: f64,

@@ -28,7 +28,10 @@ pub enum RowsError {
     #[error(transparent)]
     Input(#[from] MissingInput),
     /// A recorded value, or the foundation's rate there, is not a finite number.
-    #[error("trial `{trial}`, {t_s} s: the motion or the foundation's rate is no number")]
+    #[error(
+        "trial `{trial}`, {t_s} s: the motion or the acceleration of the foundation is not a \
+             finite number"
+    )]
     NotANumber {
         /// Name of the trial.
         trial: String,

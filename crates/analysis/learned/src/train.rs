@@ -56,7 +56,7 @@ pub enum TrainError {
     #[error("{0}")]
     Setting(#[from] CorrectionError),
     /// There are too few samples.
-    #[error("{found} samples are too few to learn from: give trials of {wanted} at least")]
+    #[error("{found} samples are too few for training: give trials with at least {wanted}")]
     Few {
         /// Number of samples.
         found: usize,
@@ -64,10 +64,13 @@ pub enum TrainError {
         wanted: usize,
     },
     /// The equations cannot be solved.
-    #[error("outputs.{0}: the equations are singular; give more ridge or fewer centres")]
+    #[error(
+        "outputs.{0}: the equations are singular; increase `ridge` or reduce the number of \
+             centres"
+    )]
     Singular(Axis),
     /// The range covered by trials fills the physical range.
-    #[error("what the trials covered reaches the physical range of `{0}`: is a reading wrong?")]
+    #[error("the trials reach the limit of the physical range of `{0}`: check for faulty readings")]
     Reach(String),
     /// The trained correction does not fit its foundation.
     #[error(transparent)]

@@ -10,7 +10,7 @@ use sistership_model::vessel::Status;
 /// again.
 pub fn with_branch(foundation: &Model, branch: CorrectionDocument) -> Model {
     let trials = branch.recipe.trials.len();
-    let said = format!("{} of {trials} trials learned beside the law", branch.describe());
+    let said = format!("learned correction ({}) from {trials} trials", branch.describe());
     let note = foundation.note.as_ref().map_or(said.clone(), |note| format!("{note}; {said}"));
     Model {
         status: Status::Refined,

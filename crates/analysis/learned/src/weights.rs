@@ -19,7 +19,7 @@ pub struct CorrectionWeights {
 #[derive(Debug, thiserror::Error)]
 pub enum WeightsError {
     /// The hash differs.
-    #[error("branch.weights_sha256: names {named}, but the weights given have {found}")]
+    #[error("branch.weights_sha256: is {named}, but the weights given have the hash {found}")]
     Hash {
         /// Hash in the document.
         named: String,
@@ -30,7 +30,7 @@ pub enum WeightsError {
     #[error("weights: {0}")]
     Json(#[from] serde_json::Error),
     /// The number of weights differs from the number of outputs.
-    #[error("weights.outputs: there are {found}, and the branch has {wanted} outputs")]
+    #[error("weights.outputs: there are {found}, but the correction has {wanted} outputs")]
     Count {
         /// Number of weights.
         found: usize,
@@ -38,7 +38,7 @@ pub enum WeightsError {
         wanted: usize,
     },
     /// The weights are of another kind than in the recipe, or of another shape.
-    #[error("weights.outputs.{axis}: not of the recipe's kind, or not for {inputs} inputs")]
+    #[error("weights.outputs.{axis}: do not match the kind of the recipe or its {inputs} inputs")]
     Shape {
         /// Axis of the output.
         axis: Axis,

@@ -150,10 +150,13 @@ fn what_does_not_belong_together_is_refused_by_name() {
     };
     let network =
         Learner::Perceptron { hidden: vec![4], epochs: 1, batch: 1, rate: 0.1, decay: 0.0 };
-    assert!(with(&|b| b.recipe.learner = network.clone()).contains("not of the recipe's kind"));
+    assert!(
+        with(&|b| b.recipe.learner = network.clone())
+            .contains("do not match the kind of the recipe")
+    );
     assert!(with(&|b| b.outputs[1].inputs.truncate(1)).contains("weights.outputs.Y"));
-    assert!(with(&|b| b.outputs.truncate(2)).contains("there are 3, and the branch has 2"));
-    assert!(with(&|b| b.outputs[0].axis = Axis::N).contains("X, Y and N at most once"));
+    assert!(with(&|b| b.outputs.truncate(2)).contains("there are 3, but the correction has 2"));
+    assert!(with(&|b| b.outputs[0].axis = Axis::N).contains("X, Y and N, and each at most once"));
     assert!(with(&|b| b.outputs[0].range = [1.0, f64::NAN]).contains("range"));
     assert!(with(&|b| b.fade = 0.0).contains("fade"));
     assert!(with(&|b| b.mode = CorrectionMode::Serial).contains("of the foundation"));
@@ -187,5 +190,9 @@ fn training_on_what_is_no_number_is_refused_with_the_place() {
         ..wanted
     };
     let good = foundation.trials(&[10.0]);
-    assert!(refused(&good, &convert).to_string().contains("may be of the foundation"));
+    assert!(
+        refused(&good, &convert)
+            .to_string()
+            .contains("no input may be an acceleration of the foundation")
+    );
 }

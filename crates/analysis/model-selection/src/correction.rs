@@ -79,7 +79,7 @@ impl Correction<'_> {
         let of = |model: &Model| simulation_fault(model, self.on.law, trials).is_some();
         let count = |fails: bool| if fails { 1.0 } else { 0.0 };
         let (own, both) = (count(of(&refinement.model)), count(of(&model)));
-        Ok(compare_values("rudders and motions that no trial had, as failures", own, both))
+        Ok(compare_values("simulations outside the trials that fail", own, both))
     }
 
     /// Checks that the models of folds scatter no more in the standard manoeuvres with the
@@ -93,7 +93,7 @@ impl Correction<'_> {
             self.on.folds.par_iter().map(pair).collect::<Result<_, TrainError>>()?;
         let (own, both): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
         let ratio = scatter_ratio(&own, &both);
-        Ok(compare_values("variance of the standard manoeuvres over folds, relative", 1.0, ratio))
+        Ok(compare_values("relative variance of the standard manoeuvres over folds", 1.0, ratio))
     }
 
     fn standard_manoeuvres(&self, model: &Model) -> Result<StandardManoeuvres, TrainError> {
@@ -106,13 +106,20 @@ impl Correction<'_> {
     /// Checks that the correction is no worse on the trials of the largest and smallest rudder
     /// angles and speeds, held out of both base model and correction.
     fn check_extremes(&self, training: &CorrectionTraining) -> Result<BranchCheck, TrainError> {
-        let what = "trials of the largest and least rudder angles and speeds, held out";
+        let what = "held-out trials of the extreme rudder angles and speeds";
         let held_out = extreme_trials(self.foundation.trials);
         let folds: Vec<HeldOutFold> =
             held_out.into_par_iter().filter_map(|places| self.refit_without(places)).collect();
         let on = HeldOutTrials { folds: &folds, ..self.on };
         Ok(evaluate_folds(&on, training, self.step_s)?.map_or_else(
-            || compare_values("trials of other rudder angles and speeds: there are none", 0.0, 0.0),
+            || {
+                compare_values(
+                    "held-out trials of the extreme rudder angles and speeds: there are \
+                               none",
+                    0.0,
+                    0.0,
+                )
+            },
             |judged| compare_values(what, judged.foundation, judged.branch),
         ))
     }
@@ -132,7 +139,7 @@ impl Correction<'_> {
 
 /// Checks that the gain on trials held out at random is significant (95 %).
 fn check_significance(tried: Option<&KindEvaluation>, trials: usize) -> BranchCheck {
-    let what = "trials held out, sure to 95 %";
+    let what = "held-out trials, 95 % bound";
     // A single trial has no standard error: nothing is significant.
     tried.and_then(|tried| Some((tried, tried.standard_error?))).map_or_else(
         || compare_values(what, 0.0, f64::MAX),
@@ -152,6 +159,6 @@ fn compare_values(what: &str, foundation: f64, branch: f64) -> BranchCheck {
 /// A check as part of a sentence.
 fn describe_check(check: &BranchCheck) -> String {
     let BranchCheck { what, foundation, branch, passed } = check;
-    let end = if *passed { "" } else { ": it is not taken" };
+    let end = if *passed { "" } else { ": it is not used" };
     format!("; {what}: {branch:.3e} with it and {foundation:.3e} without{end}")
 }

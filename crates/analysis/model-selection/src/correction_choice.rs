@@ -61,17 +61,17 @@ pub(super) fn choose_correction(
         .unwrap_or_else(|error| BranchChoice::without_evaluation(training_failure(&error))))
 }
 
-const IN_PARTS: &str = "none was tried: the trials were held out in parts, not whole, so that every \
-                        model has seen all";
+const IN_PARTS: &str = "not considered: only parts of trials were held out, so that no trial is \
+                        unknown to all models";
 
 fn too_few_trials(trials: usize) -> String {
     format!(
-        "none was tried: of {trials} trials too few can be left out of its training, {} are \
-        asked",
+        "not considered: {trials} trials are too few to train and test a correction; at least {} \
+         are needed",
         SEARCH.branch_trials
     )
 }
 
 fn training_failure(error: &TrainError) -> String {
-    format!("none can be trained: {error}")
+    format!("training failed: {error}")
 }

@@ -93,7 +93,11 @@ pub(super) fn stage_evaluation(
         Err(error @ (RefineError::Cancelled | RefineError::Setting { .. })) => Err(error),
         Err(error) => Ok(CandidateEvaluation::with_refusal(error.to_string())),
         Ok(all) => {
-            let no_fit = || CandidateEvaluation::with_refusal("the trials allow no fit".to_owned());
+            let no_fit = || {
+                CandidateEvaluation::with_refusal(
+                    "the trials are not sufficient for a fit".to_owned(),
+                )
+            };
             Ok(all.into_iter().nth(wanted).unwrap_or_else(no_fit))
         }
     }

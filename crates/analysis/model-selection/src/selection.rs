@@ -138,7 +138,7 @@ fn refit_stronger(
     let roll_strength = stronger_roll(&search.entrants[entrant].law, refused.roll_strength);
     let settings = RefinementSettings { families: vec![family], strengths, roll_strength, ..own };
     let named = search.entrants[entrant].name();
-    let told = |_: f64, what: &str| progress(0.9, &format!("{named}, held more: {what}"));
+    let told = |_: f64, what: &str| progress(0.9, &format!("{named}, stronger prior: {what}"));
     let known = SourceEnvelopes::default();
     evaluate_candidate((search, &known), (entrant, SelectionStage::Weak), &settings, &told)
         .map(Some)
@@ -241,10 +241,12 @@ fn report_line(
     let ratio = tried.weighed.error.unwrap_or(f64::INFINITY) / least;
     let outcome = match chosen {
         true if entrant.held_by == CandidatePrior::Population => {
-            "of what is alike, what other ships hold".to_owned()
+            "selected: population prior, no other candidate significantly better (95 %)".to_owned()
         }
-        true => "of what is alike, the least with five times its variance elsewhere".to_owned(),
-        false => format!("{ratio:.2} times the least error"),
+        true => "selected: smallest error plus five times the variance elsewhere, among \
+                 statistically tied candidates"
+            .to_owned(),
+        false => format!("{ratio:.2} times the smallest error"),
     };
     let reason = tried.refusal.clone().or_else(|| tried.weighed.reason.clone());
     ReportLine {
@@ -338,7 +340,7 @@ mod tests {
         let line = &ladder.lines[1];
         assert!(line.reference && !line.chosen && !ladder.lines[0].reference);
         assert_eq!((line.error, line.reason.as_str()), (Some(0.1), "does not sail"));
-        assert_eq!(ladder.lines[0].reason.split(' ').next(), Some("of"), "chosen");
+        assert_eq!(ladder.lines[0].reason.split(' ').next(), Some("selected:"), "chosen");
         let words = ladder.reference_summary();
         assert!(words.contains("mariner/") && words.contains("0.50 times"), "{words}");
     }

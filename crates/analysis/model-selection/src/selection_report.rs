@@ -83,11 +83,14 @@ impl SelectionReport {
         // Error of the chosen candidate.
         let taken = self.lines.iter().find(|line| line.chosen).and_then(|line| line.error);
         match (line.error, taken) {
-            _ if line.chosen => format!("{head}, is what was taken."),
+            _ if line.chosen => format!("{head}, was selected."),
             (Some(own), Some(taken)) => {
-                format!("{head}: error {own:.3e}, {:.2} times that of what was taken.", own / taken)
+                format!(
+                    "{head}: error {own:.3e}, {:.2} times that of the selected model.",
+                    own / taken
+                )
             }
-            _ => format!("{head}: no error is known, {}.", line.reason),
+            _ => format!("{head}: error unknown, {}.", line.reason),
         }
     }
 }

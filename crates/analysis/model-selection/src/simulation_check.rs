@@ -168,7 +168,10 @@ mod tests {
         let fault = simulation_fault(&runs_away, &law, &trials).unwrap();
         assert!(matches!(fault, SimulationFault::Steering(_)), "{fault:?}");
         let told = fault.into_reason();
-        assert!(told.starts_with("does not complete rudder 1 at random: stopped at "), "{told}");
+        assert!(
+            told.starts_with("does not complete random rudder orders 1: stopped at "),
+            "{told}"
+        );
     }
 
     #[test]

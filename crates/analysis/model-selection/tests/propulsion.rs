@@ -154,7 +154,11 @@ fn a_named_method_gives_a_law_without_revolutions_a_balance() {
     let resistance = &made.model.propulsion.as_ref().unwrap().parameters["resistance"];
     println!("{resistance:?}");
     assert!(resistance.standard_error.unwrap() < 0.4 * resistance.value);
-    assert!(made.remarks.iter().any(|remark| remark.contains("surge is a balance")));
+    assert!(
+        made.remarks
+            .iter()
+            .any(|remark| remark.contains("the surge force is open-water thrust minus resistance"))
+    );
     assert_eq!(
         check_straight(&Ship::new(&model, &law).unwrap()),
         Err(PropulsionFault::NoRevolutions)

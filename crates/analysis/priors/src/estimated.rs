@@ -22,7 +22,7 @@ pub(crate) fn estimated_parameter(law: &Law, name: &str, target: &Vessel) -> Opt
     // The same name may have another meaning in another law: dimension and meaning must agree.
     let is_same = known.dimension == wanted.dimension && known.meaning.starts_with(&wanted.meaning);
     let value = estimates.derived_parameter(name, &target.particulars).filter(|_| is_same)?;
-    Some(Quantity::new(value, "estimated: Clarke et al. 1983, as in the law low-speed"))
+    Some(Quantity::new(value, "estimated by Clarke et al. 1983, as in the law low-speed"))
 }
 
 #[cfg(test)]

@@ -93,8 +93,8 @@ fn stiffness_and_damping(model: &Model, law: &Law) -> Option<[f64; 2]> {
 pub fn roll_remark(carried: &Model) -> Option<String> {
     let is_hydrostatic = |quantity: &&Quantity| quantity.source == HYDROSTATICS;
     carried.coefficients.values().find(is_hydrostatic)?;
-    let what = "the source says nothing of roll: the prior has the stiffness of the ship's \
-        metacentric height and a tenth of the critical damping";
+    let what = "the source has no roll: the prior of roll is the restoring moment of the ship's \
+                metacentric height and a tenth of the critical damping";
     Some(what.to_owned())
 }
 

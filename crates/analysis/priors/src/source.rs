@@ -195,7 +195,10 @@ fn unknown_category(category: &str) -> String {
         return String::new();
     }
     let known = known_categories().join(", ");
-    format!("; the category `{category}` is compared with itself only, known are {known}")
+    format!(
+        "; the category `{category}` is unknown and matches only itself; known categories are \
+             {known}"
+    )
 }
 
 #[cfg(test)]

@@ -110,7 +110,7 @@ fn length_ratio(source: &Model, target: &Vessel) -> f64 {
 
 /// Error for a parameter of a law without a value.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{name}` of law `{law}` does not follow from the particulars of {ship}")]
+#[error("`{name}` of law `{law}` cannot be derived from the particulars of {ship}")]
 pub struct UnknownParameter {
     /// The parameter.
     pub name: String,
@@ -163,7 +163,7 @@ fn fill_model(
     approach: Option<TrialApproach>,
     given: &dyn Fn(&str) -> Option<Quantity>,
 ) -> Result<Model, UnknownParameter> {
-    let zero = |name: &String| (name.clone(), Quantity::new(0.0, "nothing known"));
+    let zero = |name: &String| (name.clone(), Quantity::new(0.0, "unknown"));
     let parameter = |name: &String| {
         // The law's approach speed is that of the trials.
         let own = if law.approach_speed_parameter() == Some(name) {
@@ -189,7 +189,7 @@ fn fill_model(
         ship: target.name().to_owned(),
         law: law.name.clone(),
         status: Status::Transferred,
-        note: Some("a law without coefficients, to be filled by trials alone".to_owned()),
+        note: Some("no source: a law whose coefficients are fitted to the trials alone".to_owned()),
         sources: Default::default(),
         speed_m_s: approach
             .map(|a| a.speed_m_s)

@@ -17,13 +17,13 @@ const BATCH_SIZE: usize = 8;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrendError {
     /// The model's law is unknown.
-    #[error("there is no law `{0}`")]
+    #[error("the law `{0}` is not in the zoo")]
     NoLaw(String),
     /// The source's file is invalid.
     #[error(transparent)]
     File(#[from] FileError),
     /// The law has roll, and a trial does not record it.
-    #[error("its law has roll, and trial `{trial}` has no channel `{channel}`")]
+    #[error("its law has roll, but trial `{trial}` has no channel `{channel}`")]
     Roll {
         /// The trial.
         trial: String,

@@ -51,7 +51,7 @@ struct SelfPropulsionPoint {
     source: &'static str,
 }
 
-const TYPICAL: &str = "typical of ships: no estimate from particulars";
+const TYPICAL: &str = "typical value (no estimate from particulars)";
 const OF_SOURCE: &str = "propeller and resistance of the source";
 const ESTIMATED: &str = "estimated from particulars";
 const TRIALS: &str = "self-propulsion point of the trials";
@@ -166,9 +166,9 @@ fn approach_resistance(
     });
     // A resistance that is not positive is an error of the fit: the prior knowledge alone is used.
     let Some(fitted) = of_slope.filter(|figure| figure.mean > 0.0) else {
-        return Some(value_quantity(known, format!("{source}; the trials do not tell it")));
+        return Some(value_quantity(known, format!("{source}; not determined by the trials")));
     };
-    let source = format!("{source}, and surge by speed in the trials");
+    let source = format!("{source}, and the surge damping in the trials");
     Some(value_quantity(weighted_mean(known, fitted), source))
 }
 

@@ -13,12 +13,12 @@ use crate::thresholds::CHECK;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PropulsionFault {
     /// The law takes no revolutions, or those of the approach are not known.
-    #[error("takes no propeller revolutions that could be changed")]
+    #[error("has no propeller revolutions as input")]
     NoRevolutions,
     /// The ship does not slow down as a body in water does.
     #[error(
-        "with the propeller stopped its speed changes by {rate:.2} of itself in the time in which \
-         it sails its length, which should lie between -{fastest} and -{slowest:.3}"
+        "with the propeller stopped, the relative change of speed within one ship length is \
+         {rate:.2}; it should be between -{fastest} and -{slowest:.3}"
     )]
     Deceleration {
         /// Rate by `L/U`, dimensionless.
@@ -29,7 +29,7 @@ pub enum PropulsionFault {
         slowest: f64,
     },
     /// The ship speeds up where it should slow down.
-    #[error("{motion}: speeds up again, to {share:.2} of the approach speed")]
+    #[error("{motion}: accelerates again, to {share:.2} times the approach speed")]
     Rises {
         /// Order.
         motion: &'static str,
@@ -37,7 +37,7 @@ pub enum PropulsionFault {
         share: f64,
     },
     /// The ship has not reached the end of the check after a time.
-    #[error("{motion}: still at {share:.2} of the approach speed after {t_s:.0} s")]
+    #[error("{motion}: still at {share:.2} times the approach speed after {t_s:.0} s")]
     Late {
         /// Order.
         motion: &'static str,

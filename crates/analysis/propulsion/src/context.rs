@@ -83,8 +83,8 @@ pub fn describe_balance(propulsion: &Propulsion) -> String {
     let resistance = propulsion.parameters.get("resistance");
     let deviation = resistance.and_then(|one| one.standard_error).unwrap_or(f64::NAN);
     format!(
-        "outside {:.2} to {:.2} 1/s and {:.2} to {:.2} m/s surge is a balance of resistance and \
-         open-water thrust: {:.4} kN (standard error {:.4}) at {:.2} m/s and {:.2} 1/s",
+        "outside {:.2} to {:.2} 1/s and {:.2} to {:.2} m/s the surge force is open-water thrust \
+         minus resistance: {:.4} kN (standard error {:.4}) at {:.2} m/s and {:.2} 1/s",
         of("n_full_from"),
         of("n_full_to"),
         of("u_full_from"),

@@ -72,21 +72,23 @@ pub fn render_branch(input: &BranchInput<'_>) -> Result<RenderedReport, ReportEr
 /// Result on held-out trials, as a sentence.
 fn verdict_sentence(judgement: Option<&CorrectionEvaluation>) -> String {
     let Some(judged) = judgement else {
-        return "There was one trial only, so that none is left to judge the branch on.".to_owned();
+        return "There was only one trial, so that the learned correction could not be \
+                cross-validated."
+            .to_owned();
     };
     let Some(standard_error) = judged.standard_error else {
         return format!(
-            "On the one trial left out of its training, the branch had an error of {}, against {} \
-             without it; one trial does not say how sure the difference is.",
+            "On the only held-out trial, the error is {} with the learned correction and {} \
+             without it; the uncertainty of the difference cannot be estimated from one trial.",
             format_significant(judged.branch, 3),
             format_significant(judged.foundation, 3),
         );
     };
-    let word = if judged.is_better() { "wins" } else { "does not win" };
+    let word = if judged.is_better() { "better" } else { "not better" };
     format!(
-        "On {} trials left out of its training, the branch {word} by more than its uncertainty: \
-         error {} with it, {} without, the difference sure to {}. It counted for {:.0} % of the \
-         simulated time.",
+        "On {} held-out trials, the learned correction is {word} by more than one standard error: \
+         error {} with it, {} without, standard error of the difference {}. Its mean share in the \
+         simulations is {:.0} %.",
         judged.trials.len(),
         format_significant(judged.branch, 3),
         format_significant(judged.foundation, 3),

@@ -38,11 +38,9 @@ fn markdown_table(head: &str, columns: &[&str], rows: Vec<Vec<String>>) -> Strin
 
 /// Findings of the review, the refusals first.
 fn findings_section(review: &ShipReview) -> String {
-    let verdict = if review.is_acceptable() { "It can be taken." } else { "It is refused." };
+    let verdict = if review.is_acceptable() { "It can be added." } else { "It is refused." };
     let mut text = format!("{verdict}\n\n");
-    for (severity, head) in
-        [(Severity::Refused, "Refused"), (Severity::Look, "A reviewer should look at")]
-    {
+    for (severity, head) in [(Severity::Refused, "Refused"), (Severity::Look, "To be reviewed")] {
         // Findings are grouped by severity, in the order of the review.
         let of = review.findings.iter().filter(|finding| finding.severity == severity);
         let lines: String =
@@ -103,7 +101,7 @@ fn trials_section(review: &ShipReview) -> String {
 
 fn sources_section(vessel: &Vessel) -> String {
     let rows = CatalogueEntry::from_vessel(vessel).sources.into_iter().map(|work| {
-        let terms = work.license.as_deref().or(work.usage).unwrap_or("not known").to_owned();
+        let terms = work.license.as_deref().or(work.usage).unwrap_or("unknown").to_owned();
         vec![work.alternate_name, work.name, work.url.unwrap_or_default(), terms]
     });
     markdown_table("Sources", &["key", "citation", "where", "licence"], rows.collect())

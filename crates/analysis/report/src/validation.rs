@@ -34,7 +34,7 @@ pub fn render_validation(of: &Validation) -> Result<RenderedReport, ReportError>
 fn verdict_sentence(of: &Validation) -> String {
     let all = of.quantities.len();
     if all == 0 {
-        return "There is nothing to validate this model by.".to_owned();
+        return "There are no data to validate this model.".to_owned();
     }
     // Both verdicts leave the question open.
     let open = of.count_verdicts(Verdict::Undecided) + of.count_verdicts(Verdict::AboveWhatIsKnown);

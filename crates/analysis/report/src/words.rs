@@ -97,10 +97,8 @@ pub(crate) fn status_word(status: Status) -> &'static str {
 pub(crate) fn status_meaning(status: Status) -> &'static str {
     match status {
         Status::Published => "figures as published from captive tests, computations or trials",
-        Status::Estimated => "figures estimated from particulars by regression formulas: a stopgap",
-        Status::Transferred => {
-            "a source model carried over by its scaling, not fitted to this ship"
-        }
+        Status::Estimated => "estimated from particulars by regression formulas: provisional",
+        Status::Transferred => "a source model scaled to this ship, not fitted to it",
         Status::Refined => "fitted to trials of this ship",
     }
 }
@@ -109,13 +107,11 @@ pub(crate) fn status_meaning(status: Status) -> &'static str {
 pub(crate) fn method_words(name: &str) -> &'static str {
     match name {
         "published" => {
-            "one-step differences, ridge regression drawn towards the source (Kanazawa 2023)"
+            "one-step differences, ridge regression with the source as prior (Kanazawa 2023)"
         }
-        "weak" => "motions integrated over windows, ridge regression drawn towards the source",
-        "trajectory" => "simulated segments matched to the measured ones, drawn towards the source",
-        "cma-es" => {
-            "simulated subsequences matched to the measured ones by a random search (Miyauchi 2024)"
-        }
+        "weak" => "equations integrated over windows, ridge regression with the source as prior",
+        "trajectory" => "least squares on simulated segments with the source as prior",
+        "cma-es" => "evolutionary search (CMA-ES) on simulated subsequences (Miyauchi 2024)",
         _ => "",
     }
 }

@@ -69,7 +69,7 @@ fn complete_candidate(
 ) -> Result<SimulatedCandidate, String> {
     let name = |reason: String| format!("{}: {reason}", candidate.manoeuvre);
     let track = cut_track(track.map_err(name)?);
-    let last = *track.last().ok_or_else(|| name("nothing was sailed".into()))?;
+    let last = *track.last().ok_or_else(|| name("no manoeuvre was simulated".into()))?;
     let end_s = track.t_s.last().copied().unwrap_or_default();
     let full = ship.approach_speed_m_s();
     // A slower approach also costs the time of slowing down from full speed.

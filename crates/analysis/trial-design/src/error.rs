@@ -11,7 +11,10 @@ pub enum PlanError {
     #[error("the budget must be above 0 and at most a day")]
     Budget,
     /// The budget is shorter than any trial.
-    #[error("no trial fits into {budget_min:.0} min: the shortest takes {shortest_min:.0} min")]
+    #[error(
+        "no trial fits into {budget_min:.0} min: the shortest takes {shortest_min:.0} min; \
+             increase the budget"
+    )]
     NoTrialFits {
         /// Budget, min.
         budget_min: f64,
@@ -19,7 +22,7 @@ pub enum PlanError {
         shortest_min: f64,
     },
     /// The library has no such effect.
-    #[error("no effect `{name}`; there are {}", known.join(", "))]
+    #[error("there is no effect `{name}`; choose one of {}", known.join(", "))]
     Effect {
         /// Requested name.
         name: String,
@@ -27,7 +30,7 @@ pub enum PlanError {
         known: Vec<String>,
     },
     /// The ship cannot carry out any manoeuvre.
-    #[error("{model} sails none of the manoeuvres that could be planned: {reason}")]
+    #[error("{model} completes none of the possible trials: {reason}")]
     SailsNone {
         /// Name of the model.
         model: String,
@@ -36,12 +39,12 @@ pub enum PlanError {
     },
     /// No figure depends on the unknowns.
     #[error(
-        "nothing is to be narrowed: no figure of the standard manoeuvres changes with the \
-         coefficients of {0}"
+        "there is no uncertainty to reduce: no figure of the standard manoeuvres depends on the \
+         uncertain coefficients of {0}"
     )]
     NothingOpen(String),
     /// The law has no rudder.
-    #[error("law `{0}` takes no rudder angle: there is nothing to steer")]
+    #[error("law `{0}` has no rudder angle as input, so that no trial can be designed")]
     NoRudder(String),
     /// The model cannot be simulated.
     #[error(transparent)]

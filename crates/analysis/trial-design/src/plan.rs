@@ -35,7 +35,7 @@ pub fn design_trials(request: &PlanRequest<'_>) -> Result<TrialPlan, PlanError> 
     if targets.is_empty() {
         return Err(nothing());
     }
-    remarks.extend(unreached.iter().map(|name| format!("{name}: the model does not reach it")));
+    remarks.extend(unreached.iter().map(|name| format!("{name}: not reached by the model")));
     let design = build_design(request, &bare, &unknowns, (&courses, &like), &targets)?;
     let chosen = best_design(&design, request.budget_s);
     if chosen.is_empty() {

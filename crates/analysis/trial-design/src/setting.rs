@@ -42,7 +42,8 @@ impl DesignContext {
             let forms = observable_forms(name, request.model, request.law, request.library, &like);
             if forms.is_empty() {
                 remarks.push(format!(
-                    "{name}: trials with these records do not show it; give some that do"
+                    "{name}: cannot be observed with the channels of these trials; give trials \
+                     with further channels"
                 ));
             }
             effects.extend(forms);

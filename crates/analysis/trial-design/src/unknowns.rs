@@ -75,8 +75,8 @@ fn share_prior(model: &Model) -> SharePrior {
     };
     let rows = names.iter().enumerate().map(row).collect();
     let remark = format!(
-        "{} does not say how sure its coefficients are: each is taken to be within {:.0} % of the \
-         truth, independent of the others",
+        "{} has no posterior: an independent standard deviation of {:.0} % of the value is \
+         assumed for each coefficient",
         model.name,
         100.0 * share
     );

@@ -131,7 +131,7 @@ mod tests {
         };
         assert!(
             refused("sistership refine --ship a --trials t --method lasso")
-                .contains("there are `published`, `weak`, `trajectory`, `cma-es`")
+                .contains("choose one of `published`, `weak`, `trajectory`, `cma-es`")
         );
         assert!(
             refused("sistership manoeuvre --model a --turn 35 --zigzag 10/10")

@@ -30,7 +30,7 @@ impl OutputFile {
             ));
         }
         if place.exists() && !place.is_file() {
-            return Err(about_file(path, "is not a file that can be replaced"));
+            return Err(about_file(path, "exists and is not a regular file; choose another place"));
         }
         let file = temporary_file(&place)
             .map_err(|error| about_file(path, write_failure(&place, &error)))?;
@@ -101,7 +101,7 @@ mod tests {
                 .to_owned()
         };
         assert!(refused(&path).contains("will not be overwritten"));
-        assert!(refused(folder.path()).contains("is not a file"));
+        assert!(refused(folder.path()).contains("not a regular file"));
         assert!(refused(&folder.path().join("lost/b.csv")).contains("there is no folder"));
     }
 }

@@ -27,7 +27,7 @@ pub fn print_result(
     let mut out = std::io::stdout().lock();
     match out.write_all(result.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::Refused(format!("standard output: {error}")))
+            Err(Failure::Refused(format!("standard output cannot be written: {error}")))
         }
         _ => Ok(()),
     }

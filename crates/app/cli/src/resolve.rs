@@ -26,7 +26,7 @@ pub fn resolve_ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
     // A model's name where a ship is needed: the message names the ship.
     if let Some((ship, _)) = name.split_once('/').filter(|(ship, _)| zoo.vessel(ship).is_some()) {
         return Err(Failure::Refused(format!(
-            "`{name}` is a model; a ship is asked for here: `{ship}`"
+            "`{name}` is a model, but a ship is needed here: give `{ship}`"
         )));
     }
     Err(unknown_name(name, zoo.vessels().map(|vessel| vessel.name().to_owned()).collect()))
@@ -39,14 +39,20 @@ pub fn resolve_ship(zoo: &Zoo, name: &str) -> Result<Arc<Vessel>, Failure> {
 pub fn vessel_file(zoo: &Zoo, path: &Path) -> Result<Arc<Vessel>, Failure> {
     let text = read_text_file(path)?;
     match kind_of(&text) {
-        DocumentKind::Named(kind) if kind == "model" => {
-            Err(about_file(path, "is a model; a ship is asked for here: a file of `kind: vessel`"))
-        }
-        DocumentKind::Named(kind) if kind != "vessel" => {
-            Err(about_file(path, format!("is of `kind: {kind}`; a ship is of `kind: vessel`")))
-        }
+        DocumentKind::Named(kind) if kind == "model" => Err(about_file(
+            path,
+            "is a model, but a ship is needed here: give a file of `kind: \
+                                  vessel`",
+        )),
+        DocumentKind::Named(kind) if kind != "vessel" => Err(about_file(
+            path,
+            format!(
+                "is of `kind: {kind}`, but a ship is needed here: give a \
+                                          file of `kind: vessel`"
+            ),
+        )),
         DocumentKind::None => {
-            Err(about_file(path, "is no ship's file: it does not begin with `kind: vessel`"))
+            Err(about_file(path, "is not a ship file: it has no line `kind: vessel`"))
         }
         _ => Ok(Arc::new(read_vessel(zoo, path, &text)?)),
     }
@@ -88,7 +94,7 @@ pub fn resolve_foundation(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Fa
     let (model, law) = resolve_model(zoo, name)?;
     if model.branch.is_some() {
         print_note(&format!(
-            "{name}: its learned branch is left out; its law and coefficients are used"
+            "{name}: the learned correction is not used; only the law and the coefficients are"
         ));
     }
     Ok((model.without_correction(), law))
@@ -99,12 +105,13 @@ pub fn resolve_foundation(zoo: &Zoo, name: &str) -> Result<(Model, Arc<Law>), Fa
 /// # Errors
 /// Returns an error if the zoo does not have it.
 pub fn law_of(zoo: &Zoo, model: &Model) -> Result<Arc<Law>, Failure> {
-    let missing = || Failure::Refused(format!("{}: there is no law `{}`", model.name, model.law));
+    let missing =
+        || Failure::Refused(format!("{}: the law `{}` is not in the zoo", model.name, model.law));
     zoo.law(&model.law).cloned().ok_or_else(missing)
 }
 
 fn model_file(zoo: &Zoo, path: &Path) -> Result<Model, Failure> {
-    const WANTED: &str = "a model is of `kind: model`, or of `kind: vessel` with models";
+    const WANTED: &str = "a model file is of `kind: model`, or of `kind: vessel` with models";
     let text = read_text_file(path)?;
     let shown = path.display().to_string();
     match kind_of(&text) {
@@ -117,7 +124,7 @@ fn model_file(zoo: &Zoo, path: &Path) -> Result<Model, Failure> {
         DocumentKind::Named(kind) if kind != "model" => {
             Err(about_file(path, format!("is of `kind: {kind}`; {WANTED}")))
         }
-        DocumentKind::None => Err(about_file(path, format!("is no model's file: {WANTED}"))),
+        DocumentKind::None => Err(about_file(path, format!("is not a model file: {WANTED}"))),
         _ => {
             let law_of = |law: &str| zoo.law(law).map(|law| (**law).clone());
             let mut model = Model::parse(&shown, &text, &law_of)?;
@@ -139,7 +146,7 @@ pub fn check_kind(path: &Path, text: &str, kind: &str, what: &str) -> Result<(),
         }
         DocumentKind::None => Err(about_file(
             path,
-            format!("is no {}: it does not begin with `kind: {kind}`", without_article(what)),
+            format!("is not a {}: it has no line `kind: {kind}`", without_article(what)),
         )),
         _ => Ok(()),
     }
@@ -231,8 +238,8 @@ mod tests {
         assert!(message(resolve_ship(&zoo, file)).contains("is a model"));
         std::fs::write(&path, "t_s,u_m_s\n0,1\n").unwrap();
         assert!(
-            message(resolve_ship(&zoo, file)).contains("is no ship's file")
-                && message(resolve_model(&zoo, file)).contains("is no model's file")
+            message(resolve_ship(&zoo, file)).contains("is not a ship file")
+                && message(resolve_model(&zoo, file)).contains("is not a model file")
         );
         std::fs::write(&path, "kind: vessel\nname: [\n").unwrap();
         assert!(message(resolve_ship(&zoo, file)).contains("m.yaml:"));

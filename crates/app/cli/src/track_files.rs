@@ -24,7 +24,7 @@ pub fn prepare_files(
     inputs: &[PathBuf],
 ) -> Result<Vec<TrackFile>, Failure> {
     std::fs::create_dir_all(folder)
-        .map_err(|error| about_file(folder, format!("cannot be made a folder: {error}")))?;
+        .map_err(|error| about_file(folder, format!("the folder cannot be created: {error}")))?;
     let one = |name: String| {
         let path = folder.join(name);
         Ok(TrackFile {

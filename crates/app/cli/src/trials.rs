@@ -122,7 +122,7 @@ fn make_names_unique(read: &mut [ReadTrial]) -> Result<(), Failure> {
         let is_same = |other: &ReadTrial| real(&other.path) == real(&this.path);
         if earlier.iter().any(|other| is_same(other) && !is_apart(other)) {
             return Err(Failure::Refused(format!(
-                "{}: is given twice; the same data would count twice",
+                "{}: is listed twice, so that its data would count twice; list it once",
                 this.file
             )));
         }
@@ -131,7 +131,7 @@ fn make_names_unique(read: &mut [ReadTrial]) -> Result<(), Failure> {
         }
         if earlier.iter().any(|other| other.trial.name == this.trial.name) {
             let message = format!(
-                "{}: another trial is called `{}` too; list both in one manifest",
+                "{}: another trial has the same name `{}`; list both in one manifest",
                 this.file, this.trial.name
             );
             return Err(Failure::Refused(message));
@@ -165,9 +165,7 @@ pub fn remark_other_ship(read: &[ReadTrial], ship: &str) {
         .collect();
     others.dedup();
     others.iter().for_each(|other| {
-        print_note(&format!(
-            "warning: the manifest says the trials are of `{other}`, not of `{ship}`"
-        ))
+        print_note(&format!("warning: the manifest names the ship `{other}`, the command `{ship}`"))
     });
 }
 
@@ -190,7 +188,9 @@ mod tests {
             ["t.csv", "b/t.csv"]
         );
         let twice = [paths[0].clone(), paths[0].clone()];
-        assert!(super::read_trials(&twice).unwrap_err().message().unwrap().contains("given twice"));
+        assert!(
+            super::read_trials(&twice).unwrap_err().message().unwrap().contains("listed twice")
+        );
     }
 
     #[test]

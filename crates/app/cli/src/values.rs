@@ -43,7 +43,7 @@ pub enum ValueError {
     #[error("must be at most 180 deg, not {0}")]
     BeyondHalfATurn(f64),
     /// A name that is not among the known ones.
-    #[error("there are {known}")]
+    #[error("choose one of {known}")]
     UnknownName {
         /// The known names.
         known: String,

@@ -36,8 +36,8 @@ pub fn read_weights(file: &Path, model: &Model) -> Result<Option<Vec<u8>>, Failu
     let weights = weights_path(file);
     let unread = |error: std::io::Error| {
         let message = format!(
-            "branch.weights_sha256: the weights of its learned branch should be beside it in {}, \
-             which cannot be read: {}",
+            "branch.weights_sha256: the weights of the learned correction are expected next to \
+             the model in {}, which cannot be read: {}",
             weights.display(),
             error.kind()
         );
@@ -64,8 +64,8 @@ impl<'a> CorrectionSummary<'a> {
     /// Formats a line, with its share in a simulation if that is known.
     pub fn to_line(&self, share: Option<f64>) -> String {
         let counted = share.map_or(String::new(), |share| {
-            format!("; it counted for {} % of the simulated time", format_number(100.0 * share))
+            format!("; its mean share in the simulation is {} %", format_number(100.0 * share))
         });
-        format!("learned branch: {}, {}{counted}\n", self.kind, self.mode)
+        format!("learned correction: {}, {}{counted}\n", self.kind, self.mode)
     }
 }

@@ -30,7 +30,7 @@ fn add_folder(zoo: &mut Zoo, folder: &Path) -> Result<(), Failure> {
     if laws.is_empty() && effects.is_empty() && vessels.is_empty() {
         return Err(about_file(
             folder,
-            "is no zoo: it holds neither laws/*.yaml nor effects/*.yaml nor vessels/*.yaml",
+            "is not a zoo folder: it has neither laws/*.yaml nor effects/*.yaml nor vessels/*.yaml",
         ));
     }
     // Laws first: models of vessels refer to them.
@@ -87,7 +87,7 @@ mod tests {
                 .unwrap_err()
                 .message()
                 .unwrap()
-                .contains("is no zoo")
+                .contains("is not a zoo folder")
         );
         std::fs::create_dir(folder.path().join("vessels")).unwrap();
         let vessel =

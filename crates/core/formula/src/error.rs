@@ -7,7 +7,7 @@ use crate::units::Dimension;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FormulaError {
     /// The formula is too long to be parsed.
-    #[error("a formula of {length} characters; {most} are the most: write parts of it as values")]
+    #[error("a formula of {length} characters; the limit is {most}: define parts of it as values")]
     Long {
         /// Length, bytes.
         length: usize,
@@ -16,8 +16,8 @@ pub enum FormulaError {
     },
     /// The formula nests too deep to be parsed.
     #[error(
-        "formula `{head}...` nests {found} parentheses, signs and powers; {most} are the most: \
-         write parts of it as values"
+        "formula `{head}...` nests {found} parentheses, signs and powers; the limit is {most}: \
+         define parts of it as values"
     )]
     Nested {
         /// Beginning of the formula.
@@ -29,7 +29,7 @@ pub enum FormulaError {
     },
     /// The formula has too many operators.
     #[error(
-        "formula `{head}...` has {found} operators; {most} are the most: write parts of it as \
+        "formula `{head}...` has {found} operators; the limit is {most}: define parts of it as \
          values"
     )]
     Operators {
@@ -77,7 +77,7 @@ pub enum FormulaError {
     #[error("adds or compares {0} with {1}")]
     Sides(Dimension, Dimension),
     /// A formula that should be a number uses a name.
-    #[error("`{formula}` should be a number but mentions `{name}`")]
+    #[error("`{formula}` should be a number but contains the name `{name}`")]
     NotConstant {
         /// The formula.
         formula: String,

@@ -158,7 +158,7 @@ mod tests {
                 for n in [most + 2, 10 * most, 1_000_000 / 8] {
                     let refused = parse(&make(n)).unwrap_err().to_string();
                     assert!(
-                        refused.contains("are the most") && refused.len() < 200,
+                        refused.contains("the limit is") && refused.len() < 200,
                         "{n} of {what}: {refused}"
                     );
                 }

@@ -209,7 +209,7 @@ impl CorrectionDocument {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CorrectionError {
     /// The outputs are not one to three different axes among X, Y and N.
-    #[error("outputs: give each of the axes X, Y and N at most once, and one at least")]
+    #[error("outputs: give at least one of the axes X, Y and N, and each at most once")]
     Outputs,
     /// An input is not permitted.
     #[error("outputs.{axis}.inputs: {reason}")]
@@ -220,7 +220,7 @@ pub enum CorrectionError {
         reason: &'static str,
     },
     /// A scale or range is not valid.
-    #[error("outputs.{0}: scale should be above 0, and range from a number to one not less")]
+    #[error("outputs.{0}: scale should be above 0, and range two increasing numbers")]
     Scale(Axis),
     /// The hash is not one of SHA-256.
     #[error("weights_sha256: should be 64 hexadecimal digits")]
@@ -292,10 +292,12 @@ impl CorrectionOutput {
         // Accelerations of the foundation are inputs of the serial mode by definition (Eq. 2.6).
         let of_foundation = |input: &CorrectionInput| input.signal.is_of_foundation();
         if mode == CorrectionMode::Convert && self.inputs.iter().any(of_foundation) {
-            return refuse("in mode `convert` none may be of the foundation");
+            return refuse("in mode `convert` no input may be an acceleration of the foundation");
         }
         if mode == CorrectionMode::Serial && !self.inputs.iter().any(of_foundation) {
-            return refuse("in mode `serial` one should be of the foundation");
+            return refuse(
+                "in mode `serial` one input should be an acceleration of the foundation",
+            );
         }
         let [low, high] = self.range;
         if !(positive(self.scale) && low.is_finite() && high.is_finite() && low <= high) {

@@ -89,7 +89,7 @@ pub struct CoefficientName {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NameError {
     /// The name is too long.
-    #[error("`{head}...`: a name of {length} characters; {most} are the most", most = MAX_NAME)]
+    #[error("`{head}...`: a name of {length} characters; the limit is {most}", most = MAX_NAME)]
     Long {
         /// The beginning of the name.
         head: String,

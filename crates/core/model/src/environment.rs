@@ -56,7 +56,8 @@ const WIND: EnvironmentInput = EnvironmentInput {
     unit: "m/s",
     recorded: &["wind_speed", "apparent_wind_speed"],
     effect: "wind",
-    basis: "its force follows from a typical ship's coefficients, not from this ship's trials",
+    basis: "its force is computed with the coefficients of a typical ship, not fitted to trials \
+            of this ship",
 };
 const CURRENT: EnvironmentInput = EnvironmentInput {
     name: "current_speed_m_s",
@@ -64,7 +65,7 @@ const CURRENT: EnvironmentInput = EnvironmentInput {
     unit: "m/s",
     recorded: &[],
     effect: "current",
-    basis: "it is taken to be uniform and steady, and to carry the water about the ship with it",
+    basis: "it is assumed to be uniform and steady, and to act through the relative velocity only",
 };
 const DEPTH: EnvironmentInput = EnvironmentInput {
     name: "depth_m",
@@ -72,7 +73,8 @@ const DEPTH: EnvironmentInput = EnvironmentInput {
     unit: "m",
     recorded: &["depth"],
     effect: "shallow-water",
-    basis: "what shallow water changes follows from the law's formulas, not from trials",
+    basis: "the change by shallow water is computed by the formulas of the law, not fitted to \
+            trials",
 };
 
 impl PredictionEnvironment {
@@ -115,11 +117,11 @@ impl EnvironmentInput {
         let Self { words, unit, basis, .. } = self;
         let trials = match covered {
             Some([low, high]) if high >= DEEP_M => {
-                format!("the trials had {low:.1} {unit} and deeper")
+                format!("the trials cover {low:.1} {unit} and deeper")
             }
-            Some([low, high]) => format!("the trials had {low:.1} to {high:.1} {unit}"),
-            None if has_trials => "no trial of the model recorded any".to_owned(),
-            None => "the model does not say what its trials covered".to_owned(),
+            Some([low, high]) => format!("the trials cover {low:.1} to {high:.1} {unit}"),
+            None if has_trials => "no trial of the model recorded it".to_owned(),
+            None => "the range covered by trials of the model is unknown".to_owned(),
         };
         format!("{words} of {value:.1} {unit}: {trials}; {basis}")
     }
@@ -150,7 +152,7 @@ mod tests {
         };
         let all = names(storm, &[]);
         assert_eq!(all.len(), 3, "{all:?}");
-        assert!(all[0].starts_with("wind of 25.0 m/s: no trial of the model recorded any"));
+        assert!(all[0].starts_with("wind of 25.0 m/s: no trial of the model recorded it"));
         assert_eq!(names(PredictionEnvironment::default(), &[]), Vec::<String>::new());
         let calm =
             PredictionEnvironment { wind_speed_m_s: Some(0.0), ..PredictionEnvironment::default() };
@@ -165,13 +167,13 @@ mod tests {
         };
         let recorded = [("wind_speed", [2.0, 8.0])];
         assert!(names(wind(8.05), &recorded).is_empty());
-        assert!(names(wind(25.0), &recorded)[0].contains("the trials had 2.0 to 8.0 m/s"));
+        assert!(names(wind(25.0), &recorded)[0].contains("the trials cover 2.0 to 8.0 m/s"));
         let depth = |depth| PredictionEnvironment {
             depth_m: Some(depth),
             ..PredictionEnvironment::default()
         };
         assert!(names(depth(40.0), &[("depth", [15.0, DEEP_M])]).is_empty());
         let shallow = names(depth(9.0), &[("depth", [15.0, DEEP_M])]);
-        assert!(shallow[0].contains("the trials had 15.0 m and deeper"), "{shallow:?}");
+        assert!(shallow[0].contains("the trials cover 15.0 m and deeper"), "{shallow:?}");
     }
 }

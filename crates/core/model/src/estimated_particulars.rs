@@ -53,8 +53,7 @@ pub fn describe_estimates(particulars: &Particulars) -> Option<String> {
     let all = estimated_particulars(particulars);
     let words: Vec<String> = all.iter().map(EstimatedParticular::describe).collect();
     let sentence = format!(
-        "particulars that the ship does not state are estimated: {}; state them where they are \
-         known",
+        "missing particulars of the ship are estimated: {}; give those that are known",
         words.join(", ")
     );
     (!words.is_empty()).then_some(sentence)

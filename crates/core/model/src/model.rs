@@ -101,8 +101,9 @@ impl Model {
     ) -> Result<Self, FileError> {
         let blame = ErrorContext::new(file, text);
         let model: Self = blame.deserialize()?;
-        let law = law_of(&model.law)
-            .ok_or_else(|| blame.field_error("law", format!("there is no law `{}`", model.law)))?;
+        let law = law_of(&model.law).ok_or_else(|| {
+            blame.field_error("law", format!("the law `{}` is not in the zoo", model.law))
+        })?;
         particulars::check_particulars(&model.particulars)
             .map_err(|(name, e)| blame.field_error(&format!("particulars.{name}"), e))?;
         model.check_against(&law).map_err(|(field, e)| blame.field_error(&field, e))?;
@@ -177,7 +178,7 @@ impl Model {
         model.name = format!("{ship}/{}", self.law);
         model.ship = ship.to_owned();
         model.status = Status::Transferred;
-        model.note = Some(format!("carried over from {}", self.name));
+        model.note = Some(format!("transferred from {}", self.name));
         model.particulars = particulars.clone();
         // Effects and uncertainty belong to the trials of the source model.
         model.effects = Vec::new();
@@ -338,7 +339,7 @@ impl Law {
 fn missing_parameter_message(name: &str, parameter: &crate::law::LawParameter) -> String {
     let derivation = match &parameter.from {
         Some(from) => format!(
-            " or the particulars it follows from: {}",
+            " or the particulars from which it is derived: {}",
             from.mentioned_names().into_iter().collect::<Vec<_>>().join(", ")
         ),
         None => String::new(),
@@ -353,7 +354,7 @@ fn find_published_file<'a>(
     let models = &vessel.file.models;
     if models.is_empty() {
         return Err(format!(
-            "`{}` is known by particulars only; refine a source model against its trials",
+            "`{}` has particulars only and no model; refine a source model against its trials",
             vessel.name()
         ));
     }

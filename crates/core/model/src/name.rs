@@ -3,7 +3,7 @@
 /// Error of a text that is not a name.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "`{0}` is not a name: use 1 to 64 lower-case letters, digits and hyphens, such as \
+    "`{0}` is not a valid name: use 1 to 64 lower-case letters, digits and hyphens, such as \
      `esso-osaka-3m`"
 )]
 pub struct InvalidName(pub String);

@@ -86,8 +86,7 @@ pub fn find_faults(particulars: &Particulars) -> Vec<(String, String)> {
             ));
         };
         let is_possible = (low..=high).contains(&quantity.value);
-        let message =
-            || format!("{} is outside {low} to {high}; is the unit right?", quantity.value);
+        let message = || format!("{} is outside {low} to {high}; check the unit", quantity.value);
         (!is_possible).then(|| (name.clone(), message()))
     };
     let found: Vec<(String, String)> =

@@ -29,7 +29,7 @@ pub struct Posterior {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PosteriorError {
     /// Lists differ in length.
-    #[error("names, values and deviations should be equally many")]
+    #[error("names, values and deviations should have the same number")]
     Lists,
     /// A deviation is negative.
     #[error("deviations should be at least 0")]

@@ -114,7 +114,7 @@ enum QuantityError {
     Formula(#[from] FormulaError),
     #[error("{0} is not a finite number")]
     NotFinite(f64),
-    #[error("has no source: give the section or the value one")]
+    #[error("has no source; give one for the section or the value")]
     NoSource,
     #[error("cites `{0}`, which is not listed under `sources`")]
     Unlisted(String),

@@ -88,7 +88,7 @@ pub struct Discrepancy {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum UncertaintyError {
     /// Lists differ in length.
-    #[error("names, scales and offset should be equally many")]
+    #[error("names, scales and offset should have the same number")]
     Lists,
     /// A scale is not above zero.
     #[error("scales should be above 0")]

@@ -227,7 +227,7 @@ impl<'a> ResolvedRegion<'a> {
 
 /// Error of bounds that are not in order.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{name}: from {low} to {high} is no range")]
+#[error("{name}: {low} to {high} is not a range")]
 pub struct RangeError {
     /// Name of the channel or the pair.
     pub name: String,
@@ -262,13 +262,21 @@ impl Excursion {
     pub fn describe(&self) -> String {
         let Self { first_s, share, along, beyond } = self;
         let percent = 100.0 * share;
+        let distance = match *beyond {
+            beyond if beyond > FAR_OUTSIDE => {
+                format!("far outside, by more than {FAR_OUTSIDE:.0} times half the range")
+            }
+            beyond => format!("by at most {:.0} % of half the range", 100.0 * beyond),
+        };
         format!(
             "outside the range covered by its trials from {first_s:.0} s on, {percent:.0} % of the \
-             time; by at most {:.0} % of the half range, in {along}",
-            100.0 * beyond
+             time; {distance}, in {along}"
         )
     }
 }
+
+/// Distance from which a percentage is replaced by words, in half ranges.
+const FAR_OUTSIDE: f64 = 10.0;
 
 /// Tolerance of an excursion, in half ranges: a hard turn at 35 deg where the rudder was recorded
 /// at 34.9 is none.
@@ -364,6 +372,9 @@ mod tests {
             .unwrap();
         assert_eq!((out.first_s, out.share, out.along.as_str()), (4.0, 0.6, "u"));
         assert!(out.beyond > 5.0 && out.describe().contains("from 4 s on, 60 % of the time"));
+        assert!(out.describe().contains(" % of half the range, in u"));
+        let far = Excursion { beyond: 201.76, ..out };
+        assert!(far.describe().contains("far outside, by more than 10 times half the range"));
     }
 
     #[test]

@@ -330,8 +330,8 @@ mod tests {
         let all = told.join("\n");
         assert_eq!(told.len(), 4, "{all}");
         for part in [
-            "2: name: is a list; text is asked for",
-            "4: particulars.lpp_m: is no field; there are source, values",
+            "2: name: is a list, but should be text",
+            "4: particulars.lpp_m: is not a field; the fields are source, values",
             "title: is missing",
             "category: is missing",
         ] {

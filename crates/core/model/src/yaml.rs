@@ -55,13 +55,13 @@ pub fn read_document<T: DeserializeOwned>(text: &str) -> Result<T, YamlError> {
 /// Refuses a text that the parser should not read.
 fn check_limits(text: &str) -> Result<(), YamlError> {
     if text.len() > MAX_BYTES {
-        let message = format!("a YAML document of {} bytes; {MAX_BYTES} are the most", text.len());
+        let message = format!("a YAML document of {} bytes; the limit is {MAX_BYTES}", text.len());
         return Err(YamlError { line: None, message });
     }
     // The size of the parsed document is bounded by the number of its items.
     let items = count_items(text.as_bytes());
     if items > MAX_ITEMS {
-        let message = format!("a YAML document of some {items} items; {MAX_ITEMS} are the most");
+        let message = format!("a YAML document of about {items} items; the limit is {MAX_ITEMS}");
         return Err(YamlError { line: None, message });
     }
     let at = |(place, message): (usize, String)| {

@@ -125,7 +125,7 @@ impl Zoo {
                 line: None,
                 field: "models.law".into(),
                 message: format!(
-                    "there is no law `{law_name}`; there are {}",
+                    "there is no law `{law_name}`; choose one of {}",
                     self.laws.names().join(", ")
                 ),
                 further: Vec::new(),

@@ -66,7 +66,7 @@ impl MotionEnvelope {
     pub fn check_state(&self, t_s: f64, state: &StateVector) -> Result<(), SimulationStop> {
         let stop = |reason: String| Err(SimulationStop { t_s, reason });
         if state.iter().any(|value| !value.is_finite()) {
-            return stop("the state is no longer a number".into());
+            return stop("the state is not finite any more".into());
         }
         if horizontal_speed(state) > self.speed_m_s {
             return stop(format!(

@@ -63,11 +63,11 @@ impl SampleFault {
     /// Reason as written in a manifest.
     pub fn manifest_text(self) -> &'static str {
         match self {
-            Self::WrappedAverage => "averages across 360 degrees",
+            Self::WrappedAverage => "averages across the jump from 360 to 0 degrees",
             Self::Spike => "spikes",
-            Self::Jump => "jumps that neither side explains",
+            Self::Jump => "jumps that the values around do not explain",
             Self::Frozen => "frozen at one value",
-            Self::Impossible => "values that stand for no reading",
+            Self::Impossible => "placeholders for missing readings",
         }
     }
 }

@@ -135,7 +135,7 @@ fn identify_time(
     let probability = 1.0 / (1.0 + other);
     let named = own.name_odds(Role::Time) >= NAMED;
     let step = own.summary.step * unit.to_si;
-    let name = if named { "a name of time; " } else { "" };
+    let name = if named { "by name; " } else { "" };
     let alternative =
         second.filter(|_| 1.0 - probability > ALTERNATIVE_PROBABILITY).map(|(unit, _)| {
             AlternativeReading {
@@ -152,7 +152,7 @@ fn identify_time(
         is_reversed: false,
         probability,
         is_certain: probability > CERTAIN && (named || own.summary.regular > 0.9),
-        reason: format!("{name}its steps are of {step:.3} s in `{}`", unit.name),
+        reason: format!("{name}its steps are {step:.3} s if the unit is `{}`", unit.name),
         alternative,
         other: None,
     }
@@ -220,7 +220,7 @@ impl AssignmentReport<'_> {
             is_reversed: false,
             probability: 1.0 - probability,
             is_certain: false,
-            reason: "neither its name nor its values settle what it is".into(),
+            reason: "neither its name nor its values identify it".into(),
             alternative,
             other: None,
         }
@@ -261,10 +261,10 @@ impl AssignmentReport<'_> {
         let own = &self.search.own[at];
         let Some(what) = self.best.columns[at] else {
             return match own.header.other_quantity() {
-                Some((name, _)) => format!("{name}: no channel holds it"),
-                None if own.summary.count == 0 => "it holds no number".into(),
+                Some((name, _)) => format!("{name}, for which there is no channel"),
+                None if own.summary.count == 0 => "it contains no numbers".into(),
                 None if own.summary.is_counter => "it counts rows".into(),
-                None => "neither its name nor its values are known".into(),
+                None => "neither its name nor its values identify it".into(),
             };
         };
         let mut parts = Vec::new();
@@ -279,10 +279,10 @@ impl AssignmentReport<'_> {
         relations.sort_by(|a, b| b.odds.abs().total_cmp(&a.odds.abs()));
         parts.extend(relations.iter().take(2).map(|one| one.figure.clone()));
         if what.is_reversed {
-            parts.push("it counts the other way".to_owned());
+            parts.push("its sign is reversed".to_owned());
         }
         if parts.is_empty() {
-            parts.push("by its range and what is missing otherwise".to_owned());
+            parts.push("by its range and the channels not found elsewhere".to_owned());
         }
         parts.join("; ")
     }

@@ -40,10 +40,10 @@ impl<'a> PhysicalEvidence<'a> {
         }
         // Without blocks of a time column no relation can be computed.
         let rates = [
-            (Role::Psi, Role::R, "turns as fast as the yaw rate says"),
-            (Role::Phi, Role::P, "rolls as fast as the roll rate says"),
-            (Role::X, Role::VNorth, "moves as fast as the velocity north says"),
-            (Role::Y, Role::VEast, "moves as fast as the velocity east says"),
+            (Role::Psi, Role::R, "its rate agrees with the yaw rate"),
+            (Role::Phi, Role::P, "its rate agrees with the roll rate"),
+            (Role::X, Role::VNorth, "its rate agrees with the velocity north"),
+            (Role::Y, Role::VEast, "its rate agrees with the velocity east"),
         ];
         for (whole, rate, text) in rates {
             all.extend(self.rate_relation(of, whole, rate, text));
@@ -80,7 +80,7 @@ impl<'a> PhysicalEvidence<'a> {
         // The scale on which the two agree best: coarse blocks for slow motions, fine ones for fast
         // turns.
         let best = each.min_by(|a, b| a.left.total_cmp(&b.left))?;
-        let figure = self.observed.format_figure(|| format!("{text} ({:.2} times)", best.slope));
+        let figure = self.observed.format_figure(|| format!("{text} (ratio {:.2})", best.slope));
         let roles = [whole, rate, Role::Other];
         Some(ColumnRelation { roles, odds: best.capped_odds(1e-5), figure })
     }
@@ -133,7 +133,7 @@ impl<'a> PhysicalEvidence<'a> {
         let off = (advance.max(1e-12) / 0.02).ln();
         let odds = (2.0 - 0.5 * off * off).clamp(MIN_ODDS, 2.0);
         let ahead = speed_m_s / revolutions.max(1e-9);
-        let figure = self.observed.format_figure(|| format!("{ahead:.2} m ahead a turn"));
+        let figure = self.observed.format_figure(|| format!("{ahead:.2} m ahead per revolution"));
         Some(ColumnRelation { roles: [n, Role::Other, Role::Other], odds, figure })
     }
 
@@ -142,8 +142,9 @@ impl<'a> PhysicalEvidence<'a> {
         let ((i, _), (j, _)) = (of.find(Role::Phi)?, of.find(Role::R)?);
         let correlation = self.block_correlation(i, j).abs();
         let odds = 4.0 * (correlation - 0.3).max(0.0);
-        let figure =
-            self.observed.format_figure(|| format!("heels with the yaw rate by {correlation:.2}"));
+        let figure = self
+            .observed
+            .format_figure(|| format!("heel correlates with the yaw rate ({correlation:.2})"));
         Some(ColumnRelation { roles: [Role::Phi, Role::R, Role::Other], odds, figure })
     }
 
@@ -171,7 +172,8 @@ impl<'a> PhysicalEvidence<'a> {
                 let (a, b) = (&scale.columns[i].mean, &scale.columns[j].mean);
                 let fit = SeriesFit::new(a, fi, b, fj)?;
                 let (odds, share) = (fit.capped_odds(floor), 100.0 * fit.left.sqrt());
-                let told = || format!("shows what its twin does, within {share:.0} %");
+                let told =
+                    || format!("agrees with the column of the other side within {share:.0} %");
                 let figure = self.observed.format_figure(told);
                 Some(ColumnRelation { roles: [one, other, Role::Other], odds, figure })
             })

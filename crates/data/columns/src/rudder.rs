@@ -42,8 +42,8 @@ impl SteeringEvidence {
     pub(crate) fn to_relation(self, rudder: Role, observed: RelationInput<'_>) -> ColumnRelation {
         let odds = (PER_UNIT * (self.lagged + self.partial)).clamp(-10.0, 12.0);
         let lagged = self.lagged;
-        let figure = observed
-            .format_figure(|| format!("the yaw rate follows it with a correlation of {lagged:.2}"));
+        let figure =
+            observed.format_figure(|| format!("correlation of the yaw rate with it {lagged:.2}"));
         ColumnRelation { roles: [rudder, Role::R, Role::Other], odds, figure }
     }
 }

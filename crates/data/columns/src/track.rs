@@ -100,7 +100,7 @@ impl GroundTrack {
             .clamp(-12.0, 14.0)
             - backwards;
         let told =
-            || format!("{:.1} % of the track's squares lie across the heading", 100.0 * part);
+            || format!("{:.1} % of the squared velocity is across the heading", 100.0 * part);
         let figure = observed.format_figure(told);
         Some(ColumnRelation { roles: [self.roles.0, self.roles.1, Role::Psi], odds, figure })
     }
@@ -127,7 +127,7 @@ impl GroundTrack {
         let integral = &observed.signals.scales.last()?.columns[at].integral;
         let fit = SeriesFit::new(steps, 1.0, integral, factor)?;
         let times = fit.slope;
-        let told = || format!("positions move {times:.2} times as fast {text} as it says");
+        let told = || format!("speed of the positions {text} is {times:.2} times its value");
         let figure = observed.format_figure(told);
         let roles = [self.roles.0, self.roles.1, role];
         Some(ColumnRelation { roles, odds: fit.capped_odds(FLOOR), figure })
@@ -167,7 +167,7 @@ impl GroundTrack {
             .sum();
         let figure = observed.format_figure(|| {
             format!(
-                "agrees with the track less a current of {:.2} m/s towards {:.0} deg",
+                "agrees with the track minus a current of {:.2} m/s towards {:.0} deg",
                 north.hypot(east),
                 east.atan2(north).to_degrees().rem_euclid(360.0)
             )
@@ -207,7 +207,7 @@ impl GroundTrack {
         let odds = (-PER_FOLD * off.max(1e-4).ln())
             .min(STRAIGHT - PER_FOLD * (off.max(1e-4) / straight.max(1e-4)).ln())
             .clamp(-8.0, 20.0);
-        let told = || format!("{:.1} % of the way made good lies along it", 100.0 * (1.0 - off));
+        let told = || format!("{:.1} % of the distance made good is along it", 100.0 * (1.0 - off));
         let figure = observed.format_figure(told);
         Some(ColumnRelation { roles: [self.roles.0, self.roles.1, Role::Course], odds, figure })
     }

@@ -7,8 +7,8 @@ use sistership_simulation::PlantError;
 pub enum ExportError {
     /// The learned correction depends on accelerations that exports do not have.
     #[error(
-        "`{model}` has a learned correction that is told the accelerations of the law `{law}`, \
-         whose masses change with the motion: exports solve such a law after all else; train a \
+        "`{model}` has a learned correction with the accelerations of the law `{law}` as inputs, \
+         but the masses of this law change with the motion, which exports do not support; train a \
          parallel correction, or export the model without `branch`"
     )]
     Correction {
@@ -18,7 +18,7 @@ pub enum ExportError {
         law: String,
     },
     /// An effect delays an input that has no steering gear.
-    #[error("`{model}` carries a lag on `{input}`; exports know lags of the rudder only")]
+    #[error("`{model}` has a lag of `{input}`; exports support a lag of the rudder only")]
     Lag {
         /// Name of the model.
         model: String,
@@ -26,7 +26,10 @@ pub enum ExportError {
         input: String,
     },
     /// An effect puts a dead band on an input that has no steering gear.
-    #[error("`{model}` carries a dead band on `{input}`; exports know that of the rudder only")]
+    #[error(
+        "`{model}` has a dead band of `{input}`; exports support a dead band of the rudder \
+             only"
+    )]
     Band {
         /// Name of the model.
         model: String,

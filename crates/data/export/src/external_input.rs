@@ -32,13 +32,13 @@ const KNOWN: [(&str, &str, &str, &str); 9] = [
     ("n", "n", "1/s", "propeller revolutions, positive drives ahead"),
     ("depth", "depth", "m", "water depth; infinite for deep water"),
     ("wind_speed", "wind_speed", "m/s", "true wind speed"),
-    ("wind_from", "wind_from", "rad", "where the true wind comes from, clockwise from north"),
+    ("wind_from", "wind_from", "rad", "direction the true wind comes from, clockwise from north"),
     ("apparent_wind_speed", "apparent_wind_speed", "m/s", "apparent wind speed"),
     (
         "apparent_wind_from",
         "apparent_wind_from",
         "rad",
-        "where the apparent wind comes from, clockwise from the bow",
+        "direction the apparent wind comes from, clockwise from the bow",
     ),
     ("recorded.t", "t_since_start", "s", "time since the start, for effects that grow with it"),
     (

@@ -10,8 +10,8 @@ pub fn header_lines(plan: &ExportPlan) -> Vec<String> {
     let mut lines = plan.provenance.clone();
     lines.push(String::new());
     lines.push(
-        "SI units and radians. Axes: x forward, y to starboard, z down, origin at midship; \
-         instruments that err in the model's trials are left out: states are true."
+        "SI units and radians. Axes: x forward, y to starboard, z down, origin at midship. \
+         Effects on instruments are not included: the states are true values."
             .to_owned(),
     );
     lines.push("States:".to_owned());
@@ -27,8 +27,7 @@ pub fn header_lines(plan: &ExportPlan) -> Vec<String> {
         format!("  {identifier} [{unit}] {meaning}{range}")
     }));
     lines.push(format!(
-        "A simulation is not believed above {:.2} m/s, {:.4} rad/s of yaw rate or {:.2} rad of \
-         roll.",
+        "A simulation is not valid above {:.2} m/s, {:.4} rad/s of yaw rate or {:.2} rad of roll.",
         plan.envelope.speed_m_s(),
         plan.envelope.yaw_rate_rad_s(),
         plan.envelope.roll_rad()

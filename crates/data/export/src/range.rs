@@ -10,8 +10,8 @@ use crate::expression::{TargetLanguage, instruction_terms, operand_text};
 /// Name of the output.
 pub const NAME: &str = "outside_range";
 /// Description of the output in exported files.
-pub const MEANING: &str = "how far speeds, yaw rate, rudder and revolutions are outside of what \
-    the trials covered, by half their range; 0 inside";
+pub const MEANING: &str = "distance of speeds, yaw rate, rudder and revolutions outside the range \
+                           covered by the trials, divided by half that range; 0 inside";
 
 /// Statements of the output, and its result.
 pub struct RangeDistance {

@@ -50,8 +50,7 @@ impl ExportSubject<'_> {
         let stated = model.particulars.iter();
         let stated = stated
             .map(|(name, quantity)| format!("  {name} = {}, {}", quantity.value, quantity.source));
-        lines
-            .push("Particulars and parameters, which stand as numbers in what follows:".to_owned());
+        lines.push("Particulars and parameters, as numbers in the code below:".to_owned());
         lines.extend(stated.chain(folded));
         lines.extend(describe_estimates(&model.particulars).map(|words| format!("Note: {words}")));
         lines.extend(trials_environment(model).map(|words| format!("Note: {words}")));
@@ -72,8 +71,8 @@ fn trials_environment(model: &Model) -> Option<String> {
         false => ranges.collect::<Vec<_>>().join(", ") + " (SI)",
     };
     Some(format!(
-        "of wind, current, waves and water depth the trials recorded {covered}; what acts beyond \
-         that does not follow from trials of this ship"
+        "of wind, current, waves and water depth the trials recorded {covered}; effects outside \
+         these ranges are not based on trials of this ship"
     ))
 }
 

@@ -31,13 +31,13 @@ pub(crate) fn bridge_gaps(table: &mut Table, limit_s: f64, findings: &mut Findin
         let (filled, open) = fill_gaps(&t, values, bounds);
         if filled > 0 {
             let message = format!(
-                "{filled} gaps of at most {limit_s} s are filled along the straight line between \
-                 their ends (`bridge_s`)"
+                "{filled} gaps of at most {limit_s} s are filled by linear interpolation \
+                 (`bridge_s`)"
             );
             findings.warning(None, Some(&column.header), message);
         }
         if open > 0 {
-            let message = format!("{open} rows lie in longer gaps, and are left out");
+            let message = format!("{open} rows are in longer gaps and are skipped");
             findings.warning(None, Some(&column.header), message);
         }
     }

@@ -67,7 +67,7 @@ impl MiscountedRows {
         match self.count - self.first.len() {
             0 => first.join(", "),
             more => format!(
-                "{}, and {more} further rows, the last of them row {}",
+                "{}, and {more} further rows, the last of which is row {}",
                 first.join(", "),
                 self.last
             ),
@@ -122,22 +122,23 @@ impl CellCounter {
     pub(crate) fn report_counts(&self, drops: bool, findings: &mut Findings) {
         if self.many.count > 0 {
             let what = match self.decimal_commas {
-                0 => "quote a cell that holds the separator, or name every column in the header",
+                0 => "quote cells that contain the separator, or give every column a header",
                 _ => {
-                    "this is what numbers with a decimal comma look like (`7,01` is read as 7 and \
-                     01): write decimals with a point, as 7.01"
+                    "this is probably a decimal comma (`7,01` is read as 7 and 01): write \
+                     decimals with a point, such as 7.01"
                 }
             };
             self.report_rows(&self.many, what, findings);
         }
         if self.closed.count > 0 && !self.is_closed_throughout() {
-            let what = "the last is empty: close the header with a separator too, or take it from \
-                        these rows; if it comes of a decimal comma, write decimals with a point";
+            let what = "the last cell is empty: end the header with a separator as well, or \
+                        remove it from these rows; if it is caused by a decimal comma, write \
+                        decimals with a point";
             self.report_rows(&self.closed, what, findings);
         }
         if self.few.count > 0 && !drops {
-            let what = "complete the rows (an empty cell still has its separator), or set \
-                        `missing: drop` in the manifest's conventions to leave them out";
+            let what = "complete the rows (an empty cell still needs its separator), or set \
+                        `missing: drop` in the manifest's conventions to skip them";
             self.report_rows(&self.few, what, findings);
         }
     }

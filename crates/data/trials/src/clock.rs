@@ -173,13 +173,13 @@ impl ColumnClock {
         let read = self.convert_values(&header, values).and_then(|read| {
             // Differences of extreme times may not be finite.
             let counted = values.iter().all(|value| value.is_finite());
-            counted.then_some(read).ok_or_else(|| "holds times too far apart to be counted".into())
+            counted.then_some(read).ok_or_else(|| "has times that are too far apart".into())
         });
         match read {
             Ok((form, start)) => {
                 let from =
                     start.as_ref().map_or(String::new(), |start| format!(", {}", start.text));
-                let message = format!("is read as {form}, counted from its first row{from}");
+                let message = format!("is read as {form}, relative to its first row{from}");
                 findings.warning(None, Some(&header), message);
                 table.start = start;
             }

@@ -138,7 +138,7 @@ fn guess_sentence(name: &str, target: ColumnTarget) -> ColumnGuess {
         channel: Some(target.name().to_owned()),
         unit: Some(UnitKind::from_target(target).canonical_unit().to_owned()),
         reversed: false,
-        why: "NMEA 0183 says what the sentence holds; it needs no mapping".into(),
+        why: "defined by the NMEA 0183 sentence".into(),
         certain: true,
         question: None,
     }
@@ -156,7 +156,7 @@ fn guess_column(column: &IdentifiedColumn, all: &Identification) -> ColumnGuess 
         question: alternative_question(column),
     };
     let Some(role) = column.role else {
-        return nothing(format!("left out: {}", column.reason), column.is_certain);
+        return nothing(format!("ignored: {}", column.reason), column.is_certain);
     };
     // Certain, since the column is left out by rule and not by evidence.
     if let Some(why) = redundancy_reason(role, all) {
@@ -164,7 +164,7 @@ fn guess_column(column: &IdentifiedColumn, all: &Identification) -> ColumnGuess 
     }
     let role = effective_role(role, all);
     if ColumnTarget::from_name(role.name()).is_none() {
-        return nothing(format!("left out: {}: no channel holds it", role.name()), true);
+        return nothing(format!("ignored: there is no channel for {}", role.name()), true);
     }
     ColumnGuess {
         file: String::new(),
@@ -182,10 +182,14 @@ fn guess_column(column: &IdentifiedColumn, all: &Identification) -> ColumnGuess 
 fn guess_reason(column: &IdentifiedColumn, role: Role) -> String {
     if column.unit == "%" {
         let maximum = format!("declare what 100 % is as `maximum` of {}", role.name());
-        return format!("{}; a percentage: {maximum}", column.reason);
+        return format!("{}; a percentage, so {maximum}", column.reason);
     }
     if Some(role) != column.role {
-        return format!("{}; a speed over ground alone is taken for that ahead", column.reason);
+        return format!(
+            "{}; without further motion data, the speed over ground is used as the \
+                        speed ahead",
+            column.reason
+        );
     }
     column.reason.clone()
 }
@@ -197,13 +201,13 @@ fn redundancy_reason(role: Role, all: &Identification) -> Option<String> {
     let body = has(Role::U) && has(Role::V);
     match role {
         Role::Latitude | Role::Longitude if metres => {
-            Some("left out: positions in metres are read".into())
+            Some("ignored: positions in metres are read instead".into())
         }
         Role::Course | Role::Speed | Role::VNorth | Role::VEast if body => {
-            Some("left out: u and v are read".into())
+            Some("ignored: u and v are read instead".into())
         }
         Role::Course | Role::Speed if has(Role::VNorth) && has(Role::VEast) => {
-            Some("left out: velocities north and east are read".into())
+            Some("ignored: velocities north and east are read instead".into())
         }
         _ => None,
     }
@@ -228,7 +232,7 @@ fn alternative_question(column: &IdentifiedColumn) -> Option<String> {
     let text = |one: &AlternativeReading| match one.role {
         Some(role) if one.is_reversed => format!("{} in {}, reversed", role.name(), one.unit),
         Some(role) => format!("{} in {}", role.name(), one.unit),
-        None => "left out".to_owned(),
+        None => "not used".to_owned(),
     };
     // Argument of the command line that settles the column in this way.
     let flag = |one: &AlternativeReading| match one.role {
@@ -256,16 +260,15 @@ fn thruster_note(found: &Identification) -> Option<String> {
     let (port, starboard) = pair.columns;
     let header = |at: usize| found.columns.get(at).map_or("", |column| column.header.as_str());
     let (steers, other) = if pair.is_opposed {
-        ("sum", ", one of them counting the other way")
+        ("sum", ", one of them with a reversed sign")
     } else {
         ("difference", "")
     };
     Some(format!(
-        "`{}` and `{}` are the commands of two thrusters{other}: the yaw rate follows their {steers} \
-         with a correlation of {:.2}, the speed ahead the other combination with {:.2}. A trial has \
-         `delta` for steering and `n` for revolutions, and no channel for a pair of thrusters nor \
-         for a command whose thrust is not known: both are left out, and `refine` cannot yet use \
-         these trials",
+        "`{}` and `{}` are the commands of two thrusters{other}: their {steers} correlates with \
+         the yaw rate ({:.2}), the other combination with the speed ahead ({:.2}). A trial has \
+         the channels `delta` and `n`, but none for a pair of thrusters: both columns are \
+         ignored, and `refine` does not support these trials yet",
         header(port),
         header(starboard),
         pair.yaw_correlation,

@@ -120,7 +120,7 @@ fn check_heading_unit(values: &[f64], recording: &Recording, findings: &mut Find
         let (header, unit) =
             (recording.column_header(Channel::Psi), recording.declared_unit(Channel::Psi));
         let message = format!(
-            "the heading jumps from {:.1} to {:.1} as a compass in degrees does, but its unit is \
+            "the heading jumps from {:.1} to {:.1} like a compass in degrees, but its unit is \
              `{unit}`; declare `deg`",
             values[k - 1],
             values[k]
@@ -138,7 +138,8 @@ fn check_wind_unit(
 ) {
     if let Some(k) = values.iter().position(|value| value.abs() > 2.0 * TAU) {
         let message = format!(
-            "{:.1} rad is more than two turns; the values look like degrees: declare `deg`",
+            "{:.1} rad is more than two full circles; the values are probably degrees: declare \
+             `deg`",
             values[k]
         );
         findings.error(

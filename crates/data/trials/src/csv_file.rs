@@ -190,7 +190,7 @@ fn read_headers(
     let problem = match headers.len() {
         0 => "the file is empty; it needs a header with column names".to_owned(),
         n if n > mapping.limits.columns => {
-            format!("{n} columns are more than the {} that are read", mapping.limits.columns)
+            format!("{n} columns are more than the limit of {}", mapping.limits.columns)
         }
         _ => return Some(headers),
     };
@@ -229,7 +229,7 @@ impl RowReader {
             let next = next.saturating_add_signed(self.shift);
             let more = reader
                 .read_byte_record(&mut record)
-                .map_err(|error| (next, format!("cannot be read on: {error}")))?;
+                .map_err(|error| (next, format!("cannot be read further: {error}")))?;
             if !more {
                 return Ok(());
             }
@@ -353,10 +353,13 @@ mod tests {
             ..crate::FileLimits::default()
         };
         assert!(run("t_s,u_m_s\n0,1\n1,1\n", &mapping).1.is_empty());
-        assert!(run("t_s,u_m_s\n0,1\n1,1\n2,1\n", &mapping).1[0].contains("more than the 2 rows"));
+        assert!(
+            run("t_s,u_m_s\n0,1\n1,1\n2,1\n", &mapping).1[0]
+                .contains("more rows than the limit of 2")
+        );
         assert!(run("t_s,u_m_s,v_m_s\n", &mapping).1[0].contains("3 columns"));
         let open = format!("t_s,u_m_s\n0,\"{}", "1\n".repeat(100_000));
-        assert!(run(&open, &mapping).1[0].contains("quote left open"));
+        assert!(run(&open, &mapping).1[0].contains("unclosed quote"));
         assert!(run("", &mapping).1[0].contains("empty"));
     }
 }

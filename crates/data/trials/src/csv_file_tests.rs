@@ -35,7 +35,7 @@ fn rows_of_other_lengths_are_told_together_with_row_and_counts() {
     assert!(text.contains("row 2 has 3 cells, row 3 has 3 cells"), "{text}");
     assert!(
         text.contains(
-            "and 4 further rows, the last of them row 10; the header has 2 (separated by `,`)"
+            "and 4 further rows, the last of which is row 10; the header has 2 (separated by `,`)"
         ),
         "{text}"
     );
@@ -81,7 +81,7 @@ fn separators_that_close_lines_are_passed_over_only_where_nothing_can_shift() {
 fn short_rows_are_left_out_only_on_demand_and_long_ones_never() {
     let (table, text) = run("t_s,u_m_s,note\n0,1,a\n1,2\n2,3,c\n", &drops());
     assert_eq!(table.unwrap().values[0], [0.0, 2.0]);
-    assert!(text.contains("row 3 left out: the row has fewer cells"), "{text}");
+    assert!(text.contains("row 3 skipped: the row has fewer cells"), "{text}");
     assert!(
         said("t_s,u_m_s,note\n0,1,a\n1,2\n2,3,c\n").contains("row 3 has 2 cells; the header has 3")
     );
@@ -168,7 +168,7 @@ fn ignored_columns_are_not_told_and_empty_ones_once() {
     mapping.declared.ignore = vec!["note".into(), "u_m_s".into()];
     let (table, text) = run("t_s,u_m_s,v_m_s,r_rad_s,note\n0,1,1,,a\n1,1,1,,b\n", &mapping);
     assert_eq!(table.unwrap().columns.len(), 2);
-    assert_eq!(text, "warning None Some(\"r_rad_s\") is empty throughout; taken as absent");
+    assert_eq!(text, "warning None Some(\"r_rad_s\") has no values; it is ignored");
 }
 
 #[test]

@@ -43,8 +43,7 @@ impl DecimalMarks {
             (Some(comma), Some(point)) => {
                 let message = format!(
                     "row {comma} has a number with a comma, row {point} one with a point; write \
-                    all \
-                     decimals with a point and leave out thousands separators"
+                     all decimals with a point, without thousands separators"
                 );
                 findings.error(Some(comma.max(point)), None, message);
             }

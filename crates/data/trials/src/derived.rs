@@ -115,7 +115,8 @@ fn gapless_segments(
         .map(|channel| channel.name())
         .collect();
     if !missing.is_empty() {
-        let message = format!("nothing can be derived without {}; map it", missing.join(", "));
+        let message =
+            format!("nothing can be derived without {}; map its column", missing.join(", "));
         findings.error(None, None, message);
         return None;
     }
@@ -131,8 +132,8 @@ fn gapless_segments(
     if lost > 0 && lost < recording.trial.len() {
         recording.leave_out(&segments.into_iter().filter(short).collect::<Vec<_>>());
         let message = format!(
-            "{lost} samples left out: between gaps there are fewer than {FEWEST}, of which no \
-            rate can be told"
+            "{lost} samples skipped: segments between gaps with fewer than {FEWEST} samples give \
+             no rate"
         );
         findings.warning(None, None, message);
     }
@@ -150,7 +151,7 @@ fn smooth_channels(
         channels.iter().filter_map(|&channel| recording.channel(channel)).collect();
     let Some(noise) = estimate_noise(t, &values, segments) else {
         let message =
-            format!("no stretch without a gap has {FEWEST} samples; nothing can be derived");
+            format!("no segment without a gap has {FEWEST} samples; nothing can be derived");
         findings.error(None, None, message);
         return None;
     };
@@ -180,11 +181,10 @@ fn insert_derived(
     // Typical and largest standard deviation over the samples.
     let sd = |share| nearest_quantile(variance.iter().map(|variance| variance.sqrt()), share);
     let message = format!(
-        "derived of {of}, not measured: a Rauch-Tung-Striebel smoother with white noise of \
-         {process_noise:.3e} {unit}2/s5 on the third derivative and \
-         readings of {reading_sd:.3e} {unit}, \
-         the most probable for this record; its standard deviation is {:.2e} {} typically, \
-         {:.2e} at most",
+        "derived from {of}, not measured: Rauch-Tung-Striebel smoother with white noise of \
+         {process_noise:.3e} {unit}2/s5 on the third derivative and a measurement noise of \
+         {reading_sd:.3e} {unit} (maximum likelihood); its standard deviation is {:.2e} {} \
+         typically, {:.2e} at most",
         sd(0.5),
         recording.canonical_unit(channel),
         sd(1.0),
@@ -218,7 +218,7 @@ mod tests {
     fn velocities_of_a_zigzag_come_back() {
         let mut ship = without(&[Channel::U, Channel::V, Channel::R]);
         let text = derive(&mut ship);
-        assert!(text.contains("Some(\"v\") derived of positions and heading"), "{text}");
+        assert!(text.contains("Some(\"v\") derived from positions and heading"), "{text}");
         for (channel, truth) in zigzag_channels() {
             if [Channel::U, Channel::V, Channel::R].contains(&channel) {
                 let found = &ship.trial.channels[&channel];
@@ -257,7 +257,7 @@ mod tests {
         ship.trial.t_s.iter_mut().skip(300).for_each(|t| *t += 10.0);
         ship.trial.t_s.iter_mut().skip(303).for_each(|t| *t += 10.0);
         let text = derive(&mut ship);
-        assert!(text.contains("3 samples left out"), "{text}");
+        assert!(text.contains("3 samples skipped"), "{text}");
         assert_eq!((ship.trial.len(), ship.rows.len()), (597, 597));
         assert!(ship.trial.channels.values().all(|values| values.len() == 597));
         assert_eq!(ship.resumed, [ship.rows[300]]);

@@ -64,7 +64,7 @@ impl Exclusion {
     pub(crate) fn to_finding(&self) -> Finding {
         let rows = self.rows.as_ref().map_or(String::new(), |rows| format!(" (rows {rows})"));
         let summary = self.summary_text();
-        let message = format!("{summary}{rows}; `sistership import` leaves them out");
+        let message = format!("{summary}{rows}; `sistership import` excludes them");
         Finding { row: None, column: self.channel.clone(), message }
     }
 }
@@ -85,7 +85,7 @@ impl TryFrom<String> for RowRanges {
         };
         let ranges = text.split(',').map(|part| {
             let found = range(part).filter(|range| !range.is_empty());
-            found.ok_or_else(|| format!("`{part}` is no row; write rows as `17, 204-209`"))
+            found.ok_or_else(|| format!("`{part}` is not a row; write rows as `17, 204-209`"))
         });
         ranges.collect::<Result<Vec<_>, _>>().map(Self)
     }

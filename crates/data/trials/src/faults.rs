@@ -22,7 +22,7 @@ pub(crate) fn table_faults(file: &str, table: &Table) -> Vec<Exclusion> {
     let backward = backward_times(t);
     if !backward.is_empty() {
         let rows = backward.into_iter().map(|k| table.rows[k]);
-        let why = "times that stand twice or go back";
+        let why = "times that are repeated or decrease";
         found.push(fault_exclusion(file, None, rows, why));
     }
     for (column, values) in table.columns.iter().zip(&table.values) {

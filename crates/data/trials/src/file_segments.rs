@@ -29,35 +29,31 @@ pub(crate) struct TimeWindow {
 /// Fault of a segment.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum SegmentFault {
-    #[error("`{field}` must be a number of seconds that is finite")]
+    #[error("`{field}` must be a finite number of seconds")]
     NotFinite { field: &'static str },
     #[error("`from` ({from}) must be before `to` ({to})")]
     Empty { from: FileTime, to: FileTime },
     #[error(
-        "`{field}`: `{text}` is no date with a time of day, nor a time of day; write it as \
-             2024-05-01T09:30:00Z, 09:30:00, or in seconds"
+        "`{field}`: `{text}` is not a time; write it as 2024-05-01T09:30:00Z, 09:30:00, or in \
+         seconds"
     )]
     NoTime { field: &'static str, text: String },
-    #[error(
-        "`{field}`: `{text}` is a time of a clock, but the file's times are seconds; give seconds"
-    )]
+    #[error("`{field}`: `{text}` is a clock time, but the file's times are seconds; give seconds")]
     NoClock { field: &'static str, text: String },
-    #[error(
-        "`{field}`: `{text}` has a date, but the file has times of day only; leave the date out"
-    )]
+    #[error("`{field}`: `{text}` has a date, but the file has times of day only; omit the date")]
     NoDate { field: &'static str, text: String },
     #[error("`from`: {from_s} s lies after the last row of the file, at {last_s} s")]
     After { from_s: f64, last_s: f64 },
     #[error("`to`: {to_s} s lies before the first row of the file, at {first_s} s")]
     Before { to_s: f64, first_s: f64 },
     #[error(
-        "`from`: {from_s} s lies before the first row of the file, at {first_s} s; leave it \
-             out to read from there"
+        "`from`: {from_s} s lies before the first row of the file, at {first_s} s; omit it to \
+         read from there"
     )]
     Early { from_s: f64, first_s: f64 },
     #[error(
-        "`to`: {to_s} s lies after the last row of the file, at {last_s} s; leave it out to \
-             read up to there"
+        "`to`: {to_s} s lies after the last row of the file, at {last_s} s; omit it to read up to \
+         there"
     )]
     Late { to_s: f64, last_s: f64 },
     #[error("overlaps with `{other}`; the same data would count twice")]
@@ -65,8 +61,8 @@ pub(crate) enum SegmentFault {
     #[error("no row of the file lies between {from_s} s and {to_s} s")]
     NoRow { from_s: f64, to_s: f64 },
     #[error(
-        "only the whole column tells what the file's times are; declare the unit of `t` (`s`, \
-             `excel`, `day/month/year`, `month/day/year`), so that a stretch can be found"
+        "the form of the file's times is ambiguous; declare the unit of `t` (`s`, `excel`, \
+         `day/month/year`, `month/day/year`), so that a segment can be found"
     )]
     Open,
 }

@@ -101,7 +101,7 @@ impl Findings {
                 severity,
                 None,
                 Some(column),
-                format!("the same in {more} further rows, the last of them row {last}"),
+                format!("the same in {more} further rows, the last of which is row {last}"),
             );
         }
     }
@@ -155,7 +155,7 @@ mod tests {
             findings.error(Some(k), None, "other");
         }
         let (errors, warnings) = findings.into_lists();
-        assert_eq!(errors[3].message, "the same in 7 further rows, the last of them row 11");
+        assert_eq!(errors[3].message, "the same in 7 further rows, the last of which is row 11");
         assert_eq!(errors.len(), MAX_ERRORS + 1);
         assert_eq!(errors[MAX_ERRORS].message, "14 further errors are not listed");
         assert!(warnings.is_empty());

@@ -24,11 +24,11 @@ pub(crate) fn ground_velocities(
         (given.0, given.1, recording.channel(Channel::Psi))
     else {
         let message =
-            "course, speed and heading give u and v together; one is missing, so none is used";
+            "u and v need course, speed and heading; one of them is missing, so that none is used";
         return findings.warning(None, None, message);
     };
     if [Channel::U, Channel::V].iter().any(|&channel| recording.channel(channel).is_some()) {
-        let message = "u or v was measured; course and speed over ground are not used";
+        let message = "u or v is measured; course and speed over ground are not used";
         return findings.warning(None, None, message);
     }
     let drift = course.iter().zip(psi).map(|(course, psi)| course - psi);
@@ -44,11 +44,12 @@ pub(crate) fn ground_velocities(
             }
             of = "of midship, by the antenna's offset and r";
         }
-        (Some(_), None) => of = "of the antenna, as there is no r to move them to midship",
+        (Some(_), None) => of = "of the antenna, because r is missing to move them to midship",
         _ => {}
     }
-    let message =
-        format!("u and v come of course and speed over ground and the heading; they are {of}");
+    let message = format!(
+        "u and v are computed from course and speed over ground and heading; they are {of}"
+    );
     findings.warning(None, None, message);
     recording.trial.channels.insert(Channel::U, u);
     recording.trial.channels.insert(Channel::V, v);
@@ -63,12 +64,12 @@ fn earth_velocities(recording: &mut Recording, findings: &mut Findings) {
     }
     let (Some(north), Some(east), Some(psi)) = (given.0, given.1, recording.channel(Channel::Psi))
     else {
-        let message = "velocities north and east and the heading give u and v together; one is \
-                       missing, so none is used";
+        let message = "u and v need velocities north and east and the heading; one of them is \
+                       missing, so that none is used";
         return findings.warning(None, None, message);
     };
     if [Channel::U, Channel::V].iter().any(|&channel| recording.channel(channel).is_some()) {
-        let message = "u or v was measured; velocities north and east are not used";
+        let message = "u or v is measured; velocities north and east are not used";
         return findings.warning(None, None, message);
     }
     let turned = north.iter().zip(&east).zip(psi).map(|((north, east), psi)| {
@@ -76,7 +77,7 @@ fn earth_velocities(recording: &mut Recording, findings: &mut Findings) {
         (north * cos + east * sin, east * cos - north * sin)
     });
     let (u, v): (Vec<f64>, Vec<f64>) = turned.unzip();
-    let message = "u and v come of velocities north and east and the heading";
+    let message = "u and v are computed from velocities north and east and the heading";
     findings.warning(None, None, message);
     recording.trial.channels.insert(Channel::U, u);
     recording.trial.channels.insert(Channel::V, v);
@@ -117,7 +118,7 @@ mod tests {
         ship.raw.insert(RawQuantity::Speed, vec![5.0; 3]);
         let mut findings = Findings::default();
         ground_velocities(&mut ship, None, &mut findings);
-        assert!(finding_messages(findings).contains("one is missing"));
+        assert!(finding_messages(findings).contains("one of them is missing"));
         assert_eq!(ship.trial.channels.len(), 1);
     }
 }

@@ -20,8 +20,8 @@ pub struct FileLimits {
 /// Returns the message on a file with more rows than the limit.
 pub(crate) fn too_many_rows(most: usize) -> String {
     format!(
-        "the file has more than the {most} rows that are read; split it, or let `sistership \
-         import` find the stretches of it that matter"
+        "the file has more rows than the limit of {most}; split it, or let `sistership import` \
+         find its segments"
     )
 }
 

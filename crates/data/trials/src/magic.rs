@@ -17,16 +17,13 @@ pub(crate) const LOOKED_AT: usize = 4096;
 
 const OTHERS: [(&[u8], &str); 18] = [
     (b"\x89HDF\r\n\x1a\n", "HDF5; write the table as CSV, Parquet or Excel"),
-    (
-        b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
-        "an Excel workbook of before 2007 (.xls); save it as .xlsx",
-    ),
+    (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "an Excel 97-2003 workbook (.xls); save it as .xlsx"),
     (b"CDF\x01", "NetCDF; write the table as CSV, Parquet or Excel"),
     (b"CDF\x02", "NetCDF; write the table as CSV, Parquet or Excel"),
-    (b"%PDF", "a PDF; export the numbers that it was made of"),
-    (b"\x89PNG", "a picture (PNG); export the numbers that it was made of"),
-    (b"\xff\xd8\xff", "a picture (JPEG); export the numbers that it was made of"),
-    (b"GIF8", "a picture (GIF); export the numbers that it was made of"),
+    (b"%PDF", "a PDF; export its numbers as CSV"),
+    (b"\x89PNG", "a picture (PNG); export its numbers as CSV"),
+    (b"\xff\xd8\xff", "a picture (JPEG); export its numbers as CSV"),
+    (b"GIF8", "a picture (GIF); export its numbers as CSV"),
     (b"\x1f\x8b", "packed by gzip; unpack it"),
     (b"BZh", "packed by bzip2; unpack it"),
     (b"\xfd7zXZ\x00", "packed by xz; unpack it"),
@@ -60,9 +57,7 @@ pub(crate) fn detect_format(start: &[u8]) -> FormatKind {
     }
     // Known binary formats come first, so that the advice names them.
     if is_binary(start) {
-        return FormatKind::Other(
-            "binary, of a kind that is not known here; export it as CSV or Parquet",
-        );
+        return FormatKind::Other("binary, of an unknown kind; export it as CSV or Parquet");
     }
     if is_nmea(start) { FormatKind::Nmea } else { FormatKind::Csv }
 }

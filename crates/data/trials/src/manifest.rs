@@ -94,7 +94,7 @@ fn trial_problems(manifest: &Manifest) -> impl Iterator<Item = ManifestProblem> 
     let none = manifest.trials.is_empty().then(|| ManifestProblem {
         field: "trials".into(),
         near: "trials:".into(),
-        message: "lists no file".into(),
+        message: "lists no trials; add one".into(),
     });
     let each = manifest.trials.iter().enumerate().filter_map(|(index, trial)| {
         let earlier = &manifest.trials[..index];
@@ -109,7 +109,7 @@ fn trial_problems(manifest: &Manifest) -> impl Iterator<Item = ManifestProblem> 
         let message = match trial.depth_m {
             _ if twice => "is listed twice; the same data would count twice".to_owned(),
             Some(depth) if !(depth > 0.0 && depth.is_finite()) => {
-                format!("depth_m must be positive, not {depth}; leave it out for deep water")
+                format!("depth_m must be positive, not {depth}; omit it for deep water")
             }
             _ => return None,
         };
@@ -147,8 +147,7 @@ fn sensors_outside(file: &ManifestFile) -> Vec<ManifestProblem> {
 }
 
 fn folder_problem(field: String, path: &str) -> ManifestProblem {
-    let message =
-        format!("`{path}` must be a path relative to the manifest that stays in its folder");
+    let message = format!("`{path}` must be a path relative to the manifest, inside its folder");
     ManifestProblem { field, near: path.to_owned(), message }
 }
 
@@ -165,11 +164,11 @@ fn exclusion_problems(file: &ManifestFile) -> impl Iterator<Item = ManifestProbl
             return Some(problem(name, message));
         }
         if !file.manifest.trials.iter().any(|trial| trial.file == one.file) {
-            let message = format!("`{}` is the file of no trial", one.file);
+            let message = format!("`{}` is not the file of a trial", one.file);
             return Some(problem(&one.file, message));
         }
         let is_open = one.rows.is_none() && one.from.is_none() && one.to.is_none();
-        is_open.then(|| problem(&one.why, "name `rows`, or `from` and `to`".into()))
+        is_open.then(|| problem(&one.why, "give `rows`, or `from` and `to`".into()))
     })
 }
 
@@ -182,12 +181,12 @@ fn declaration_problems(declared: &Declarations) -> impl Iterator<Item = Manifes
     let variation = declared.variation_deg;
     let heading = match (declared.heading, variation) {
         (North::Magnetic, None) => {
-            let message = "a magnetic heading needs the variation of the place; add \
-                           `variation_deg`, positive to the east";
+            let message = "a magnetic heading needs the magnetic variation; add `variation_deg`, \
+                           positive to the east";
             Some(problem("heading", message.into()))
         }
         (North::True, Some(_)) => {
-            let message = "is added to magnetic headings only; add `heading: magnetic`";
+            let message = "applies to magnetic headings only; add `heading: magnetic`";
             Some(problem("variation_deg", message.into()))
         }
         _ => None,
@@ -199,8 +198,8 @@ fn declaration_problems(declared: &Declarations) -> impl Iterator<Item = Manifes
     let is_aboard = declared
         .antenna
         .is_none_or(|antenna| antenna.x_m.abs() < 1000.0 && antenna.y_m.abs() < 1000.0);
-    let antenna =
-        (!is_aboard).then(|| problem("antenna", "must be on the ship, in m from midship".into()));
+    let antenna = (!is_aboard)
+        .then(|| problem("antenna", "must be a position on the ship, in m from midship".into()));
     let maximum = declared.maximum.iter().filter_map(move |(name, maximum)| {
         let message = match ColumnTarget::from_name(name) {
             None => format!("`{name}` is not a channel; channels are {}", channel_names()),
@@ -227,7 +226,7 @@ fn convention_problem(manifest: &Manifest) -> Option<ManifestProblem> {
         return Some(ManifestProblem {
             field: "conventions.bridge_s".into(),
             near: "bridge_s:".into(),
-            message: format!("must be a number of seconds, not {limit}"),
+            message: format!("must be a finite number of seconds, not {limit}"),
         });
     }
     let smoothing = manifest.conventions.smoothing?;

@@ -99,15 +99,15 @@ fn mapped_columns(
     let length = offers[time.index].length;
     for column in columns.iter().filter(|column| offers[column.index].length != length) {
         let message = format!(
-            "has {} values, time has {length}; write them on one time base, or map only those",
+            "has {} values, but time has {length}; write all variables with the same times, or \
+             map only those with the same times",
             offers[column.index].length
         );
         findings.error(None, Some(&column.header), message);
     }
     if length > mapping.limits.rows {
         let most = mapping.limits.rows;
-        let message =
-            format!("{length} values are more than the {most} that are read; split the file");
+        let message = format!("{length} values are more than the limit of {most}; split the file");
         findings.error(None, None, message);
     }
     (!findings.has_errors()).then_some(columns)
@@ -139,7 +139,7 @@ fn list_variables(
         let columns = column_count(&array);
         for column in 0..columns {
             if offers.len() == MAX_VARIABLES {
-                return Err(io::Error::other("it has more columns than are read"));
+                return Err(io::Error::other("it has too many columns"));
             }
             let whole = array.rows == 1 || array.columns == 1;
             let name = match whole {

@@ -60,8 +60,8 @@ impl<R: Read> Read for MeteredReader<R> {
         loop {
             if self.meter.0.get() > self.limit {
                 let message = format!(
-                    "a row is longer than {} bytes; is a quote left open, or is this not a CSV \
-                     file?",
+                    "a row is longer than {} bytes; check for an unclosed quote, and that this is \
+                     a CSV file",
                     self.limit
                 );
                 return Err(io::Error::new(io::ErrorKind::InvalidData, message));

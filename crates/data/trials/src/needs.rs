@@ -27,10 +27,10 @@ impl fmt::Display for MissingChannel {
 
 /// Returns every channel that the law needs and the trial does not have.
 pub fn missing_channels(law: &Law, trial: &Trial) -> Vec<MissingChannel> {
-    let state = "it is part of the state that a simulation starts from";
+    let state = "it is part of the initial state of a simulation";
     let mut needed: Vec<(Channel, &'static str)> =
         vec![(Channel::U, state), (Channel::V, state), (Channel::R, state)];
-    needed.push((Channel::Delta, "it is what steers"));
+    needed.push((Channel::Delta, "it is the steering input"));
     if law.axes.contains_key(&Axis::K) {
         let rolls = "the law has roll";
         needed.extend([(Channel::Phi, rolls), (Channel::P, rolls)]);
@@ -42,7 +42,7 @@ pub fn missing_channels(law: &Law, trial: &Trial) -> Vec<MissingChannel> {
             None if input.default.is_none() => lacks.push(MissingChannel {
                 name: name.clone(),
                 why: "it is an input of the law",
-                remedy: "no channel of a trial holds it; choose another law".into(),
+                remedy: "trials have no channel for it; choose another law".into(),
             }),
             None => {}
         }
@@ -80,8 +80,9 @@ fn channel_remedy(trial: &Trial, channel: Channel) -> String {
     };
     let by_log = channel == Channel::V && trial.velocity == VelocityFrame::Water;
     match channel {
-        Channel::V if by_log && derived => "declare `derive: [u, v]`: positions and heading give \
-            both over the ground, and the speed through the water stands beside them"
+        Channel::V if by_log && derived => "declare `derive: [u, v]`: both follow from positions \
+                                            and heading over the ground, in addition to the speed \
+                                            through the water"
             .into(),
         _ if derived => format!("map its column, or declare `derive: [{channel}]`"),
         Channel::Depth => "map its column, or give `depth_m` of the trial".into(),

@@ -254,7 +254,7 @@ impl NmeaLog {
         table.values.push(times.1.t.clone());
         table.start = self.start_time();
         if let Some(start) = &table.start {
-            let message = format!("time is counted from {}", start.text);
+            let message = format!("time is relative to {}", start.text);
             findings.warning(None, Some("UTC"), message);
         }
         let (name, readings) = chosen.remove(&base)?;
@@ -284,28 +284,28 @@ impl NmeaLog {
         if self.series.is_empty() {
             let what = match self.last {
                 None => {
-                    "no sentence tells the time (GGA, RMC or ZDA), and neither does the log \
-                    before it"
+                    "there is no time: neither in sentences (GGA, RMC or ZDA) nor in the log \
+                     before them"
                 }
-                Some(_) => "no sentence holds anything that a trial can use",
+                Some(_) => "no sentence has data for a channel of a trial",
             };
             findings.error(None, None, what);
         }
         let (damaged, first) = self.damaged;
         if damaged > 0 {
             let message =
-                format!("{damaged} sentences left out: their checksum is wrong or missing");
+                format!("{damaged} sentences skipped: their checksum is wrong or missing");
             findings.warning(Some(first), None, message);
         }
         if self.timeless > 0 {
-            let message = format!("{} sentences left out: their time is not known", self.timeless);
+            let message = format!("{} sentences skipped: their time is unknown", self.timeless);
             findings.warning(None, None, message);
         }
         let how = match self.own {
-            true => "times are those that the log has before each sentence",
+            true => "times are those of the log, before each sentence",
             false => {
-                "sentences without a time are placed between those that have one by their lines; \
-                 their order is known, their delay is not"
+                "sentences without a time get one by interpolation over their lines; their delay \
+                 is unknown"
             }
         };
         findings.warning(None, None, how);

@@ -47,7 +47,7 @@ fn sensors_meet_on_the_times_of_the_fixes_and_pauses_stay_gaps() {
     let t = of(ColumnTarget::Time);
     assert!(t.windows(2).all(|pair| pair[0] < pair[1]) && t.contains(&18.0), "{t:?}");
     assert!(!t.contains(&10.0) && t.contains(&15.0), "{t:?} {text}");
-    assert!(text.contains("AGRSA") && text.contains("which are left out"), "{text}");
+    assert!(text.contains("AGRSA") && text.contains("which are skipped"), "{text}");
     let psi = of(ColumnTarget::Channel(Channel::Psi));
     assert!(psi.iter().all(|psi| psi.is_finite()));
     // Before the first heading, and before the rudder is back.
@@ -67,9 +67,9 @@ fn the_logs_own_time_goes_before_that_of_the_sentences() {
 #[test]
 fn damaged_and_timeless_sentences_are_counted() {
     let damaged = log().replace("355.0,T", "356.0,T");
-    assert!(run(&damaged).1.contains("1 sentences left out: their checksum"));
+    assert!(run(&damaged).1.contains("1 sentences skipped: their checksum"));
     let (table, text) = run(&summed("HEHDT,90.0,T"));
-    assert!(table.is_none() && text.contains("no sentence tells the time"), "{text}");
+    assert!(table.is_none() && text.contains("there is no time"), "{text}");
     let mut mapping = Mapping::with_canonical_names();
     mapping.limits.rows = 10;
     let mut findings = Findings::default();

@@ -25,8 +25,10 @@ impl fmt::Display for CellFault {
             Self::Short => out.write_str("the row has fewer cells than the header"),
             Self::Empty => out.write_str("the cell is empty"),
             Self::NotANumber => out.write_str("the cell is not a finite number"),
-            Self::NoTime(text) => write!(out, "`{text}` is no date or time that can be read"),
-            Self::OtherTime(text) => write!(out, "`{text}` is not written as the times before it"),
+            Self::NoTime(text) => write!(out, "`{text}` is not a date or time"),
+            Self::OtherTime(text) => {
+                write!(out, "`{text}` has another form than the times before it")
+            }
             Self::Text(text) => write!(out, "`{text}` is not a number{}", number_remedy(text)),
         }
     }
@@ -96,10 +98,10 @@ fn number_remedy(text: &str) -> &'static str {
         |c: char| matches!(c, ' ' | '\u{a0}' | '\u{2009}' | '\u{202f}' | '\'' | '\u{2019}' | '_');
     let digits = text.chars().any(|c| c.is_ascii_digit());
     if text.contains('\0') {
-        "; it holds a NUL byte: the file is damaged, or is not UTF-8 text"
+        "; it contains a NUL byte: the file is damaged, or is not UTF-8 text"
     } else if digits && text.contains(',') && (text.contains('.') || text.matches(',').count() > 1)
     {
-        "; leave out the thousands separator and write decimals with a point"
+        "; remove the thousands separator and write decimals with a point"
     } else if digits && text.contains(',') {
         "; write decimals with a point"
     } else if digits && text.contains(':') {
@@ -109,7 +111,7 @@ fn number_remedy(text: &str) -> &'static str {
     } else if digits && text.contains(thousands) {
         "; write the number without separators in it"
     } else if text.starts_with("0x") || text.starts_with("-0x") {
-        "; write it in decimals"
+        "; write it as a decimal number"
     } else {
         ""
     }
@@ -172,7 +174,7 @@ mod tests {
             ("1_000", "without separators"),
             ("\u{2212}3", "minus sign"),
             ("12:00:01", "seconds"),
-            ("0x1p3", "in decimals"),
+            ("0x1p3", "as a decimal number"),
             ("1\0", "NUL"),
         ];
         for (text, wanted) in told {

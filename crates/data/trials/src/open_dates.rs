@@ -55,13 +55,13 @@ impl OpenDates {
             (Some(_), None) => Ok(true),
             (None, Some(_)) => Ok(false),
             (None, None) => {
-                Err("day and month cannot be told apart anywhere in this column; declare its unit \
-                                 as `day/month/year` or `month/day/year`"
+                Err("day and month cannot be distinguished in this column; declare its unit as \
+                     `day/month/year` or `month/day/year`"
                     .into())
             }
             (Some(one), Some(other)) => Err(format!(
-                "row {one} has the day before the month, row {other} has it after; write dates \
-                as 2024-05-31"
+                "row {one} has the day before the month, row {other} after it; write dates as \
+                 2024-05-31"
             )),
         }
     }
@@ -71,5 +71,5 @@ fn day_of_code(slot: i64, day_first: bool) -> Result<i64, String> {
     let (year, first, second) = (slot / 10_000, slot / 100 % 100, slot % 100);
     let (month, of_month) = if day_first { (second, first) } else { (first, second) };
     day_of_date(year, month, of_month)
-        .ok_or_else(|| format!("there is no {year:04}-{month:02}-{of_month:02}; correct the date"))
+        .ok_or_else(|| format!("{year:04}-{month:02}-{of_month:02} is not a date; correct it"))
 }

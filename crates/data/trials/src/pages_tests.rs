@@ -77,7 +77,7 @@ fn a_header_that_lies_is_found_out_before_its_page_is_unpacked() {
         assert_eq!(lying[at..at + 4], size, "{:02x?}", &lying[start as usize..start as usize + 12]);
         lying[at + 3] = 0x01;
         let error = second(&lying.into(), 16 << 20).unwrap_err();
-        assert!(error.contains("larger than its header says"), "{error}");
+        assert!(error.contains("larger than declared in its header"), "{error}");
     }
 }
 

@@ -36,12 +36,12 @@ fn pair_mean(
             );
             (message, mean.collect())
         }
-        (Some(values), None) => ("is that of the starboard side alone".to_owned(), values),
-        (None, Some(values)) => ("is that of the port side alone".to_owned(), values),
+        (Some(values), None) => ("is that of the starboard side only".to_owned(), values),
+        (None, Some(values)) => ("is that of the port side only".to_owned(), values),
         (None, None) => return None,
     };
     if recording.channel(channel).is_some() {
-        let message = "its own column is read; those of starboard and port are not";
+        let message = "the common column is read; those of starboard and port are not";
         findings.warning(None, Some(channel.name()), message);
         return None;
     }
@@ -69,7 +69,7 @@ mod tests {
         assert_eq!(means[1], (Channel::N, vec![2.0; 3]));
         assert!(means[0].1.iter().all(|value| (value - 0.2).abs() < 1e-12));
         let text = finding_messages(findings);
-        assert!(text.contains("up to 0.2000 rad apart") && text.contains("port side alone"));
+        assert!(text.contains("up to 0.2000 rad apart") && text.contains("port side only"));
     }
 
     #[test]

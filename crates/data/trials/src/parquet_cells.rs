@@ -77,7 +77,7 @@ impl ColumnCells {
         }
         let (read, rows) = (self.read, self.rows);
         Err(ParquetError::General(format!(
-            "a column holds {read} values where {rows} are promised"
+            "a column has {read} values instead of the {rows} announced"
         )))
     }
 }

@@ -170,7 +170,7 @@ fn check_types(schema: &SchemaDescriptor, columns: &[TableColumn], findings: &mu
         let found = schema.column(column.index);
         if !is_number(&found) {
             let message = format!(
-                "holds {} values; write the column as DOUBLE, FLOAT, INT32 or INT64",
+                "has {} values; write the column as DOUBLE, FLOAT, INT32 or INT64",
                 type_name(&found)
             );
             findings.error(Some(1), Some(&column.header), message);

@@ -63,8 +63,11 @@ fn text_is_no_channel_and_sizes_are_bounded() {
     assert!(read_parquet(foreign(), &mapping, &mut findings).is_none());
     assert!(finding_messages(findings).contains("write the column as DOUBLE"));
     for (limits, said) in [
-        (FileLimits { rows: 2, ..FileLimits::default() }, "3 rows are more than the 2"),
-        (FileLimits { columns: 2, ..FileLimits::default() }, "3 columns are more than the 2"),
+        (FileLimits { rows: 2, ..FileLimits::default() }, "3 rows are more than the limit of 2"),
+        (
+            FileLimits { columns: 2, ..FileLimits::default() },
+            "3 columns are more than the limit of 2",
+        ),
     ] {
         assert!(open_file(foreign(), limits).err().unwrap().to_string().contains(said));
     }

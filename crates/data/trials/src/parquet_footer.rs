@@ -20,16 +20,16 @@ pub(crate) fn catch_panics<T>(work: impl FnOnce() -> ParquetResult<T>) -> Parque
 /// Reason for which a file is not read at all.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum FileRefusal {
-    #[error("not a Parquet file that can be read: {0}")]
+    #[error("not a valid Parquet file: {0}")]
     Unreadable(String),
-    #[error("{found} bytes about the file at its end are more than the {most} that are read")]
+    #[error("the footer has {found} bytes, more than the limit of {most}")]
     Footer { found: u64, most: usize },
     #[error(
-        "{found} rows are more than the {most} that are read; split the file, or let `sistership \
-             import` find the stretches of it that matter"
+        "{found} rows are more than the limit of {most}; split the file, or let `sistership \
+         import` find its segments"
     )]
     Rows { found: usize, most: usize },
-    #[error("{found} columns are more than the {most} that are read")]
+    #[error("{found} columns are more than the limit of {most}")]
     Columns { found: usize, most: usize },
 }
 

@@ -33,7 +33,10 @@ pub(crate) fn fixes_to_metres(recording: &mut Recording, findings: &mut Findings
     if !off.is_empty() {
         findings.report_rows(Severity::Error, RawQuantity::Latitude.name(), &off, |k| {
             let (north, east) = (latitude[k].to_degrees(), longitude[k].to_degrees());
-            format!("{north:.4} deg north, {east:.4} deg east is no place; declare `deg` or `rad`")
+            format!(
+                "{north:.4} deg north, {east:.4} deg east is not a position; declare `deg` or \
+                     `rad`"
+            )
         });
         return;
     }
@@ -88,8 +91,7 @@ pub(crate) fn move_to_midship(
             }
         }
         None => {
-            let message =
-                "an antenna off midship needs a heading; map `psi`, or leave `antenna` out";
+            let message = "an antenna off midship needs a heading; map `psi`, or remove `antenna`";
             findings.error(None, None, message);
         }
     }

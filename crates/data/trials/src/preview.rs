@@ -74,7 +74,9 @@ pub(crate) fn preview_file(name: &str, path: &Path) -> io::Result<FilePreview> {
             Ok(FilePreview { sentences, ..FilePreview::default() })
         }
         InputContent::Other(what) => Err(io::Error::other(format!("the file is {what}"))),
-        InputContent::ParquetBytes(_) => Err(io::Error::other("bytes are no file")),
+        InputContent::ParquetBytes(_) => {
+            Err(io::Error::other("the content is not a file that can be read"))
+        }
     }
 }
 

@@ -65,7 +65,7 @@ pub fn propose_files(request: &ProposalRequest) -> Result<ManifestProposal, Vec<
         }
     }
     if set.files.is_empty() && errors.is_empty() {
-        errors.push(refuse_file(Path::new(""), "no file is named"));
+        errors.push(refuse_file(Path::new(""), "give at least one file"));
     }
     if !errors.is_empty() {
         return Err(errors);

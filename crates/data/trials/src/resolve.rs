@@ -121,7 +121,7 @@ impl ColumnResolver<'_> {
         {
             let says = if self.is_mapped(target) { "the manifest says" } else { "its name says" };
             let message = format!(
-                "the header says `{named}`, {says} `{}`; correct the one that is wrong",
+                "the header has the unit `{named}`, but {says} `{}`; correct the wrong one",
                 unit.trim()
             );
             let header = header.clone();
@@ -135,7 +135,7 @@ impl ColumnResolver<'_> {
         // Two columns with the same header cannot be distinguished by name.
         match (found.next(), found.next()) {
             (Some((index, _)), None) => Ok(index),
-            (Some(_), Some(_)) => Err("this name heads two columns; rename one of them".into()),
+            (Some(_), Some(_)) => Err("two columns have this name; rename one of them".into()),
             (None, _) => Err(format!(
                 "no such column{}; the file has {}",
                 self.suggest_name(wanted),
@@ -276,7 +276,7 @@ impl ColumnResolver<'_> {
                 )
             } else if let Some(first) = before.iter().find(|first| first.index == column.index) {
                 format!(
-                    "is mapped to {} and to {}; a column holds one channel",
+                    "is mapped to {} and to {}; a column can be mapped to one channel only",
                     first.target.name(),
                     column.target.name()
                 )
@@ -345,8 +345,8 @@ pub(crate) fn unit_factor(
             Ok(full.value / 100.0 * UnitKind::from_target(target).unit_to_si(&full.unit)?)
         }
         None => Err(format!(
-            "`%` needs what 100 % is; declare `maximum: {{ {of_pair}: {{ value: ..., unit: {} }} \
-            }}`",
+            "`%` needs the value of 100 %; declare `maximum: {{ {of_pair}: {{ value: ..., unit: \
+             {} }} }}`",
             UnitKind::from_target(target).canonical_unit()
         )),
     }

@@ -99,7 +99,7 @@ fn a_header_and_a_manifest_agree_on_the_unit() {
     ] {
         let time = if name == "t" { "u_m_s" } else { "t_s" };
         let (columns, text) = run(&[time, header], &mapped(&[(name, header, unit)]));
-        assert!(columns.is_none() && text.contains("the header says"), "{header}: {text}");
+        assert!(columns.is_none() && text.contains("the header has the unit"), "{header}: {text}");
     }
     for (name, header, unit) in [
         ("u", "log_kn", "kn"),

@@ -126,8 +126,8 @@ impl<'a> TableBuilder<'a> {
         self.faulty += 1;
         if self.missing == MissingValues::Refuse && self.faulty <= LISTED {
             let message = format!(
-                "{fault}; fill it in, or set `missing: drop` in the manifest's conventions to \
-                 leave such rows out"
+                "{fault}; enter a value, or set `missing: drop` in the manifest's conventions to \
+                 skip such rows"
             );
             self.findings.error(Some(row), Some(&column), message);
         }
@@ -144,8 +144,7 @@ impl<'a> TableBuilder<'a> {
         } else {
             format!("rows {} to {}", run.first, run.last)
         };
-        let message =
-            format!("{rows} left out: {}; nothing is interpolated over the gap", run.fault);
+        let message = format!("{rows} skipped: {}; the gap is not interpolated", run.fault);
         self.findings.warning(Some(run.first), Some(&run.column), message);
     }
 
@@ -164,7 +163,7 @@ impl<'a> TableBuilder<'a> {
             self.findings.error(
                 None,
                 None,
-                format!("{more} further rows hold cells without a number{end}"),
+                format!("{more} further rows have cells without a number{end}"),
             );
         }
         self.table
@@ -181,12 +180,12 @@ impl<'a> TableBuilder<'a> {
                 let column = self.table.columns.remove(position);
                 self.table.values.remove(position);
                 self.gaps.remove(position);
-                let message = "is empty throughout; taken as absent";
+                let message = "has no values; it is ignored";
                 self.findings.warning(None, Some(&column.header), message);
             }
         }
         if self.table.columns.iter().all(|column| column.target == ColumnTarget::Time) {
-            self.findings.error(None, None, "no column of a channel holds any number");
+            self.findings.error(None, None, "no column of a channel contains numbers");
         }
     }
 }
@@ -287,7 +286,7 @@ mod tests {
         assert!(errors.is_empty());
         assert_eq!(table.rows, [2, 3, 7, 8, 9, 10]);
         assert_eq!(table.values[0][0], 1.0);
-        assert!(warnings[0].message.starts_with("rows 4 to 6 left out"), "{}", warnings[0].message);
+        assert!(warnings[0].message.starts_with("rows 4 to 6 skipped"), "{}", warnings[0].message);
         assert_eq!((warnings.len(), warnings[1].row), (2, Some(11)));
     }
 
@@ -327,14 +326,14 @@ mod tests {
     fn a_column_that_is_empty_throughout_is_absent() {
         let (table, text) = columns(MissingValues::Refuse, |_| false);
         assert_eq!((table.columns.len(), table.values.len(), table.rows.len()), (2, 2, 10));
-        assert_eq!(text, "warning None Some(\"v\") is empty throughout; taken as absent");
+        assert_eq!(text, "warning None Some(\"v\") has no values; it is ignored");
     }
 
     #[test]
     fn a_column_that_begins_late_makes_the_rows_before_faulty() {
         let (table, text) = columns(MissingValues::Drop, |row| row > 5);
         assert_eq!((table.rows[0], table.values[2][0], table.resumed[0]), (6, 6.0, 6));
-        assert!(text.contains("rows 2 to 5 left out: the cell is empty"), "{text}");
+        assert!(text.contains("rows 2 to 5 skipped: the cell is empty"), "{text}");
         let (_, text) = columns(MissingValues::Refuse, |row| row > 5);
         assert_eq!(text.lines().count(), 4, "{text}");
         assert!(text.contains("error Some(2) Some(\"v\") the cell is empty"), "{text}");
@@ -348,7 +347,7 @@ mod tests {
             _ => false,
         });
         assert_eq!(table.rows[0], 5);
-        let told = "warning Some(2) Some(\"v\") rows 2 to 4 left out: the cell is empty";
+        let told = "warning Some(2) Some(\"v\") rows 2 to 4 skipped: the cell is empty";
         assert!(text.starts_with(told), "{text}");
     }
 

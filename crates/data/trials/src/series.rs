@@ -59,8 +59,8 @@ pub(crate) fn offset_s(
         (Some(starts), declared) => Ok(starts + declared.unwrap_or(0.0)),
         (None, Some(declared)) => Ok(declared),
         (None, None) => {
-            Err("only one of the files has times of a calendar; declare `clock_offset_s`, which \
-                             is added to its seconds to have those of the first file"
+            Err("only one of the files has calendar times; declare `clock_offset_s`, which is \
+                 added to its times to give those of the first file"
                 .into())
         }
     }
@@ -81,15 +81,15 @@ pub(crate) fn join_series(table: &mut Table, series: Vec<SensorSeries>, findings
         }
         // The binary search of the interpolation needs strictly increasing times.
         if t.windows(2).any(|pair| pair[0] >= pair[1]) {
-            let message = "its time does not increase throughout; sort its rows, each once";
+            let message = "its time does not increase throughout; sort its rows and remove \
+                           repeated ones";
             findings.error(None, Some(&column.header), message);
             continue;
         }
         let sampled = resample_series(&table.values[at], &t, &values, is_angle(column.target));
         if sampled.lost > 0 {
             let message = format!(
-                "has no reading near {} of {} rows, which are left out; nothing is interpolated \
-                over a gap",
+                "has no reading near {} of {} rows, which are skipped; gaps are not interpolated",
                 sampled.lost,
                 table.rows.len()
             );

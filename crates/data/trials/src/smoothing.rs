@@ -125,8 +125,8 @@ pub(crate) fn smooth_recording(
     }
     if let Some(k) = find_uneven_step(recording) {
         let message = format!(
-            "the step here differs from the median of {:.4} s by more than a tenth, and smoothing \
-             needs even steps; resample the file or leave `smoothing` out",
+            "the step here differs from the median of {:.4} s by more than a tenth, but smoothing \
+             needs even steps; resample the file or remove `smoothing`",
             recording.interval_s
         );
         return findings.error(Some(recording.row_number(k)), Some(&recording.time), message);
@@ -151,7 +151,7 @@ fn smooth_segment(
 ) {
     if segment.len() < smoothing.window {
         let message = format!(
-            "{} samples between gaps are fewer than the smoothing window; left as recorded",
+            "{} samples between gaps are fewer than the smoothing window and are not smoothed",
             segment.len()
         );
         return findings.warning(Some(recording.row_number(segment.start)), None, message);

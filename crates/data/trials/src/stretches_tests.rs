@@ -72,7 +72,7 @@ fn dates_and_times_of_day_name_a_stretch() {
     assert_eq!(ends(&read(of_day, "time", undated)[0]), (610.0, 620.0));
     let over =
         refused(&read(of_day, "time", &undated.replace("'00:00:10'", "2024-05-01T10:00:00"))[0]);
-    assert!(over.contains("`from`") && over.contains("leave the date out"), "{over}");
+    assert!(over.contains("`from`") && over.contains("omit the date"), "{over}");
 }
 
 #[test]
@@ -123,7 +123,7 @@ fn manifests_refuse_what_is_wrong_without_the_file() {
     let text = refused("  - { file: a.csv, from: .nan }\n");
     assert!(text.contains("trials[0].from") && text.contains("finite"), "{text}");
     let text = refused("  - { file: a.csv, from: noon }\n");
-    assert!(text.contains("`noon` is no date"), "{text}");
+    assert!(text.contains("`noon` is not a time"), "{text}");
     let text = refused("  - { file: a.csv, to: 10 }\n  - { file: a.csv, from: 9, to: 12 }\n");
     assert!(text.contains("trials[1].from: overlaps with `a.csv#t=,10`"), "{text}");
     assert!(refused("  - { file: a.csv, to: 10 }\n  - { file: a.csv }\n").contains("twice"));
@@ -146,7 +146,7 @@ fn rows_outside_of_stretches_may_be_faulty_and_are_not_held() {
     let source = || crate::TrialFile::open("log.csv", &path).unwrap();
     assert!(crate::check_source(source(), &mapping(99.0)).is_accepted());
     let outcome = crate::check_source(source(), &mapping(100.0));
-    assert!(outcome.errors[0].message.contains("more than the 100 rows"), "{outcome:?}");
+    assert!(outcome.errors[0].message.contains("more rows than the limit of 100"), "{outcome:?}");
     std::fs::write(
         folder.path().join("m.yaml"),
         "kind: trials\nship: a\ntrials:\n  \

@@ -24,17 +24,17 @@ pub(crate) fn assign_velocities(recording: &mut Recording, findings: &mut Findin
     // Findings refer to the first speed through the water that was recorded.
     let Some(&(log, _)) = AXES.iter().find(|(water, _)| has(*water)) else { return };
     if has(Channel::U) {
-        let message = "speed through the water beside velocities over the ground: what it differs \
-                       by is a current, or the error of a log";
+        let message = "there are speeds through the water and over the ground: their difference \
+                       is a current or an error of the log";
         return findings.warning(None, Some(recording.column_header(log)), message);
     }
     if has(Channel::V) {
-        let message = "is taken to be through the water, as the only speed ahead is; where it is \
-                       over the ground, map position and heading and declare `derive: [u]`";
+        let message = "is assumed to be through the water, because it is the only speed ahead; if \
+                       it is over the ground, map position and heading and declare `derive: [u]`";
         findings.warning(None, Some(recording.column_header(Channel::V)), message);
     }
-    let message = "u and v are speeds through the water, and nothing gives those over the ground: \
-                   a current shows in the positions only";
+    let message = "u and v are speeds through the water, and there are none over the ground: a \
+                   current is visible in the positions only";
     findings.warning(None, Some(recording.column_header(log)), message);
     AXES.iter().for_each(|&axis| move_channel(recording, axis));
     recording.trial.velocity = VelocityFrame::Water;
@@ -68,7 +68,13 @@ mod tests {
         let at = |channel| ship.trial.channels[&channel][0];
         assert_eq!((at(Channel::U), at(Channel::UWater)), (4.0, 5.0));
         assert_eq!(ship.trial.velocity, VelocityFrame::Ground);
-        assert!(text.contains("Some(\"u_water_m_s\") speed through the water beside"), "{text}");
+        assert!(
+            text.contains(
+                "Some(\"u_water_m_s\") there are speeds through the water and over \
+                               the ground"
+            ),
+            "{text}"
+        );
     }
 
     #[test]
@@ -78,7 +84,7 @@ mod tests {
         assert_eq!((at(Channel::U), at(Channel::V)), (5.0, 0.2));
         assert_eq!(ship.trial.velocity, VelocityFrame::Water);
         assert_eq!(ship.trial.channels.len(), 2);
-        assert!(text.contains("a current shows in the positions only"), "{text}");
+        assert!(text.contains("a current is visible in the positions only"), "{text}");
         assert!(settled(&[(Channel::UWater, 5.0), (Channel::V, 0.2)]).1.contains("derive: [u]"));
     }
 }

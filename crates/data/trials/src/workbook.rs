@@ -47,7 +47,7 @@ pub(crate) fn read_workbook(
         Ok((table, sheet, others)) => {
             if others > 0 && mapping.declared.sheet.is_none() {
                 let message =
-                    format!("the sheet `{sheet}` is read; declare `sheet` if another is meant");
+                    format!("the sheet `{sheet}` is read; declare `sheet` to read another one");
                 findings.warning(None, None, message);
             }
             table
@@ -160,7 +160,7 @@ impl<'a, 'b> SheetLines<'a, 'b> {
             let (row, column) = (row as usize, column as usize);
             if column >= self.columns || row >= self.rows {
                 let message = format!(
-                    "a cell in row {}, column {} is beyond what is read",
+                    "a cell in row {}, column {} is beyond the limits of rows and columns",
                     row + 1,
                     column + 1
                 );

@@ -80,7 +80,7 @@ fn what_would_fill_the_memory_is_refused_before_it_is_opened() {
     let mut mapping = Mapping::with_canonical_names();
     mapping.limits.unpacked_bytes = 100_000;
     let bomb = " ".repeat(200_000);
-    assert!(run(book(STRINGS, &bomb), &mapping).1.contains("unpacked bytes"));
+    assert!(run(book(STRINGS, &bomb), &mapping).1.contains("bytes unpacked"));
     let far = r#"<row r="1"><c r="XFD1"><v>1</v></c></row>"#;
     assert!(run(book(STRINGS, far), &canonical).1.contains("error"));
     let back = format!(r#"{ROWS}<row r="2"><c r="A2"><v>1</v></c></row>"#);

@@ -60,7 +60,7 @@ fn a_log_of_a_circle_gives_its_velocities() {
         assert!(derived.variance.iter().all(|variance| variance.is_finite() && *variance >= 0.0));
     }
     let told = |text: &str| trial.warnings.iter().any(|told| told.message.contains(text));
-    assert!(told("derived of positions and heading") && told("first fix"));
+    assert!(told("derived from positions and heading") && told("first fix"));
 }
 
 #[test]

@@ -103,7 +103,7 @@ fn missing_values_are_refused_unless_they_may_be_dropped() {
         dropped
             .warnings
             .iter()
-            .any(|warning| warning.message.starts_with("rows 1703 to 2029 left out"))
+            .any(|warning| warning.message.starts_with("rows 1703 to 2029 skipped"))
     );
     mapping.conventions.missing = sistership_model::manifest::MissingValues::Refuse;
     let refusal = read(&file, &mapping).unwrap_err();
@@ -172,7 +172,7 @@ fn broken_conventions_are_found_in_most_real_files() {
                 .iter_mut()
                 .filter(|(name, _)| name == "r")
                 .for_each(|(_, r)| r.column = header.clone());
-            assert_eq!(told(&mapping, "the header says `rad/s`", &text), 1);
+            assert_eq!(told(&mapping, "the header has the unit `rad/s`", &text), 1);
         }
     }
     println!("{files} files: rudder sign found in {rudder}, yaw rate in wrong unit in {degrees}");

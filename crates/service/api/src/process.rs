@@ -59,7 +59,7 @@ impl Process {
             self.archive.store.close().await;
         };
         if tokio::time::timeout(self.bound, ended).await.is_err() {
-            tracing::warn!("not everything under way has ended in time");
+            tracing::warn!("some work was still in progress at the deadline");
         }
     }
 }

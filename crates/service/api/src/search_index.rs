@@ -21,7 +21,7 @@ pub(crate) async fn run_loop(app: App) {
         let mut pause = app.leases().poll;
         tokio::select! {
             done = work => if let Err(error) = done {
-                tracing::error!(%error, "what ships are found by could not be written");
+                tracing::error!(%error, "the search index of ships could not be updated");
                 pause = pause.max(RETRY_DELAY);
             },
             () = stopping.wait() => return,

@@ -18,7 +18,7 @@ pub enum StartError {
     #[error("the API key must be one or more printable ASCII characters without spaces")]
     Key,
     /// Workers prolong their leases too rarely: every job would be taken over while it runs.
-    #[error("the beat of a worker must be shorter than its lease")]
+    #[error("the heartbeat interval of a worker must be shorter than its lease")]
     Leases,
     /// The limit of connections per address is zero or above the total.
     #[error("connections_per_address must be from 1 to the number of connections")]
@@ -43,7 +43,7 @@ pub enum StartError {
     #[error("cannot open the store: {0}")]
     Store(#[from] sistership_store::StoreError),
     /// An OpenID provider is set, but people do not sign in.
-    #[error("oidc issuer: people sign in only where accounts are asked for; set --accounts, too")]
+    #[error("oidc issuer: sign-in needs accounts; set --accounts as well")]
     OpenIdWithoutAccounts,
     /// The client of the OpenID provider cannot be set up.
     #[error("oidc: {0}")]

@@ -45,7 +45,7 @@ pub(crate) async fn run_once(app: &App) {
         tracing::warn!(%error, "the uploads of ended processes could not be removed");
     }
     if let Err(error) = app.objects().clear_staged().await {
-        tracing::warn!(%error, "what ended processes have left of objects could not be removed");
+        tracing::warn!(%error, "unfinished objects of ended processes could not be removed");
     }
     check_free_space(app).await;
 }
@@ -55,12 +55,13 @@ async fn check_free_space(app: &App) {
     // Only a change is logged.
     let before = app.is_out_of_space().load(Ordering::Relaxed);
     match found {
-        Ok(true) if before => tracing::info!("there is room to write again"),
+        Ok(true) if before => tracing::info!("there is free space to write again"),
         Ok(false) if !before => tracing::error!(
-            "there is no room to write; reading goes on, and writing once there is room"
+            "there is no free space to write; reading continues, and writing will as soon as \
+             there is space"
         ),
         Err(error) => {
-            return tracing::warn!(%error, "whether there is room to write could not be found out");
+            return tracing::warn!(%error, "the free space could not be determined");
         }
         _ => {}
     }

@@ -77,11 +77,16 @@ impl FromStr for Grant {
             _ => None,
         };
         let scope = scope.ok_or_else(|| {
-            format!("`{text}` is no role; write reader, engineer@ship:NAME or approver@family:NAME")
+            format!(
+                "`{text}` is not a role; write reader, engineer@ship:NAME or \
+                     approver@family:NAME"
+            )
         })?;
         match role {
             // An administrator manages users and keys, which belong to no ship or family.
-            Role::Admin => Err("the role admin is given for the whole server only".to_owned()),
+            Role::Admin => {
+                Err("the role admin cannot be restricted to a ship or family".to_owned())
+            }
             role => Ok(Self { scope, role }),
         }
     }

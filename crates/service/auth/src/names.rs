@@ -20,12 +20,12 @@ pub fn check_name(name: &str) -> Result<(), String> {
     let first = name.chars().next().is_some_and(|c| c.is_ascii_alphanumeric());
     match first && name.len() <= 64 && name.chars().all(allowed) {
         true if is_reserved_name(name) => {
-            Err(format!("`{name}` stands for the program itself; choose another name"))
+            Err(format!("`{name}` is reserved for the program; choose another name"))
         }
         true => Ok(()),
         false => {
-            Err("must be 1 to 64 lower-case letters, digits, `.`, `-`, `_` or `@`, the first \
-                      a letter or digit"
+            Err("must be 1 to 64 lower-case letters, digits, `.`, `-`, `_` or `@`, and start with \
+                 a letter or digit"
                 .to_owned())
         }
     }

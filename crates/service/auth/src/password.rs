@@ -29,14 +29,16 @@ pub fn check_password(password: &str) -> Result<(), String> {
     let characters = password.chars().count();
     if characters < FEWEST || password.len() > MOST {
         return Err(format!(
-            "must have {FEWEST} characters at least and {MOST} bytes at most; it may have spaces, \
-             so that a sentence will do"
+            "must have at least {FEWEST} characters and at most {MOST} bytes; spaces are allowed, \
+             so that a sentence can be used"
         ));
     }
     if independent_parts(password) < FEWEST_PARTS {
-        return Err("is among the first to be guessed: it is made of repetitions, sequences or \
-             words that everybody tries; a sentence of your own will do"
-            .to_owned());
+        return Err(
+            "is easy to guess: it consists of repetitions, sequences or common words; use \
+                    a sentence of your own"
+                .to_owned(),
+        );
     }
     Ok(())
 }

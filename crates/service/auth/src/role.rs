@@ -44,7 +44,7 @@ impl FromStr for Role {
     fn from_str(name: &str) -> Result<Self, String> {
         let role = Self::ALL.into_iter().find(|role| role.as_str() == name);
         role.ok_or_else(|| {
-            format!("there is no role `{name}`; there are reader, engineer, approver and admin")
+            format!("there is no role `{name}`; choose one of reader, engineer, approver and admin")
         })
     }
 }

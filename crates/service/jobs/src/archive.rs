@@ -65,7 +65,7 @@ impl Archive {
         match library::store_library(&store).await {
             // Not fatal: derivations of this release wait for space on the disk, too.
             Err(error) if error.is_out_of_space() => {
-                tracing::error!(%error, "the library of effects could not be kept")
+                tracing::error!(%error, "the library of effects could not be stored")
             }
             other => other?,
         }
@@ -134,7 +134,7 @@ impl Archive {
         let found = match self.store.effect_libraries().get(hash).await {
             Err(StoreError::NotFound { .. }) => {
                 let mend = "restore it from a backup, or open the store once with a release that \
-                    carries it";
+                            includes it";
                 return Err(DeriveError::Lost(format!(
                     "the store has no library of effects {hash}: {mend}"
                 )));
@@ -182,7 +182,7 @@ fn check_hash(what: &str, document: &str, hash: &str) -> Result<()> {
     match sha256_hex(document.as_bytes()) {
         actual if actual == hash => Ok(()),
         actual => Err(DeriveError::Lost(format!(
-            "{what} has the hash {actual}, not {hash}: it is damaged or another one"
+            "{what} has the hash {actual} instead of {hash}: it is damaged or was replaced"
         ))),
     }
 }
@@ -195,5 +195,5 @@ pub fn version_document(version: &Version) -> Result<VersionDocument> {
 }
 
 fn damaged_document(kind: &str, name: &str, error: &serde_json::Error) -> DeriveError {
-    DeriveError::Lost(format!("the document of the {kind} `{name}` does not read: {error}"))
+    DeriveError::Lost(format!("the document of the {kind} `{name}` cannot be parsed: {error}"))
 }

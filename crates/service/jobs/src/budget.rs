@@ -39,7 +39,11 @@ pub struct MemoryShare {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum MemoryShortage {
     /// More than the whole budget.
-    #[error("this takes about {} MiB of memory, more than the {} MiB that there are ({setting})", mib(*.needed), mib(*.bytes))]
+    #[error(
+        "this needs about {} MiB of memory, more than the limit of {} MiB ({setting})",
+        mib(*.needed),
+        mib(*.bytes)
+    )]
     Never {
         /// Requested size, bytes.
         needed: u64,
@@ -50,7 +54,7 @@ pub enum MemoryShortage {
     },
     /// More than what is free at the moment.
     #[error(
-        "this takes about {} MiB of memory, and {} of {} MiB are free at the moment ({setting})",
+        "this needs about {} MiB of memory, but {} of {} MiB are free at the moment ({setting})",
         mib(*.needed), .free / (1 << 20), mib(*.bytes)
     )]
     Busy {
@@ -269,7 +273,7 @@ mod tests {
         let never = budget.reserve(5 * MIB, Duration::from_secs(60)).await.unwrap_err();
         assert_eq!(
             never.to_string(),
-            "this takes about 5 MiB of memory, more than the 4 MiB that there are (--memory-mb)"
+            "this needs about 5 MiB of memory, more than the limit of 4 MiB (--memory-mb)"
         );
         assert!(matches!(never, MemoryShortage::Never { .. }));
         let most = budget.try_reserve(3 * MIB).unwrap();

@@ -192,7 +192,8 @@ impl CachedShips {
 /// Logs a row that cannot be parsed; the others are served.
 fn log_failure(kind: &str, name: &str, error: Option<sistership_model::FileError>) {
     if let Some(error) = error {
-        tracing::error!(%error, "the {kind} `{name}` of the database does not read and is left out");
+        tracing::error!(%error, "the {kind} `{name}` of the database cannot be parsed and is \
+                                 ignored");
     }
 }
 

@@ -157,14 +157,14 @@ fn champion_as_source(zoo: &Zoo, version: &Version) -> std::result::Result<Optio
     if let Some(effect) = model.effects.first() {
         // An effect was identified for one ship in its own trials and does not transfer.
         return Err(format!(
-            "its champion, version {number}, carries the effect {}, which is its own",
+            "its champion, version {number}, has the effect {}, which cannot be transferred",
             effect.name
         ));
     }
     match zoo.law(&model.law) {
         Some(_) => Ok(Some(model)),
         None => Err(format!(
-            "its champion, version {number}, has the law {}, which is missing",
+            "its champion, version {number}, has the law {}, which is not in the store",
             model.law
         )),
     }

@@ -38,6 +38,6 @@ pub enum DeriveError {
     #[error("a document cannot be written: {0}")]
     Json(#[from] serde_json::Error),
     /// The thread of the computation ended without a result.
-    #[error("the computation broke off: {0}")]
+    #[error("the computation was aborted by an internal error: {0}")]
     Broken(#[from] tokio::task::JoinError),
 }

@@ -96,10 +96,10 @@ impl<'a> DerivationInputs<'a> {
             (self.read.lock().unwrap_or_else(PoisonError::into_inner), recipe.all_inputs());
         let unnamed = read
             .difference(&named)
-            .map(|input| format!("{input} was read, but the recipe does not name it"));
+            .map(|input| format!("{input} was read, but is not listed in the recipe"));
         let unread = named
             .difference(&read)
-            .map(|input| format!("the recipe names {input}, which was not read"));
+            .map(|input| format!("{input} is listed in the recipe, but was not read"));
         let faults: Vec<String> = unnamed.chain(unread).collect();
         if faults.is_empty() { Ok(()) } else { Err(DeriveError::Lost(faults.join("; "))) }
     }

@@ -46,14 +46,14 @@ impl ChampionComparison {
     pub fn describe(&self) -> String {
         let Self { error, champion, seen_by_champion, trials } = self;
         let champion = match champion {
-            Some(champion) => format!("the champion's is {champion:.4}"),
-            None => "the champion does not sail them to their end".to_owned(),
+            Some(champion) => format!("that of the champion {champion:.4}"),
+            None => "the champion does not complete them".to_owned(),
         };
         let seen = match seen_by_champion {
             0 => String::new(),
-            seen => format!("; it was fitted on {seen} of these {trials} trials"),
+            seen => format!("; the champion was fitted on {seen} of these {trials} trials"),
         };
-        format!("error on manoeuvres left out {error:.4}, {champion}{seen}")
+        format!("error on held-out manoeuvres {error:.4}, {champion}{seen}")
     }
 }
 

@@ -77,7 +77,11 @@ async fn create_version(
             other => return Ok(other.map(drop)?),
         }
     }
-    Err(DeriveError::Unexpected(format!("the published models of `{}` kept changing", new.model)))
+    Err(DeriveError::Unexpected(format!(
+        "the published models of `{}` were changed at the same \
+                                         time; try again",
+        new.model
+    )))
 }
 
 async fn alias_moves(

@@ -25,8 +25,8 @@ pub enum SeedError {
 pub async fn seed_zoo(store: &Store, catalogue: &ZooCache) -> Result<(), SeedError> {
     match copy_zoo(store, catalogue).await {
         Err(SeedError::Store(error)) if error.is_out_of_space() => {
-            tracing::error!(%error, "there is no room for what is new in the program's own zoo; \
-                the next start puts it in");
+            tracing::error!(%error, "there is no free space for new models of the program's zoo; \
+                                     they are added at the next start");
             Ok(())
         }
         other => other,
@@ -60,7 +60,7 @@ async fn publish_ship(store: &Store, zoo: &Zoo, name: &str) -> Result<(), SeedEr
             .await
             .map_err(|error| publish_error(name, error)),
         Err(error) => {
-            tracing::error!(ship = name, %error, "a ship of the database does not read");
+            tracing::error!(ship = name, %error, "a ship of the database cannot be parsed");
             Ok(())
         }
     }
@@ -71,7 +71,7 @@ async fn insert_laws(store: &Store, embedded: &Zoo) -> Result<(), SeedError> {
         let text = embedded.law_text(&law.name).unwrap_or_default();
         match store.laws().insert(&law.name, text).await {
             Err(StoreError::Conflict { .. }) => {
-                tracing::warn!(law = %law.name, "the database keeps its older text of this law")
+                tracing::warn!(law = %law.name, "the database keeps its older version of this law")
             }
             other => drop(other?),
         }

@@ -109,7 +109,7 @@ impl RefinementStart {
     ) -> Result<(Option<String>, Law, Option<AcrossLaws>)> {
         let laws = archive.store.laws();
         let Some(source) = &self.source else {
-            let neither = || DeriveError::Lost("neither a source nor a law is named".into());
+            let neither = || DeriveError::Lost("give a source or a law".into());
             // Without a source the law must be named; it is identified from the trials alone.
             let name = self.law.clone().ok_or_else(neither)?;
             let law = laws.get(&name).await?;
@@ -242,7 +242,7 @@ async fn published_version(archive: &Archive, name: &str) -> Result<Version> {
     // The server creates the versions of published models when it starts.
     let missing = || {
         DeriveError::Lost(format!(
-            "the model `{name}` has no version; start the server again to make it"
+            "the model `{name}` has no version; restart the server, which creates it"
         ))
     };
     let number = found.ok_or_else(missing)?.version_number;

@@ -149,8 +149,7 @@ fn list_remarks(
     // A derivation copies the recorded recipe, so the revision itself is no difference.
     if let Some(other) = made_by.filter(|revision| *revision != code_revision()) {
         remarks.push(format!(
-            "made by revision {other}, checked by {}: the recorded revision was put back before \
-             comparing",
+            "made by revision {other}, checked by {}: the comparison ignores the revision",
             code_revision()
         ));
     }
@@ -158,12 +157,13 @@ fn list_remarks(
     if stored != derived {
         let (stored, derived) = (read(stored), read(derived));
         let place = first_difference(&stored, &derived, String::new());
-        remarks.push(place.unwrap_or_else(|| "the same values, written differently".to_owned()));
+        remarks.push(
+            place.unwrap_or_else(|| "the values are equal, but written differently".to_owned()),
+        );
         remarks.extend(rounding_difference(&stored, &derived).map(|largest| {
             format!(
-                "nothing but numbers differs, by at most {largest:.0e} of themselves: another \
-                 processor (without fused multiplication) or another C library rounds like that; \
-                 no input differs"
+                "only numbers differ, relatively by at most {largest:.0e}: this is rounding by \
+                 another processor (without fused multiplication) or C library; no input differs"
             )
         }));
     }

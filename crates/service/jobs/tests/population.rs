@@ -60,7 +60,7 @@ async fn a_version_held_by_a_population_names_its_ships_and_is_derived_again() {
         assert!(!ships.contains(&"seiun-maru"), "an estimate from particulars: {ships:?}");
         let made = derived(&archive, &recipe).await.unwrap();
         let model = &made.document.model;
-        assert_eq!(model.note.as_deref(), Some("held by what a population of ships says"));
+        assert_eq!(model.note.as_deref(), Some("prior from a population of ships"));
         let remarks = made.document.report["remarks"].to_string();
         assert!(remarks.contains("kvlcc2/mmg") && !remarks.contains("mariner/"), "{remarks}");
         let new = NewVersion {

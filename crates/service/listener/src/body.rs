@@ -91,7 +91,7 @@ impl HttpBody for RequestBody {
         // The deadline has passed: the handler gets an error instead of the rest of the body.
         self.pace.mark_slow();
         self.pace.record_received(0);
-        Poll::Ready(Some(Err("the body came too slowly".into())))
+        Poll::Ready(Some(Err("the body arrived too slowly".into())))
     }
 
     fn is_end_stream(&self) -> bool {

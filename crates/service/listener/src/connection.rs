@@ -66,7 +66,7 @@ impl ClientConnection {
             tokio::select! {
                 served = served.as_mut() => {
                     if let Err(error) = served {
-                        tracing::debug!(%error, "a connection broke off");
+                        tracing::debug!(%error, "a connection was interrupted");
                     }
                     break;
                 }
@@ -77,7 +77,7 @@ impl ClientConnection {
                     served.as_mut().graceful_shutdown();
                 }
                 () = connection.pace.until_cut() => {
-                    tracing::debug!("a connection gave way to others");
+                    tracing::debug!("an idle connection was closed to admit others");
                     break;
                 }
             }

@@ -20,7 +20,7 @@ pub fn fit_to_descriptors(limits: ConnectionLimits) -> ConnectionLimits {
             have,
             needed,
             connections = fit.connections,
-            "too few file descriptors for the connections that are set; raise `ulimit -n`"
+            "too few file descriptors for the configured number of connections; raise `ulimit -n`"
         );
     }
     fit
@@ -49,7 +49,7 @@ fn raised(needed: usize) -> Option<usize> {
     if limit.current.is_some_and(|current| current < needed) {
         limit.current = Some(limit.maximum.map_or(needed, |most| most.min(needed)));
         if let Err(error) = setrlimit(Resource::Nofile, limit) {
-            tracing::warn!(%error, "the bound on file descriptors cannot be raised");
+            tracing::warn!(%error, "the limit of file descriptors cannot be raised");
         }
     }
     getrlimit(Resource::Nofile).current.and_then(|current| usize::try_from(current).ok())

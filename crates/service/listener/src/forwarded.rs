@@ -70,7 +70,12 @@ impl FromStr for NetworkRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("`{text}` is no network; write it as 10.0.0.0/8, or one address");
+        let wrong = || {
+            format!(
+                "`{text}` is not a network; write it as 10.0.0.0/8, or give one \
+                                address"
+            )
+        };
         let (address, bits) =
             text.split_once('/').map_or((text, None), |(address, bits)| (address, Some(bits)));
         let address: IpAddr = address.parse().map_err(|_| wrong())?;
@@ -87,7 +92,7 @@ impl FromStr for ForwardedHeader {
         match text.to_ascii_lowercase().as_str() {
             "x-forwarded-for" => Ok(Self::XForwardedFor),
             "forwarded" => Ok(Self::Forwarded),
-            _ => Err(format!("there are x-forwarded-for and forwarded, not `{text}`")),
+            _ => Err(format!("choose x-forwarded-for or forwarded, not `{text}`")),
         }
     }
 }

@@ -48,7 +48,7 @@ pub async fn listen(
     // Closed first: no connection is queued that would not be served.
     drop(listener);
     if tokio::time::timeout(limits.stop_time, server.graceful.shutdown()).await.is_err() {
-        tracing::warn!("connections were cut: they did not end in time");
+        tracing::warn!("connections were closed at the deadline");
         server.seats.cut_all();
     }
 }
@@ -72,7 +72,7 @@ struct ConnectionServer {
 impl ConnectionServer {
     fn serve(&self, stream: TcpStream, from: SocketAddr) {
         if let Err(error) = set_options(&stream) {
-            tracing::debug!(%error, "no TCP_NODELAY or TCP_NOTSENT_LOWAT");
+            tracing::debug!(%error, "TCP_NODELAY or TCP_NOTSENT_LOWAT cannot be set");
         }
         match ClientConnection::new(&self.router, self.limits, &self.seats, from.ip()) {
             Some(connection) => drop(tokio::spawn(connection.serve(
@@ -80,13 +80,13 @@ impl ConnectionServer {
                 self.graceful.watcher(),
                 self.stopping.clone(),
             ))),
-            None => tracing::debug!("a connection was not taken: all others are at work"),
+            None => tracing::debug!("a connection was refused: all connections are in use"),
         }
     }
 
     /// Handles a failed acceptance: closes a waiting connection, or pauses.
     async fn handle_shortage(&self, error: &std::io::Error) {
-        tracing::warn!(%error, "a connection could not be taken");
+        tracing::warn!(%error, "a connection could not be accepted");
         if !self.seats.evict_longest() {
             tokio::time::sleep(RETRY_DELAY).await;
         }

@@ -43,7 +43,7 @@ impl WatchedStream {
                 self.pace.cut_connection();
                 return Poll::Ready(Err(io::Error::new(
                     io::ErrorKind::TimedOut,
-                    "the answer was not read",
+                    "the client did not read the response",
                 )));
             }
         }

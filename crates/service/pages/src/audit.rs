@@ -43,7 +43,7 @@ pub async fn audit_page(archive: &Archive, shell: PageShell, query: &FormFields)
     // The store filters by one of the two only.
     let filter = match (actor, subject) {
         (Some(_), Some(_)) => {
-            return Err(PageError::invalid_field("subject", "choose by one of the two"));
+            return Err(PageError::invalid_field("subject", "give only one of the two"));
         }
         (Some(actor), None) => AuditFilter::Actor(actor),
         (None, Some(subject)) => AuditFilter::Subject(subject),

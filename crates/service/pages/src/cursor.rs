@@ -20,7 +20,10 @@ pub(crate) fn decode_cursor<K: DeserializeOwned>(after: Option<&str>) -> Result<
     let read = |text: &str| {
         let bytes = BASE64_URL_SAFE_NO_PAD.decode(text).ok();
         bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok()).ok_or_else(|| {
-            PageError::invalid_field("after", "is no place of this list; begin anew")
+            PageError::invalid_field(
+                "after",
+                "is not a page of this list; start again from the first page",
+            )
         })
     };
     after.map(read).transpose()

@@ -31,7 +31,7 @@ impl FormFields {
     /// # Errors
     /// Returns an error if the field is absent.
     pub fn required_text(&self, name: &str) -> Result<&str> {
-        self.get_text(name).ok_or_else(|| PageError::invalid_field(name, "is empty; fill it in"))
+        self.get_text(name).ok_or_else(|| PageError::invalid_field(name, "is empty; enter a value"))
     }
 
     /// Returns a number, `None` if the field is absent; a decimal comma is accepted.
@@ -45,7 +45,7 @@ impl FormFields {
             number.filter(|number: &f64| number.is_finite()).ok_or_else(|| {
                 PageError::invalid_field(
                     name,
-                    format!("`{text}` is no number; write one such as 12.5"),
+                    format!("`{text}` is not a number; write one such as 12.5"),
                 )
             })
         };
@@ -62,7 +62,7 @@ impl FormFields {
             true => Ok(number),
             false => Err(PageError::invalid_field(
                 name,
-                format!("{number} is outside {} to {}", range.0, range.1),
+                format!("must be from {} to {}, not {number}", range.0, range.1),
             )),
         }
     }
@@ -74,7 +74,7 @@ impl FormFields {
     pub fn whole_number(&self, name: &str) -> Result<i64> {
         let text = self.required_text(name)?;
         text.parse()
-            .map_err(|_| PageError::invalid_field(name, format!("`{text}` is no whole number")))
+            .map_err(|_| PageError::invalid_field(name, format!("`{text}` is not a whole number")))
     }
 }
 

@@ -94,7 +94,7 @@ impl JobPage {
             .unwrap_or_default();
         // Times that have not been reached have no row.
         let times = [
-            ("Asked for", Some(job.created_us)),
+            ("Requested", Some(job.created_us)),
             ("Begun", job.started_us),
             ("Ended", job.finished_us),
         ];

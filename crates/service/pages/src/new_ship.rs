@@ -16,7 +16,7 @@ pub const PARTICULARS: [(&str, &str, bool); 14] = [
     ("service_speed_m_s", "Service speed, m/s", true),
     ("block_coefficient", "Block coefficient", false),
     ("x_g_m", "Centre of gravity forward of midship, m", false),
-    ("yaw_gyradius_ratio", "Yaw radius of gyration by length", false),
+    ("yaw_gyradius_ratio", "Yaw radius of gyration divided by length", false),
     ("rudder_area_m2", "Rudder area, m²", false),
     ("rudder_height_m", "Rudder height, m", false),
     ("propeller_diameter_m", "Propeller diameter, m", false),
@@ -50,14 +50,14 @@ pub fn new_ship_page(shell: &PageShell) -> Result<String> {
 pub fn vessel_document(form: &FormFields) -> Result<Value> {
     let text = |name: &str| {
         let text = form.get_text(name).map(str::trim).filter(|text| !text.is_empty());
-        text.ok_or_else(|| PageError::invalid_field(name, "must be given".to_owned()))
+        text.ok_or_else(|| PageError::invalid_field(name, "is required".to_owned()))
     };
     let mut values = Map::new();
     // Optional particulars that are empty are left out of the document.
     for (name, _, needed) in PARTICULARS {
         match form.get_text(name).map(str::trim).filter(|text| !text.is_empty()) {
             None if needed => {
-                return Err(PageError::invalid_field(name, "must be given".to_owned()));
+                return Err(PageError::invalid_field(name, "is required".to_owned()));
             }
             None => {}
             Some(text) => {

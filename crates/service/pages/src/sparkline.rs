@@ -23,7 +23,8 @@ pub fn sparkline(all: impl Iterator<Item = (f64, bool)>) -> Option<SvgPlot> {
     let dots = marked.map(|(at, _)| Shape::Dot { at: *at, radius: 1.2, class: "dot b" });
     let shapes = std::iter::once(Shape::Path { d, class: "line a" }).chain(dots).collect();
     let last = 100.0 * all.last().map_or(0.0, |(left, _)| *left);
-    let label = format!("Left of {} trials over time, {last:.0} % of the last", all.len());
+    let label =
+        format!("Unexplained force of {} trials over time, {last:.0} % in the last", all.len());
     Some(SvgPlot { width: SIZE.0, height: SIZE.1, label, shapes })
 }
 
@@ -38,6 +39,6 @@ mod tests {
         assert!(sparkline([(0.0, false), (0.0, true)].into_iter()).is_none());
         let plot = sparkline([(0.1, false), (0.3, true), (0.2, false)].into_iter()).unwrap();
         assert_eq!((plot.shapes.len(), plot.width), (2, SIZE.0));
-        assert!(plot.label.contains("3 trials over time, 20 % of the last"), "{}", plot.label);
+        assert!(plot.label.contains("3 trials over time, 20 % in the last"), "{}", plot.label);
     }
 }

@@ -20,7 +20,7 @@ macro_rules! number {
         impl<'de> serde::Deserialize<'de> for $name {
             fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
                 let (value, fits): (f64, fn(f64) -> bool) = (f64::deserialize(from)?, $fits);
-                let wrong = || serde::de::Error::custom(format!("must be {}, is {value}", $says));
+                let wrong = || serde::de::Error::custom(format!("must be {}, not {value}", $says));
                 // The rule alone would accept an infinity where it has no maximum.
                 if value.is_finite() && fits(value) { Ok(Self(value)) } else { Err(wrong()) }
             }

@@ -47,7 +47,7 @@ macro_rules! text {
             const RULE: TextRule = TextRule { min: $min, max: $max, pattern: $pattern, says: $says };
 
             /// Returns the text.
-            #[allow(dead_code, reason = "not every text is kept")]
+            #[allow(dead_code, reason = "not every type is converted back")]
             pub fn into_string(self) -> String {
                 self.0
             }
@@ -101,7 +101,7 @@ text! {
 text! {
     /// A tag, or the name of a family: one word in any script.
     Word: 1..=200, r"^[^\s/.\x00-\x1f\x7f-\x9f][^\s/\x00-\x1f\x7f-\x9f]*$",
-        "a word of 1 to 200 characters without white space, control characters and slashes, that \
+        "a word of 1 to 200 characters without white space, control characters and slashes that \
          does not begin with a full stop"
 }
 text! {
@@ -112,8 +112,8 @@ text! {
 text! {
     /// The name of a user: `sistership_auth::check_name`.
     UserName: 1..=64, "^[a-z0-9][a-z0-9._@-]*$",
-        "a name of 1 to 64 lower-case letters, digits, `.`, `_`, `@` and `-`, the first a letter \
-         or digit"
+        "a name of 1 to 64 lower-case letters, digits, `.`, `_`, `@` and `-` that starts with a \
+         letter or digit"
 }
 text! {
     /// An issuer or a subject of OpenID Connect.
@@ -122,13 +122,13 @@ text! {
 }
 text! {
     /// The prefix of a service key.
-    KeyPrefix: 12..=12, "^[0-9a-f]{12}$", "the 12 hexadecimal digits that a service key begins \
-        with after `sis_`"
+    KeyPrefix: 12..=12, "^[0-9a-f]{12}$", "the first 12 hexadecimal digits of a service key after \
+                                           `sis_`"
 }
 text! {
     /// A password that is set: `sistership_auth::check_password`.
-    Password: 15..=256, r"^[^\x00]*$", "a password of 15 to 256 characters without NUL; a sentence \
-        with spaces will do"
+    Password: 15..=256, r"^[^\x00]*$", "a password of 15 to 256 characters without NUL, such as a \
+                                        sentence"
 }
 text! {
     /// Author or subject of an audit entry.
@@ -148,8 +148,9 @@ text! {
 }
 text! {
     /// URL of a web server.
-    WebAddress: 10..=2000, r"^https?://[^\s\x00-\x1f\x7f-\x9f]+$", "an address of the web of 10 to \
-        2000 characters, such as `https://example.com/hook`"
+    WebAddress: 10..=2000, r"^https?://[^\s\x00-\x1f\x7f-\x9f]+$", "a URL of 10 to 2000 \
+                                                                    characters, such as \
+                                                                    `https://example.com/hook`"
 }
 text! {
     /// The name of a file.
@@ -158,8 +159,8 @@ text! {
 }
 text! {
     /// Cursor: `next` of the previous page.
-    Cursor: 1..=4096, "^[0-9A-Za-z_-]+$", "the `next` of a page of this list; leave it out for the \
-        first page"
+    Cursor: 1..=4096, "^[0-9A-Za-z_-]+$", "the value `next` of a page of this list; omit it for \
+                                           the first page"
 }
 text! {
     /// `Idempotency-Key`.

@@ -119,8 +119,10 @@ impl AuditLog<'_> {
         last: &AuditHead,
     ) -> Result<Option<IntegrityFault>> {
         if last != head {
-            let message =
-                format!("the last entry is number {}, not this one as noted", last.number);
+            let message = format!(
+                "the last entry is number {}, but this one is recorded as the last",
+                last.number
+            );
             return Ok(Some(chain_fault(head.number, message)));
         }
         let beyond: Option<AuditEntry> =
@@ -128,9 +130,10 @@ impl AuditLog<'_> {
         match beyond {
             // The head has advanced, so the entry was added since the head was read.
             Some(_) if self.chain_head().await?.number > head.number => Ok(None),
-            Some(entry) => {
-                Ok(Some(chain_fault(entry.number, "comes after the last entry as noted".into())))
-            }
+            Some(entry) => Ok(Some(chain_fault(
+                entry.number,
+                "comes after the entry that is recorded as the last".into(),
+            ))),
             None => Ok(None),
         }
     }
@@ -144,11 +147,11 @@ fn entry_fault(last: &AuditHead, entry: &AuditEntry) -> Option<String> {
         return Some(format!("comes after number {}: {expected} is missing", last.number));
     }
     if entry.previous_sha256 != last.sha256 {
-        return Some("does not hold the hash of the entry before it".to_owned());
+        return Some("does not contain the hash of the previous entry".to_owned());
     }
     (entry.content_hash() != entry.sha256).then(|| {
         format!(
-            "what it says has the hash {}, not {} as entered",
+            "its content has the hash {}, but {} is recorded",
             entry.content_hash(),
             entry.sha256
         )

@@ -278,7 +278,7 @@ impl BulkRepository<'_> {
             return Err(StoreError::conflict(
                 "outcome",
                 ship,
-                "is no candidate of this refinement",
+                "is not a candidate of this refinement",
             ));
         }
         tx.commit().await

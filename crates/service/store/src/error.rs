@@ -36,7 +36,10 @@ pub enum StoreError {
         message: String,
     },
     /// The caller has seen an older state than the present one (412).
-    #[error("{kind} `{id}` is at {}, not where the request expects it", revision_text(*current))]
+    #[error(
+        "{kind} `{id}` is at {}, which is not the revision that the request expects",
+        revision_text(*current)
+    )]
     PreconditionFailed {
         /// Kind of the item.
         kind: &'static str,

@@ -125,9 +125,8 @@ impl FamilyRepository<'_> {
         let values =
             args![name: name, title: title, foundation: foundation, created_us: self.0.now_us()];
         let family = tx.fetch_optional(INSERT, values).await?;
-        let family = family.ok_or_else(|| {
-            StoreError::conflict("family", name, "there is one of this name already")
-        })?;
+        let family = family
+            .ok_or_else(|| StoreError::conflict("family", name, "this name exists already"))?;
         let after = json!({ "foundation": foundation });
         tx.record_audit_event(
             self.0.now_us(),

@@ -139,7 +139,7 @@ impl WriterTurn {
         match outcome.get() {
             Some(Ok(())) => Ok(()),
             Some(Err(reason)) => Err(reason.to_error()),
-            None => Err(not_kept("it was given up")),
+            None => Err(not_kept("it was rolled back")),
         }
     }
 
@@ -214,7 +214,7 @@ impl CommitFailure {
 }
 
 fn not_kept(reason: &str) -> sqlx::Error {
-    sqlx::Error::Protocol(format!("the transaction was not kept: {reason}"))
+    sqlx::Error::Protocol(format!("the transaction was rolled back: {reason}"))
 }
 
 /// Runs work to its end even if the caller is cancelled: a future that is dropped between two
@@ -334,7 +334,7 @@ mod tests {
         });
         tokio::time::sleep(Duration::from_millis(50)).await;
         let reason = first.commit().await.unwrap_err().to_string();
-        assert!(reason.contains("was not kept"), "{reason}");
+        assert!(reason.contains("was rolled back"), "{reason}");
         assert!(second.await.unwrap().is_err());
         drop(pool);
     }

@@ -162,7 +162,7 @@ fn taken_over(key: &str) -> StoreError {
     StoreError::conflict(
         "idempotency key",
         key,
-        "the request has been taken over by another; repeat it for its answer",
+        "the same request is handled by another connection; repeat it to get the answer",
     )
 }
 

@@ -193,7 +193,11 @@ impl IdentityRepository<'_> {
         let put: Option<IdentityRow> = tx.fetch_optional(PUT, values).await?;
         match put {
             Some(_) => Ok(()),
-            None => Err(StoreError::conflict("identity", subject, "is another user's already")),
+            None => Err(StoreError::conflict(
+                "identity",
+                subject,
+                "is linked with another user already",
+            )),
         }
     }
 

@@ -107,7 +107,7 @@ impl JobRepository<'_> {
             (CANCEL, "job.cancel"),
             id,
             args![id: id, finished_us: self.0.now_us()],
-            "only what waits or runs can be cancelled",
+            "only a queued or running job can be cancelled",
         )
         .await
     }
@@ -118,7 +118,7 @@ impl JobRepository<'_> {
             (RETRY, "job.retry"),
             id,
             args![id: id],
-            "only what failed or was cancelled can be tried again",
+            "only a failed or cancelled job can be retried",
         )
         .await
     }

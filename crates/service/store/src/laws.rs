@@ -71,7 +71,8 @@ impl LawRepository<'_> {
             false => Err(StoreError::conflict(
                 "law",
                 name,
-                "exists with another text, and a law never changes",
+                "exists with a different text; a stored law cannot be changed, so choose another \
+                 name",
             )),
         }
     }

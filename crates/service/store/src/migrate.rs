@@ -46,13 +46,13 @@ pub(crate) async fn postgres_up_to(version: i64, connection: &mut PgConnection) 
 /// Names the migration by which a store differs from this program; other errors are the database's.
 fn migration_error(error: MigrateError) -> StoreError {
     let reason = match &error {
-        MigrateError::VersionMissing(number) => format!("has migration {number}, unknown here"),
-        MigrateError::VersionMismatch(number) => format!("has another migration {number}"),
+        MigrateError::VersionMissing(number) => format!("has the unknown migration {number}"),
+        MigrateError::VersionMismatch(number) => format!("has a different migration {number}"),
         _ => return sqlx::Error::from(error).into(),
     };
     let message = format!(
-        "{reason}: another version of sistership made this store; open it with that version, or \
-         name an empty database"
+        "{reason}: the store was made by another version of sistership; open it with that \
+         version, or give an empty database"
     );
     StoreError::conflict("database", "schema", message)
 }

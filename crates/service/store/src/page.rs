@@ -41,7 +41,7 @@ impl<K> PageRequest<K> {
             true => Ok(self.limit + 1),
             false => Err(StoreError::invalid(
                 "limit",
-                format!("must be from 1 to {MAX_LIMIT}, is {}", self.limit),
+                format!("must be from 1 to {MAX_LIMIT}, not {}", self.limit),
             )),
         }
     }

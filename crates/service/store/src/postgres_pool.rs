@@ -79,7 +79,7 @@ impl PoolLease {
                 Err(_) => {
                     self.replace_pool();
                     let silent =
-                        "the database did not answer in time; connections to it are new now";
+                        "the database did not answer in time; all connections to it were renewed";
                     let kind = std::io::ErrorKind::TimedOut;
                     Err(sqlx::Error::Io(std::io::Error::new(kind, silent)).into())
                 }

@@ -222,7 +222,7 @@ impl ShipSearch {
         if self.ranges.len() > MAX_RANGES {
             return Err(StoreError::invalid(
                 "ranges",
-                format!("at most {MAX_RANGES} ranges can be asked for at once"),
+                format!("at most {MAX_RANGES} ranges can be given at once"),
             ));
         }
         for range in &self.ranges {
@@ -356,7 +356,7 @@ impl ShipRepository<'_> {
         if search.category.is_none() {
             return Err(StoreError::invalid(
                 "category",
-                "is needed: ships are compared within one",
+                "is needed: similarity is computed within one category",
             ));
         }
         self.0.database().fetch_all(VECTORS, &search.statement_values(&[])).await

@@ -94,8 +94,8 @@ pub(crate) async fn check_promotion(
         false => Ok(()),
         true => Err(StoreError::Forbidden {
             message: format!(
-                "version {model}/{number} was made by {}, and a second person is asked for to make \
-                 it champion; let an approver do so",
+                "version {model}/{number} was made by {}, and champions need approval by a second \
+                 person; ask an approver",
                 actor.name
             ),
         }),

@@ -92,7 +92,7 @@ async fn check_count(tx: &mut AuditedTransaction, name: &str) -> Result<()> {
         false => Err(StoreError::conflict(
             "ship",
             name,
-            format!("has {MAX_TAGS} tags already, which is the most"),
+            format!("has {MAX_TAGS} tags already, which is the limit"),
         )),
     }
 }

@@ -112,7 +112,7 @@ impl UserRepository<'_> {
         let mut tx = self.0.begin().await?;
         let set =
             tx.fetch_optional(PASSWORD, args![name: name, password_hash: password_hash]).await?;
-        let user = self.finish_change(&mut tx, name, set, "has gone").await?;
+        let user = self.finish_change(&mut tx, name, set, "does not exist any more").await?;
         tx.record_audit_event(
             self.0.now_us(),
             "user.password",
@@ -188,7 +188,7 @@ pub(crate) async fn insert_user(
 ) -> Result<User> {
     checks::check_name("name", name)?;
     let values = args![name: name, title: title, password_hash: password_hash, created_us: now_us];
-    let taken = || StoreError::conflict("user", name, "there is one of this name already");
+    let taken = || StoreError::conflict("user", name, "this name exists already");
     tx.fetch_optional(INSERT, values).await?.ok_or_else(taken)
 }
 

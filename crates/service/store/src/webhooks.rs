@@ -297,14 +297,14 @@ impl WebhookRepository<'_> {
 fn check_events(events: &[String]) -> Result<()> {
     let wrong = |message: String| Err(StoreError::invalid("events", message));
     if events.is_empty() {
-        return wrong(format!("name at least one of {}", EVENTS.join(", ")));
+        return wrong(format!("give at least one of {}", EVENTS.join(", ")));
     }
     for (k, event) in events.iter().enumerate() {
         if !EVENTS.contains(&event.as_str()) {
-            return wrong(format!("`{event}` is none of {}", EVENTS.join(", ")));
+            return wrong(format!("`{event}` is not one of {}", EVENTS.join(", ")));
         }
         if events[..k].contains(event) {
-            return wrong(format!("`{event}` is named twice"));
+            return wrong(format!("`{event}` is listed twice"));
         }
     }
     Ok(())

@@ -197,8 +197,8 @@ async fn end_abandoned(
 ) -> Result<bool> {
     let worker = job.worker.as_deref().unwrap_or("?");
     let message = format!(
-        "the job ended its process {}; it is set aside and not begun again by itself (the last \
-         worker was `{worker}`). Send POST /v1/jobs/{}/retry once the cause is mended",
+        "the process of the job ended {} without a result (last worker `{worker}`), so that it is \
+         not restarted automatically. Remove the cause, then send POST /v1/jobs/{}/retry",
         if lost == MAX_LOST_WORKERS { "twice".to_owned() } else { format!("{lost} times") },
         job.id
     );
@@ -224,8 +224,10 @@ async fn update_held_job(
     }
     // No row matched: the job does not exist, or another worker holds it under a newer fence.
     let job = find_job(tx, id).await?;
-    let message =
-        format!("is {} under fence {}; who holds fence {fence} has lost it", job.state, job.fence);
+    let message = format!(
+        "is {} with fence {}; the lease with fence {fence} is no longer valid",
+        job.state, job.fence
+    );
     Err(StoreError::conflict("job", id, message))
 }
 

@@ -10,7 +10,7 @@ pub fn choose_media(headers: &HeaderMap, offered: &[&'static str]) -> Result<&'s
     let accepted: Vec<(&str, f64)> =
         lines.flat_map(|line| line.split(',')).map(parse_range).collect();
     if accepted.is_empty() {
-        return offered.first().copied().ok_or_else(|| Problem::internal("nothing is offered"));
+        return offered.first().copied().ok_or_else(|| Problem::internal("no format is available"));
     }
     let mut best: Option<(&'static str, f64)> = None;
     for media in offered {

@@ -75,7 +75,7 @@ impl RequestConditions {
     pub fn required_revision(&self, what: &str, current: i64) -> Result<i64> {
         let Some(tags) = &self.if_match else {
             return Err(condition_required(&format!(
-                "If-Match with the ETag of {what} as you last read it"
+                "If-Match with the ETag of {what} from your last request"
             )));
         };
         if tags.contains_revision(current) {
@@ -109,7 +109,7 @@ impl RequestConditions {
             (None, Some(TagList::Any), None) => Ok(ExpectedRevision::Absent),
             (None, Some(TagList::Any), current) => Err(stale_revision(what, current)),
             (None, Some(TagList::These(_)), _) => {
-                Err(Problem::bad_request("If-None-Match: only `*` is understood here"))
+                Err(Problem::bad_request("If-None-Match: only `*` is supported here"))
             }
             (None, None, _) => Err(condition_required(
                 "If-Match with its ETag to move it, or If-None-Match: * to create it",
@@ -131,7 +131,7 @@ fn malformed_header(name: &HeaderName, message: String) -> Problem {
 fn condition_required(what: &str) -> Problem {
     Problem::new(
         StatusCode::PRECONDITION_REQUIRED,
-        format!("send {what}: so that nobody's change is lost"),
+        format!("send {what}, so that changes by others are not overwritten"),
     )
 }
 
@@ -142,7 +142,7 @@ fn stale_revision(what: &str, current: Option<i64>) -> Problem {
     );
     Problem::new(
         StatusCode::PRECONDITION_FAILED,
-        format!("{what} {now}; read it again and decide anew"),
+        format!("{what} {now}; read it again and repeat the change if it still applies"),
     )
 }
 

@@ -26,7 +26,7 @@ pub fn request_authority(request: &Request) -> Result<Option<Authority>> {
     // A target with an authority (a proxy's form) must agree with `Host`.
     match (request.uri().authority(), host) {
         (Some(target), Some(host)) if *target != host => Err(Problem::bad_request(
-            "the header `Host` names another server than the request's target; send the same in \
+            "the header `Host` differs from the host in the request's target; send the same in \
              both",
         )),
         (_, host) => Ok(host),
@@ -35,7 +35,7 @@ pub fn request_authority(request: &Request) -> Result<Option<Authority>> {
 
 fn wrong_host() -> Problem {
     Problem::bad_request(
-        "the header `Host` must be a name or an address, with a port or without, such as \
+        "the header `Host` must be a name or an address with an optional port, such as \
          localhost:8080",
     )
 }
@@ -46,7 +46,7 @@ pub fn single_header<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Op
     let first = values.next();
     if values.next().is_some() {
         return Err(Problem::bad_request(format!(
-            "the header `{name}` is there more than once; send one"
+            "the header `{name}` was sent more than once; send it once"
         )));
     }
     let text = |value: &'a axum::http::HeaderValue| {
@@ -79,14 +79,14 @@ pub fn check_local_origin(
     }
     if let Some(origin) = origin.filter(|origin| !is_own(origin, host)) {
         return Err(forbidden_problem(format!(
-            "without an API key this server takes no changes from the web site `{origin}`"
+            "without an API key this server accepts no changes from the web site `{origin}`"
         )));
     }
     // `none` is a request by a person, typed or from a bookmark.
     match site.filter(|site| !["same-origin", "none"].contains(site)) {
         Some(site) => Err(forbidden_problem(format!(
-            "without an API key this server takes no changes from other web sites (Sec-Fetch-Site: \
-             {site})"
+            "without an API key this server accepts no changes from other web sites \
+             (Sec-Fetch-Site: {site})"
         ))),
         None => Ok(()),
     }

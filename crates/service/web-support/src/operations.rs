@@ -105,6 +105,6 @@ fn describe_response(status: &str, response: &mut RefOr<Response>) {
     if response.description.is_empty() {
         let known = status.parse().ok().and_then(|status: u16| StatusCode::from_u16(status).ok());
         response.description =
-            known.and_then(|status| status.canonical_reason()).unwrap_or("The answer").to_owned();
+            known.and_then(|status| status.canonical_reason()).unwrap_or("The response").to_owned();
     }
 }

@@ -69,7 +69,7 @@ pub fn parse_page<K: DeserializeOwned>(
 ) -> Result<PageRequest<K>> {
     let key = |text: &str| serde_json::from_slice(&BASE64_URL_SAFE_NO_PAD.decode(text).ok()?).ok();
     let wrong = || {
-        let message = "is not the `next` of a page of this list; leave it out for the first page";
+        let message = "is not the value `next` of a page of this list; omit it for the first page";
         Problem::bad_request(format!("after: {message}"))
             .with_fault(Fault::at_field("after", message))
     };

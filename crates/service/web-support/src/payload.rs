@@ -66,7 +66,7 @@ async fn read_body(request: Request, most: usize) -> Result<Bytes> {
         // Tested before the chunk is added, so that the buffer never exceeds the limit.
         if bytes.len() + chunk.len() > most {
             return Err(too_large(&format!(
-                "the document is larger than the {} KiB that are read",
+                "the document is larger than the limit of {} KiB",
                 most >> 10
             )));
         }
@@ -81,13 +81,13 @@ fn body_problem(error: axum::Error) -> Problem {
     let text = error.to_string();
     // The library has no type for this error, only its text.
     match text.contains("length limit") {
-        true => too_large("the body is larger than this endpoint reads"),
-        false => Problem::bad_request(format!("the body broke off: {text}")),
+        true => too_large("the body is larger than this endpoint accepts"),
+        false => Problem::bad_request(format!("the body is incomplete: {text}")),
     }
 }
 
 fn too_large(what: &str) -> Problem {
-    Problem::new(StatusCode::PAYLOAD_TOO_LARGE, format!("{what}; trials go to /v1/trials"))
+    Problem::new(StatusCode::PAYLOAD_TOO_LARGE, format!("{what}; send trials to /v1/trials"))
 }
 
 /// Parses a JSON document; faults name the field.

@@ -75,8 +75,8 @@ fn query_pairs(query: &str) -> Result<Vec<(String, String)>> {
 
 fn unknown_parameter(name: &str, known: &[String]) -> Problem {
     let message = match known {
-        [] => "is no parameter here; there are none".to_owned(),
-        known => format!("is no parameter here; there are {}", known.join(", ")),
+        [] => "is not a parameter; this path has none".to_owned(),
+        known => format!("is not a parameter; choose one of {}", known.join(", ")),
     };
     Problem::bad_request(format!("{name}: {message}")).with_fault(Fault::at_field(name, message))
 }

@@ -88,7 +88,7 @@ fn parse_grant(at: usize, request: RoleRequest) -> Result<Grant> {
         (Some(_), Some(_)) => {
             return Err(Problem::invalid(
                 &format!("roles[{at}]"),
-                "names a ship and a family; give two roles, or either",
+                "has a ship and a family; give one of them, or two roles",
             ));
         }
         (Some(ship), None) => Scope::Ship(ship.into_string()),
@@ -98,7 +98,7 @@ fn parse_grant(at: usize, request: RoleRequest) -> Result<Grant> {
     match role == Role::Admin && scope != Scope::Server {
         true => Err(Problem::invalid(
             &format!("roles[{at}].role"),
-            "admin is given for the whole server only; name no ship and no family",
+            "admin cannot be restricted; give neither ship nor family",
         )),
         false => Ok(Grant { scope, role }),
     }

@@ -17,7 +17,7 @@ use sistership_jobs::search::{self, SearchCriteria, metric, particular};
 /// Query of the list of ships. All conditions must hold.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-#[allow(dead_code, reason = "it only describes the query, whose parameters may come several times")]
+#[allow(dead_code, reason = "describes the query only; its parameters may be repeated")]
 pub struct ShipSearchQuery {
     /// Maximum number of items to return.
     #[param(inline)]
@@ -128,7 +128,7 @@ fn add_range(
         true => Ok(()),
         false => Err(parameter_problem(
             name,
-            format!("at most {MAX_RANGES} ranges can be asked for at once"),
+            format!("at most {MAX_RANGES} ranges can be given at once"),
         )),
     }
 }
@@ -136,13 +136,13 @@ fn add_range(
 fn parse_definition(value: &str) -> Result<VectorDefinition> {
     let known = VectorDefinition::ALL.map(VectorDefinition::name).join(" and ");
     VectorDefinition::by_name(value)
-        .ok_or_else(|| parameter_problem("vector", format!("there are {known}, not `{value}`")))
+        .ok_or_else(|| parameter_problem("vector", format!("choose one of {known}, not `{value}`")))
 }
 
 fn unknown_parameter(name: &str) -> Problem {
     parameter_problem(
         name,
-        "is no parameter here; there are limit, after, category, tag, particular, metric, \
+        "is not a parameter; choose one of limit, after, category, tag, particular, metric, \
          similar_to, vector",
     )
 }

@@ -33,8 +33,8 @@ impl NextTrial {
         let Self { manoeuvre, narrower } = self;
         let percent = 100.0 * narrower;
         format!(
-            "the trial that would help most: {manoeuvre}; the bands of the standard manoeuvres \
-             would be {percent:.0} % narrower in the mean"
+            "most informative next trial: {manoeuvre}; it would narrow the bands of the standard \
+             manoeuvres by {percent:.0} % on average"
         )
     }
 }

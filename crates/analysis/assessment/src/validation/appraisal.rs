@@ -89,7 +89,7 @@ pub fn appraise_vessel(zoo: &Zoo, vessel: &Vessel) -> Result<Vec<ModelAppraisal>
             message,
             further: Vec::new(),
         };
-        let law = zoo.law(&model.law).ok_or_else(|| refused("its law is missing".into()))?;
+        let law = zoo.law(&model.law).ok_or_else(|| refused("its law is not in the zoo".into()))?;
         appraise_model(vessel, &model, law).map_err(|error| refused(error.to_string()))
     };
     vessel.file.models.iter().map(|model| one(&model.name)).collect()

@@ -110,6 +110,7 @@ fn missing_particulars(vessel: &Vessel) -> Vec<ReviewFinding> {
     if lacking.is_empty() {
         return Vec::new();
     }
-    let message = format!("{} are missing: the ship cannot be compared", lacking.join(", "));
+    let message =
+        format!("{} are missing: no similarity to other ships can be computed", lacking.join(", "));
     vec![ReviewFinding::for_review("particulars", message)]
 }

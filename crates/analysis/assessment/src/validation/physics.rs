@@ -23,7 +23,7 @@ pub fn check_physics(ship: &Ship, appraisal: &ModelAppraisal) -> Vec<ReviewFindi
     let about = format!("models.{}", model_name(&appraisal.model));
     let failures = appraisal.manoeuvres.failures.iter();
     let mut found: Vec<ReviewFinding> = failures
-        .map(|failure| ReviewFinding::refused(&about, format!("does not sail: {failure}")))
+        .map(|failure| ReviewFinding::refused(&about, format!("cannot be simulated: {failure}")))
         .collect();
     found.extend(straight_findings(ship, &about));
     found.extend(drag_finding(ship, &about));
@@ -59,7 +59,7 @@ fn straight_findings(ship: &Ship, about: &str) -> Vec<ReviewFinding> {
     let sailed = match straight_run(ship, 1.0) {
         Ok(sailed) => sailed,
         Err(stopped) => {
-            return vec![ReviewFinding::refused(about, format!("straight on: {stopped}"))];
+            return vec![ReviewFinding::refused(about, format!("straight running: {stopped}"))];
         }
     };
     let Some(last) = sailed.after.last() else { return Vec::new() };
@@ -69,8 +69,8 @@ fn straight_findings(ship: &Ship, about: &str) -> Vec<ReviewFinding> {
     // At its own revolutions a balanced model keeps its approach speed.
     if changed.abs() > SPEED_KEPT_SHARE {
         let message = format!(
-            "with the rudder amidships the speed changes by {:.0} % in {STRAIGHT_LENGTHS} lengths: \
-             do revolutions, thrust and resistance balance at {own} m/s?",
+            "with the rudder amidships the speed changes by {:.0} % in {STRAIGHT_LENGTHS} \
+             lengths: check that thrust and resistance balance at {own} m/s and its revolutions",
             100.0 * changed
         );
         found.push(ReviewFinding::for_review(about, message));
@@ -79,7 +79,7 @@ fn straight_findings(ship: &Ship, about: &str) -> Vec<ReviewFinding> {
     if turned.abs() > HEADING_KEPT_DEG {
         let message = format!(
             "with the rudder amidships the heading changes by {turned:.1} deg in \
-             {STRAIGHT_LENGTHS} lengths: is that meant?"
+             {STRAIGHT_LENGTHS} lengths: check that this asymmetry is intended"
         );
         found.push(ReviewFinding::for_review(about, message));
     }
@@ -101,8 +101,9 @@ fn drag_finding(ship: &Ship, about: &str) -> Option<ReviewFinding> {
         return None;
     }
     let message = format!(
-        "runs begun at 1.1 and 0.9 of {own} m/s are {apart:.3} m/s apart after {STRAIGHT_LENGTHS} \
-         lengths: resistance does not grow with speed (is X_u of the right sign?)"
+        "simulations from 1.1 and 0.9 times {own} m/s differ by {apart:.3} m/s after \
+         {STRAIGHT_LENGTHS} lengths: resistance does not increase with speed; check the sign of \
+         X_u"
     );
     Some(ReviewFinding::refused(about, message))
 }
@@ -115,8 +116,8 @@ fn turning_findings(ship: &Ship, turn: &TurningMetrics, about: &str) -> Vec<Revi
         None => found.push(ReviewFinding::refused(
             about,
             format!(
-                "{name}: the heading does not change by 180 deg to the side of the rudder; \
-                     is `rudder_positive` right?"
+                "{name}: the heading does not change by 180 deg to the side of the rudder; check \
+                 `rudder_positive`"
             ),
         )),
         Some(diameter) => {
@@ -144,7 +145,8 @@ fn side_finding(turns: &[TurningMetrics], about: &str) -> Option<ReviewFinding> 
     let apart = (starboard - port).abs() / (0.5 * (starboard + port));
     (apart > SIDES_SHARE).then(|| {
         let message = format!(
-            "tactical diameter {starboard:.1} m to starboard, {port:.1} m to port: {:.0} % apart",
+            "tactical diameter {starboard:.1} m to starboard, {port:.1} m to port: a difference \
+             of {:.0} %",
             100.0 * apart
         );
         ReviewFinding::for_review(about, message)

@@ -78,25 +78,23 @@ fn validation_remarks(
     let mut remarks = Vec::new();
     if evidence.is_empty() {
         remarks.push(
-            "there are no data to validate it by: neither published free-running trials of the \
-             ship, nor turning circles or zigzags that it was not fitted on"
+            "there are no data for a validation: neither published free-running trials of the \
+             ship, nor turning circles or zigzags that the model was not fitted to"
                 .to_owned(),
         );
     }
     let fitted = trials.iter().filter(|trial| trial.fitted).count();
     if fitted > 0 {
-        remarks.push(format!("{fitted} trials are left out, since the model was fitted on them"));
+        remarks.push(format!("{fitted} trials are not used, because the model was fitted to them"));
     }
     if draws.is_empty() && !evidence.is_empty() {
         remarks.push(
-            "the model has no posterior: what its input leaves open is not known, and U_V is a \
-             lower bound"
-                .to_owned(),
+            "the model has no posterior: U_input is unknown, and U_V is a lower bound".to_owned(),
         );
     }
     if evidence.iter().any(|one| one.data_uncertainty.is_none()) {
         remarks.push(
-            "the uncertainty of data from one record alone is not known: repeat the trial".into(),
+            "the uncertainty of data from a single record is unknown: repeat the trial".into(),
         );
     }
     remarks

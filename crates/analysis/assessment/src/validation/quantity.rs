@@ -84,7 +84,7 @@ impl Verdict {
         match self {
             Self::Validated => "validated at U_V",
             Self::NotValidated => "not validated: an error of the model",
-            Self::AboveWhatIsKnown => "above what is known of U_V",
+            Self::AboveWhatIsKnown => "undecided: above the known parts of U_V",
             Self::Undecided => "undecided",
         }
     }

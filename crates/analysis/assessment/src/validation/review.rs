@@ -69,13 +69,13 @@ fn source_findings(vessel: &Vessel) -> Vec<ReviewFinding> {
         let about = format!("sources.{key}");
         let traced = source.doi.is_some() || source.citation.contains("github.com");
         if !traced {
-            let message = "has neither a DOI nor a repository: can it be found?";
+            let message = "has neither a DOI nor a repository: check that it can be found";
             found.push(ReviewFinding::for_review(&about, message));
         }
         if source.citation.contains("github.com") && !vessel.file.licences.contains_key(key) {
             found.push(ReviewFinding::for_review(
                 &about,
-                "`licences` does not say on what terms it stands",
+                "`licences` does not state its licence; add it",
             ));
         }
     }
@@ -84,7 +84,7 @@ fn source_findings(vessel: &Vessel) -> Vec<ReviewFinding> {
 
 fn duplicate_finding(zoo: &Zoo, vessel: &Vessel) -> Option<ReviewFinding> {
     zoo.vessel(vessel.name()).map(|known| {
-        let message = format!("the zoo has a ship of this name: {}", known.file.title);
+        let message = format!("the zoo has a ship of this name already: {}", known.file.title);
         ReviewFinding::for_review("name", message)
     })
 }
@@ -94,7 +94,7 @@ fn missed_figures(appraisal: &ModelAppraisal) -> Vec<ReviewFinding> {
     let said = |missed: &crate::validation::FigureComparison| {
         let sailed = missed.sailed.map_or("nothing".to_owned(), |value| format!("{value:.2}"));
         let message = format!(
-            "{}: sails {sailed} {}, published {:.2} (allowed {:.2})",
+            "{}: simulated {sailed} {}, published {:.2} (allowed difference {:.2})",
             missed.figure, missed.unit, missed.published, missed.limit
         );
         let name = appraisal.model.split_once('/').map_or("", |(_, name)| name);

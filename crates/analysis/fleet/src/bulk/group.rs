@@ -90,12 +90,13 @@ pub(super) fn axis_groups(
     prior: BulkPrior<'_>,
 ) -> Result<Vec<AxisGroup>, RefineError> {
     // All trials must be of one frame, or their statistics could not be added.
-    let first =
-        trials.first().ok_or_else(|| RefineError::Data("there is no trial to fit on".into()))?;
+    let first = trials
+        .first()
+        .ok_or_else(|| RefineError::Data("there is no trial to fit to; upload trials".into()))?;
     if let Some(other) = trials.iter().find(|trial| !first.has_same_frame(trial)) {
         let count = other.regressions.len();
         return Err(RefineError::Data(format!(
-            "the statistics of two trials ({count} regressions) are not of one frame"
+            "the statistics of two trials ({count} regressions) were computed for different models"
         )));
     }
     let mut groups = Vec::new();
@@ -127,10 +128,7 @@ fn build_group(
 ) -> Result<AxisGroup, RefineError> {
     let names = regression.names[axes.clone()].to_vec();
     let unknown = || {
-        RefineError::Data(format!(
-            "the prior does not have the coefficients {}",
-            names.concat().join(", ")
-        ))
+        RefineError::Data(format!("the prior lacks the coefficients {}", names.concat().join(", ")))
     };
     let means: Vec<Vec<f64>> = names
         .iter()
@@ -187,7 +185,8 @@ fn inverse_deviations(
     parts: &[&RegressionMoments],
 ) -> Result<Vec<f64>, RefineError> {
     let all = RegressionMoments::merge_all(parts.iter().copied()).filter(|all| all.count > 0.0);
-    let all = all.ok_or_else(|| RefineError::Data("the trials have no sample".into()))?;
+    let all =
+        all.ok_or_else(|| RefineError::Data("the trials have no samples that can be used".into()))?;
     let one = |(j, shrinkage): (usize, &f64)| {
         let deviation = all.regressor_variance(j).sqrt();
         // Relative to the mean: rounding leaves a small deviation to a constant.

@@ -44,9 +44,10 @@ pub fn refine_ship(request: &BulkRequest<'_>) -> Result<BulkRefinement, RefineEr
                 .failures
                 .first()
                 .cloned()
-                .unwrap_or_else(|| "a turn or zigzag does not answer".to_owned());
+                .unwrap_or_else(|| "a turn or zigzag is not completed".to_owned());
             return Err(RefineError::Diverged(format!(
-                "not even the prior sails what the model before sails: {failure}"
+                "even with the strongest prior the model does not complete a standard manoeuvre \
+                 that the previous model completes: {failure}"
             )));
         }
     }

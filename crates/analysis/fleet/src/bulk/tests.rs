@@ -169,5 +169,5 @@ fn what_cannot_be_refined_says_why() {
     let mut fewer = model.clone();
     fewer.coefficients.remove("N_uu");
     let mixed = [trials[..1].to_vec(), statistics(&fewer, &law, &model, 0.0)].concat();
-    assert!(refused(&mixed, BulkPrior::Source(&source), &settings).contains("one frame"));
+    assert!(refused(&mixed, BulkPrior::Source(&source), &settings).contains("different models"));
 }

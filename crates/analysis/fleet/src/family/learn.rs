@@ -17,7 +17,10 @@ pub enum FamilyError {
     #[error("{0} members have trials; a family's prior needs at least {least}", least = FAMILY.least_members)]
     Few(usize),
     /// The coefficients of a member differ.
-    #[error("`{member}` has other coefficients than `{first}`, so that they share no prior")]
+    #[error(
+        "`{member}` and `{first}` have different coefficients and cannot share a prior; use \
+             one law for the family"
+    )]
     Other {
         /// Name of the member.
         member: String,
@@ -33,7 +36,7 @@ pub enum FamilyError {
         reason: String,
     },
     /// The estimation broke down numerically.
-    #[error("the covariance over the members cannot be learned: {0}")]
+    #[error("the covariance over the members cannot be estimated: {0}")]
     Numbers(String),
 }
 
@@ -301,5 +304,5 @@ impl FamilyEstimate {
 fn invert_positive(matrix: &DMatrix<f64>) -> Result<DMatrix<f64>, FamilyError> {
     let root: Option<Cholesky<f64, Dyn>> = matrix.clone().cholesky();
     root.map(|root| root.inverse())
-        .ok_or_else(|| FamilyError::Numbers("a covariance is not positive".into()))
+        .ok_or_else(|| FamilyError::Numbers("a covariance is not positive definite".into()))
 }

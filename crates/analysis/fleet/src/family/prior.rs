@@ -52,10 +52,10 @@ pub struct FamilyAxis {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum FamilyPriorError {
     /// The lists of an axis differ in length.
-    #[error("axis {0}: names, means, deviations and correlations are not equally many")]
+    #[error("axis {0}: names, means, deviations and correlations differ in number")]
     Lengths(Axis),
     /// The correlations of an axis are not a correlation matrix.
-    #[error("axis {0}: the correlations are none")]
+    #[error("axis {0}: the correlations are not a correlation matrix")]
     Correlations(Axis),
 }
 

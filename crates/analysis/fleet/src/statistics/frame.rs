@@ -43,7 +43,11 @@ impl RegressionFrame {
             .map_err(|(field, message)| RefineError::Law(format!("{field}: {message}")))?;
         // The default is part of the frame, so that the key contains its value.
         let difference_s = difference_s.or_else(|| tenth_of_a_length(model)).ok_or_else(|| {
-            let message = format!("`{}` has no length or speed from which to take it", model.name);
+            let message = format!(
+                "`{}` has no length or speed from which it could be derived; \
+                                   give it",
+                model.name
+            );
             RefineError::Setting { field: "difference_s".into(), message }
         })?;
         Ok(Self {

@@ -46,7 +46,7 @@ pub(super) fn deserialize<'de, D: Deserializer<'de>>(
         RegressionMoments::from_numbers(&numbers, regressors, targets).filter(|_| rest.is_empty());
     moments.ok_or_else(|| {
         D::Error::custom(format!(
-            "not the statistics of {regressors} regressors and {targets} targets"
+            "are not statistics of {regressors} regressors and {targets} targets"
         ))
     })
 }

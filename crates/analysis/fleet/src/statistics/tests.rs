@@ -25,7 +25,13 @@ fn a_document_keeps_every_bit_and_refuses_damage() {
     );
     let mut short = read.clone();
     short.regressions[1].names[0].pop();
-    assert!(short.check_consistency().unwrap_err().to_string().contains("do not go together"));
+    assert!(
+        short
+            .check_consistency()
+            .unwrap_err()
+            .to_string()
+            .contains("lengths of its lists do not match")
+    );
 }
 
 #[test]

@@ -101,7 +101,7 @@ impl TrialStatistics {
         if self.regressions.iter().all(RegressionStatistics::is_consistent) {
             Ok(())
         } else {
-            refuse("lists and numbers do not go together")
+            refuse("the lengths of its lists do not match")
         }
     }
 
@@ -140,7 +140,7 @@ impl RegressionStatistics {
         let q = self.axes.len();
         let mixing = DMatrix::from_fn(q, q, |target, axis| self.mixing[target][axis]);
         mixing.try_inverse().ok_or_else(|| {
-            RefineError::Data("the statistics mix axes that cannot be told apart".into())
+            RefineError::Data("the statistics combine axes that cannot be separated".into())
         })
     }
 

@@ -15,18 +15,21 @@ pub enum LimitError {
     #[error(transparent)]
     Model(#[from] PlantError),
     /// A coefficient of the limits is not one of the solution.
-    #[error("constraints: a coefficient was not fitted")]
+    #[error("constraints: a constrained coefficient was not fitted")]
     NotFitted,
     /// Limits that exclude each other, none of which can be left out, by name.
-    #[error("these constraints cannot be kept together: {}", .0.join("; "))]
+    #[error("these constraints contradict each other: {}", .0.join("; "))]
     Conflict(Vec<String>),
     /// The solver found no solution.
     #[error("constraints: the solver ended with {0:?}")]
     Solver(SolverStatus),
     /// A model breaks the limit of that name.
-    #[error("it breaks the constraint `{0}`")]
+    #[error("it violates the constraint `{0}`")]
     Broken(String),
     /// A model does not have the declared straight-line stability.
-    #[error("it is not {} on a straight course", if *.0 == StraightLine::Stable { "stable" } else { "unstable" })]
+    #[error(
+        "it is not straight-line {}",
+        if *.0 == StraightLine::Stable { "stable" } else { "unstable" }
+    )]
     StraightLine(StraightLine),
 }

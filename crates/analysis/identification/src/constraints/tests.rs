@@ -149,7 +149,7 @@ fn limits_that_cannot_be_kept_together_are_named_and_no_others() {
     let refused = nearest(&settings, &source, &law, &source).unwrap_err().to_string();
     assert_eq!(
         refused,
-        "these constraints cannot be kept together: physical sign: N_r at most 0; bound of N_r: \
+        "these constraints contradict each other: physical sign: N_r at most 0; bound of N_r: \
          least 0.0001"
     );
 }

@@ -77,7 +77,14 @@ impl RegressionBlocks {
         // Mass or scales change during a run: there is no constant mixture to undo, so forces are
         // regressed.
         let forces = Self::from_equations(&equations, false)?;
-        forces.ok_or_else(|| RefineError::Law(format!("law `{}` cannot be regressed", law.name)))
+        forces.ok_or_else(|| {
+            RefineError::Law(format!(
+                "law `{}` is not linear in its coefficients \
+                                                       and cannot be regressed; choose the method \
+                                                       `trajectory` or `cma-es`",
+                law.name
+            ))
+        })
     }
 
     /// The regressions of some equations; axes are solved together only where `allow_common`.
@@ -252,9 +259,9 @@ fn invert_mixing(mixing: &DMatrix<f64>) -> Option<DMatrix<f64>> {
 fn singular_error(law: &Law, block: &RegressionBlock) -> RefineError {
     let axes: Vec<String> = block.axes.iter().map(|axis| format!("{axis:?}")).collect();
     RefineError::Law(format!(
-        "the coefficients of the axes {} of law `{}` cannot be told from their common regression: \
-         the mass matrix with the scales of these axes is singular; check the scales in the law, \
-         and mass, inertia and added masses of the ship",
+        "the coefficients of the axes {} of law `{}` cannot be determined: the mass matrix with \
+         the scales of these axes is singular; check the scales in the law, and mass, inertia and \
+         added masses of the ship",
         axes.join(", "),
         law.name
     ))

@@ -154,7 +154,8 @@ impl OperatingEnvelope {
             (recorded.collect(), sailed.collect());
         if recorded.is_empty() && sailed.is_empty() {
             return Err(RefineError::Data(format!(
-                "`{}` can neither sail the standard manoeuvres nor the trials",
+                "`{}` completes neither the standard manoeuvres nor the trials; choose another \
+                 source",
                 source.name
             )));
         }
@@ -214,7 +215,9 @@ impl OperatingEnvelope {
             for (_, n_rps) in points.iter_mut().filter(|_| self.n_rps > 0.0) {
                 *n_rps *= asked.n_rps / self.n_rps;
             }
-            let message = || format!("`{}` says nothing of some state", model.name);
+            let message = || {
+                format!("`{}` gives no finite accelerations in a state of the trials", model.name)
+            };
             let rates = asked.point_rates(&points, group.samples.depth_m);
             rates.ok_or_else(|| RefineError::Data(message()))
         };

@@ -41,7 +41,7 @@ impl TermFamily {
     /// Name for tables.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Own => "own terms",
+            Self::Own => "all terms of the law",
             Self::Symmetric => "symmetric terms",
             Self::ThirdOrder => "third order",
             Self::Asymmetric => "asymmetric terms",

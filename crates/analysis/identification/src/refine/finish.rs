@@ -27,12 +27,12 @@ use sistership_propulsion::{PropulsionContext, PropulsionFault, SourcePropeller}
 enum CandidateRefusal {
     #[error(transparent)]
     Constraints(LimitError),
-    #[error("fails a standard manoeuvre that the source sails: {0}")]
+    #[error("does not complete a standard manoeuvre that the source completes: {0}")]
     Manoeuvre(String),
 }
 
 /// Reason against the source where there is none: a law without coefficients.
-const NO_MODEL: &str = "a law without coefficients is no model";
+const NO_MODEL: &str = "a law without coefficients cannot be selected";
 
 /// Returns true if a model has coefficients and all of them are zero: the placeholder for a source
 /// where there is none.

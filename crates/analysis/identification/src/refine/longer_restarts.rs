@@ -28,7 +28,10 @@ pub(super) fn compare_longer(
         // simulations. The source is always simulated.
         if !is_source && error > SELECTION.near_least * least {
             let times = error / least;
-            let reason = format!("{times:.1} times the least error of short simulations");
+            let reason = format!(
+                "{times:.1} times the smallest error of simulations with short \
+                                  restarts"
+            );
             (candidate.option.error, candidate.option.reason) = (None, Some(reason));
             continue;
         }

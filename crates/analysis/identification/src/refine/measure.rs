@@ -89,16 +89,16 @@ impl PriorMeasure {
         match self {
             Self::Trials => None,
             Self::Envelope(_) => Some(
-                "few trials of a ship that rolls: they were left out part by part, and the prior \
-                 measures each term by its size in the source's standard manoeuvres too"
+                "there are few trials for a law with roll: parts of trials were held out, and the \
+                 prior scales each term also by its size in the standard manoeuvres of the source"
                     .to_owned(),
             ),
             Self::Mixture(envelope) => envelope.mixed.clone(),
             Self::Population(envelope, members) => {
                 let names: Vec<&str> = members.iter().map(|of| of.name.as_str()).collect();
                 Some(format!(
-                    "the prior is what {} ships say at the states of the trials and of the \
-                     standard manoeuvres of `{}`: their mean, and how they differ ({})",
+                    "the prior is the mean and covariance of the accelerations of {} ships in the \
+                     states of the trials and of the standard manoeuvres of `{}` ({})",
                     names.len(),
                     envelope.source,
                     names.join(", ")

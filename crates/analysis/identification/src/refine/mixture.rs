@@ -43,7 +43,10 @@ pub(super) fn regressions_sha256(asked: Option<&str>) -> Result<String, RefineEr
     match asked {
         Some(asked) if asked != own => Err(RefineError::Setting {
             field: "regressions_sha256".into(),
-            message: format!("this program estimates by the regressions {own}"),
+            message: format!(
+                "this program has the regressions {own}; use the version of \
+                              sistership that made these settings"
+            ),
         }),
         _ => Ok(own.clone()),
     }
@@ -58,7 +61,7 @@ pub(super) fn check_source(source: &Model, target: &Vessel) -> Result<(), Refine
     if source.ship != target.name() {
         return Ok(());
     }
-    let message = format!("`mixture` is of a source of another ship than {}", target.name());
+    let message = format!("`mixture` needs a source model of another ship than {}", target.name());
     Err(RefineError::Setting { field: "prior".into(), message })
 }
 
@@ -114,10 +117,15 @@ pub(super) fn particulars_estimate(
 ) -> Result<(Model, &'static Law), RefineError> {
     let EstimateRegressions { library, law } = embedded_regressions()?;
     let speed_m_s = speed_m_s.ok_or_else(|| {
-        RefineError::Data(format!("{}: the speed of the estimate is not known", target.name()))
+        RefineError::Data(format!(
+            "{}: the estimate needs an approach speed; give the ship's \
+                                   service speed or trials with speed",
+            target.name()
+        ))
     })?;
-    let estimate = estimate_ship(library, target, law, speed_m_s)
-        .map_err(|error| RefineError::Data(format!("no estimate for the mixture: {error}")))?;
+    let estimate = estimate_ship(library, target, law, speed_m_s).map_err(|error| {
+        RefineError::Data(format!("the estimate for the mixture failed: {error}"))
+    })?;
     Ok((estimate.model, law))
 }
 
@@ -172,7 +180,7 @@ fn shift_coefficients(
     towards.set_coefficients(&blocks, &mut after);
     for (name, quantity) in &mut model.coefficients {
         quantity.value += after.coefficient(name) - before.coefficient(name);
-        quantity.source = format!("{}, moved towards the estimate", quantity.source);
+        quantity.source = format!("{}, shifted towards the estimate", quantity.source);
     }
     Ok(())
 }
@@ -180,13 +188,13 @@ fn shift_coefficients(
 /// Description of the shares for reports.
 fn describe_shares(shares: &[f64; 4]) -> String {
     if shares.iter().all(|share| *share == 1.0) {
-        return "the prior is the estimate from particulars in place of the source".to_owned();
+        return "the prior is the estimate from particulars instead of the source".to_owned();
     }
     let one = |axis: Axis| format!("{axis} {:.2}", shares[axis as usize]);
     let shares = [Axis::X, Axis::Y, Axis::N].map(one).join(", ");
     format!(
-        "the prior is a mixture of the source and of the estimate from particulars, whose shares \
-         in the accelerations are {shares}"
+        "the prior is a mixture of the source and the estimate from particulars; the shares of \
+         the estimate in the accelerations are {shares}"
     )
 }
 

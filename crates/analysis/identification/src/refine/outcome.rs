@@ -45,7 +45,7 @@ pub enum RefineError {
         message: String,
     },
     /// Every option left the physical range or does not keep the constraints.
-    #[error("no option can be taken: {0}")]
+    #[error("no option can be selected: {0}")]
     Diverged(String),
     /// The constraints cannot be kept.
     #[error(transparent)]
@@ -144,7 +144,7 @@ impl RefinementManoeuvres {
         let (_, band) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let UncertaintyBand { figure, unit, low, high, .. } = band;
         Some(format!(
-            "These trials leave much open: {figure} is between {low:.0} and {high:.0} {unit} (95 %)"
+            "The uncertainty is large: {figure} is between {low:.0} and {high:.0} {unit} (95 %)"
         ))
     }
 }

@@ -56,8 +56,8 @@ pub(super) fn member_rates(
     let known: Vec<MemberRates> = others.into_par_iter().filter_map(one).collect();
     if known.len() < POPULATION.least {
         let message = format!(
-            "{} ships of the population say what the prior `population` is made of, at least {} \
-             are needed",
+            "only {} ships of the population cover the trials; the prior `population` needs at \
+             least {}",
             known.len(),
             POPULATION.least
         );
@@ -77,7 +77,8 @@ pub(super) fn check_laws(law: &Law, source_law: Option<&Law>) -> Result<(), Refi
         return Ok(());
     }
     let message = format!(
-        "`population` holds a law without roll, from a source of another law; not `{}`",
+        "`population` is for laws without roll and a source of another law; it does not apply to \
+         `{}`",
         law.name
     );
     Err(RefineError::Setting { field: "prior".into(), message })
@@ -157,7 +158,7 @@ fn set_means(
         // From the unknowns of the regression back to the coefficients of the axes.
         let own = &block.unmixing * seen;
         for (names, value) in block.names.iter().zip(&own) {
-            let source = format!("mean of what {count} ships say");
+            let source = format!("mean over a population of {count} ships");
             model.coefficients.insert(names[place].clone(), Quantity::new(*value, source));
         }
     }

@@ -41,8 +41,7 @@ pub(super) fn assemble_refinement(
         .map_or((1.0, Vec::new()), |fit| (fit.condition_number, fit.collinear_groups.clone()));
     let mut remarks = refinement_remarks(problem, best, &lambdas);
     remarks.extend(model.propulsion.as_ref().map(sistership_propulsion::describe_balance));
-    remarks
-        .extend(propulsion_fault.map(|fault| format!("WITHOUT propulsion like a ship's: {fault}")));
+    remarks.extend(propulsion_fault.map(|fault| format!("IMPLAUSIBLE propulsion: {fault}")));
     if candidates[best].search.is_some() {
         remarks.push(SEARCHED.to_owned());
     }
@@ -93,16 +92,14 @@ fn held_out_errors(
     if problem.judged.is_empty() {
         // The text must not claim a cross-validation that a single trial does not allow.
         let how = if problem.training.len() == 1 {
-            "nothing could be left out of a single trial: these are errors on the trial that was \
-             fitted"
-                .to_owned()
+            "a single trial cannot be held out: these are errors on the fitted trial".to_owned()
         } else {
             let what = match problem.whole.len() {
                 whole if whole == problem.training.len() => format!("{whole} trials"),
                 whole => format!("{} parts of {whole} trials", problem.training.len()),
             };
             format!(
-                "each of {what} simulated by a model fitted without it, in {} folds",
+                "each of {what} is simulated by a model fitted without it ({} folds)",
                 problem.fold_count()
             )
         };
@@ -121,7 +118,7 @@ fn held_out_errors(
     Ok(HeldOut {
         source: source.rmse_by_channel(),
         refined: refined.rmse_by_channel(),
-        how: format!("kept out of fit and choice: {}", names.join(", ")),
+        how: format!("held out of fit and selection: {}", names.join(", ")),
     })
 }
 
@@ -162,26 +159,28 @@ fn refinement_remarks(
     let strongest =
         problem.settings.ranges.iter().map(|range| range.lambda_max).fold(0.0, f64::max);
     if lambdas.iter().any(|lambda| *lambda > SELECTION.strongest_share * strongest) {
-        let what = "an acceleration took the strongest prior allowed: its coefficients are the \
-            source's, scaled as a whole by 1 - alpha";
-        remarks.push(format!("{what}, and their standard errors say nothing"));
+        let what = "the strongest prior allowed was selected for an acceleration: its \
+                    coefficients are those of the source, all multiplied by 1 - alpha";
+        remarks.push(format!("{what}; their standard errors are not meaningful"));
     }
     remarks.extend(problem.measure.describe_prior(&problem.transferred, problem.law));
     remarks.extend(roll_remark(&problem.transferred));
     if best == 0 {
         remarks.push(
-            "no option beat the source on manoeuvres left out: the source is kept as it is"
+            "no option is better than the source on held-out manoeuvres: the source is kept \
+             unchanged"
                 .to_owned(),
         );
     }
     if problem.training.len() == 1 {
-        remarks.push("a single trial: only the most conservative range was tried".to_owned());
+        remarks
+            .push("there is only one trial: only the most conservative range was used".to_owned());
     }
     remarks.extend(describe_estimates(&problem.transferred.particulars));
     remarks
 }
 
 /// Remark on a search.
-const SEARCHED: &str = "a search gives no standard errors and no confidence bands; its fits with \
-     trials left out start at the optimum for all of them, so that errors on trials left out are \
-     somewhat too small unless the budget is large";
+const SEARCHED: &str = "an evolutionary search gives no standard errors and no confidence bands; \
+                        its fits without the held-out trials start at the optimum of all trials, \
+                        so that held-out errors are somewhat too small unless the budget is large";

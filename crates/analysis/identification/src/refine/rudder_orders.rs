@@ -29,9 +29,9 @@ impl RudderOrder {
     /// Name of the record.
     fn name(self, steering: &Steering) -> String {
         match self {
-            Self::Random(record) => format!("rudder {} at random", record + 1),
+            Self::Random(record) => format!("random rudder orders {}", record + 1),
             Self::Held(share) => {
-                format!("a rudder of {:.1} deg throughout", share * steering.limit_deg)
+                format!("a constant rudder angle of {:.1} deg", share * steering.limit_deg)
             }
         }
     }

@@ -52,7 +52,7 @@ pub fn refine_watched(
     let known = SourceEnvelopes::default();
     let weighed = |settings: &RefinementSettings| {
         let request = RefinementSpec { settings, ..*request };
-        let goes_on = |_, _: &str| progress(0.02, "where between source and estimate");
+        let goes_on = |_, _: &str| progress(0.02, "selecting the mixture of source and estimate");
         evaluate_candidates((&request, &known), RefinementExtent::Estimator, &goes_on)
     };
     // The position of a mixture is chosen first, by complete evaluations at each position.
@@ -207,7 +207,7 @@ fn steer_as_recorded(model: &mut Model, target: &Vessel, trials: &[&Trial]) {
     let rate = length_s.and_then(|(l, approach)| measured_rate(trials, l / approach.speed_m_s));
     if let Some(rate) = rate {
         model.steering.rate_deg_s = rate.to_degrees();
-        model.steering.source = Some("the rudder's movements in the trials".to_owned());
+        model.steering.source = Some("simulating the rudder movements of the trials".to_owned());
     }
 }
 
@@ -219,13 +219,17 @@ fn divide_trials<'a>(
     if let Some(unknown) =
         names.iter().find(|name| !request.trials.iter().any(|trial| trial.name == **name))
     {
-        let message = format!("no trial is called `{unknown}`");
+        let message = format!("there is no trial `{unknown}`");
         return Err(RefineError::Setting { field: "held_out".into(), message });
     }
     let (judged, whole): (Vec<&Trial>, Vec<&Trial>) =
         request.trials.iter().partition(|trial| names.contains(&trial.name));
     if whole.is_empty() {
-        return Err(RefineError::Data("there is no trial to fit on".into()));
+        return Err(RefineError::Data(
+            "no trial is left to fit to; give more trials, or hold out \
+                                      fewer"
+                .into(),
+        ));
     }
     Ok((judged, whole))
 }

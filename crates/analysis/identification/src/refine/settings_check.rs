@@ -59,7 +59,7 @@ impl RefinementSettings {
             ("ranges", "alpha_max must be from 0 to 1", pulled),
             ("strengths", "give at most 100, each above 0", strengths),
             ("mixture_positions", "give at most 20, each from 0 to 1", places),
-            ("mixture_positions", "are of the prior `mixture`", of_mixture),
+            ("mixture_positions", "apply to the prior `mixture` only", of_mixture),
             ("roll_strength", "must be above 0", self.roll_strength.iter().all(is_positive)),
         ]
     }
@@ -73,7 +73,7 @@ impl RefinementSettings {
             ("lambda_count", "must be from 2 to 1000", (2..=1000).contains(&self.lambda_count)),
             ("folds", "must be from 2 to 100", (2..=100).contains(&self.folds)),
             ("calibration_samples", "must be at least 1", self.calibration_samples != Some(0)),
-            ("constraints", "are kept by the methods `published` and `weak` only", kept),
+            ("constraints", "are supported by the methods `published` and `weak` only", kept),
         ]
     }
 
@@ -111,8 +111,8 @@ pub(super) fn combined_error(faults: Vec<SettingFault>) -> RefineError {
 }
 
 /// Refusal of settings for another revision of the algorithm.
-const OTHER_REVISION: &str = "must be 1, the only revision that this program computes; leave it \
-    out, or use the version of sistership that made these settings";
+const OTHER_REVISION: &str = "must be 1, the only revision that this program supports; omit it, \
+                              or use the version of sistership that made these settings";
 
 /// A rule: field, allowed values, and true if it is kept.
 type SettingRule = (&'static str, &'static str, bool);

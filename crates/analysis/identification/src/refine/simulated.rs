@@ -161,7 +161,11 @@ pub(super) fn sister_coefficients(
 ) -> Result<Vec<Vec<f64>>, RefineError> {
     let one = |model: &Model| {
         let differ = || {
-            RefineError::Law(format!("`{}` has not the coefficients of its sisters", model.name))
+            RefineError::Law(format!(
+                "`{}` has other coefficients than the models simulated with \
+                                      it",
+                model.name
+            ))
         };
         ship.open_coefficient_values(model).ok_or_else(differ)
     };

@@ -157,7 +157,7 @@ impl<'a> StartingPoint<'_, 'a> {
         let sizes = merge_trials(&envelope.group_moments(&blocks)?, |_| true).unwrap_or_default();
         let measure = PriorMeasure::Population(envelope.clone(), members);
         measure.apply_to(&mut blocks, &mut model, &sizes)?;
-        model.note = Some("held by what a population of ships says".to_owned());
+        model.note = Some("prior from a population of ships".to_owned());
         Ok((model, measure))
     }
 

@@ -92,7 +92,7 @@ impl TermVariant {
         keep: impl Fn(usize) -> bool,
     ) -> Result<Vec<RegressionMoments>, RefineError> {
         merge_trials(&self.moments, keep)
-            .ok_or_else(|| RefineError::Data("the trials have no sample".into()))
+            .ok_or_else(|| RefineError::Data("the trials have no samples that can be used".into()))
     }
 
     /// The model with other values of some coefficients.
@@ -142,7 +142,8 @@ impl TermVariant {
         &self,
         problem: &RefinementProblem<'_>,
     ) -> Result<Vec<RegressionFold<'_>>, RefineError> {
-        let nothing = || RefineError::Data("a fold has no sample".into());
+        let nothing =
+            || RefineError::Data("a fold has no samples; give more or longer trials".into());
         let one = |fold: usize| {
             let training = merge_trials(&self.moments, |trial| problem.is_fitted(trial, fold))
                 .ok_or_else(nothing)?;

@@ -14,7 +14,10 @@ pub enum HorizonError {
     #[error(transparent)]
     Input(#[from] MissingInput),
     /// A recorded value, or the foundation's track from there, is not a finite number.
-    #[error("trial `{trial}`, {t_s} s: what was recorded or the foundation's track is no number")]
+    #[error(
+        "trial `{trial}`, {t_s} s: the record or the simulation by the foundation is not a \
+             finite number"
+    )]
     NotANumber {
         /// Name of the trial.
         trial: String,
@@ -23,7 +26,8 @@ pub enum HorizonError {
     },
     /// The foundation's track left the physical range.
     #[error(
-        "trial `{trial}`, {t_s} s: the foundation's track from there leaves the physical range"
+        "trial `{trial}`, {t_s} s: the simulation by the foundation from there leaves the \
+         physical range"
     )]
     Stopped {
         /// Name of the trial.
@@ -32,7 +36,7 @@ pub enum HorizonError {
         t_s: f64,
     },
     /// There are too few examples.
-    #[error("{found} examples are too few to learn from: {wanted} are needed at least")]
+    #[error("{found} examples are too few for training: at least {wanted} are needed")]
     Few {
         /// Number of examples.
         found: usize,

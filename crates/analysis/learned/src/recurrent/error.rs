@@ -15,7 +15,10 @@ pub enum SequenceError {
     #[error("the motions have different channels; give trials with the same ones")]
     Channels,
     /// No sequence is left to train on.
-    #[error("{found} sequences are too few to train on: give trials of {wanted} samples at least")]
+    #[error(
+        "{found} sequences are too few for training: give trials with at least {wanted} \
+             samples"
+    )]
     Few {
         /// Number of sequences.
         found: usize,

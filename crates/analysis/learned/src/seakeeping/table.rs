@@ -33,13 +33,13 @@ pub struct ResponseTable(ResponseGrid);
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TableFault {
     /// The grid of a field is not increasing, or is too short.
-    #[error("{0}: at least two numbers that rise are needed")]
+    #[error("{0}: at least two increasing numbers are needed")]
     Grid(&'static str),
     /// Directions go around the ship more than once.
-    #[error("betas: they go around the ship more than once")]
+    #[error("betas: they cover more than a full circle")]
     Turn,
     /// Directions omit a part of the ship's surroundings.
-    #[error("betas: they neither go around the ship nor from 0 to pi")]
+    #[error("betas: they must cover a full circle, or 0 to pi")]
     Gap,
     /// The number of rows or columns is wrong.
     #[error("{field}: {found} rows or columns, where the grid has {wanted}")]
@@ -52,7 +52,10 @@ pub enum TableFault {
         wanted: usize,
     },
     /// A value is negative or not a finite number.
-    #[error("{field}: row {row}, column {column}: an amplitude is a number of at least 0")]
+    #[error(
+        "{field}: row {row}, column {column}: an amplitude must be a finite number of at \
+             least 0"
+    )]
     Value {
         /// Name of the motion.
         field: &'static str,
@@ -270,9 +273,9 @@ mod tests {
         let told = ResponseTable::try_from(grid).map_err(|faults| faults.to_string());
         assert_eq!(
             told,
-            Err("omegas: at least two numbers that rise are needed; pitch: 71 rows or columns, \
-                 where the grid has 72; roll: row 6, column 8: an amplitude is a number of at \
-                 least 0"
+            Err("omegas: at least two increasing numbers are needed; pitch: 71 rows or columns, \
+                 where the grid has 72; roll: row 6, column 8: an amplitude must be a finite \
+                 number of at least 0"
                 .to_owned())
         );
     }

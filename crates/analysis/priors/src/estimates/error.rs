@@ -20,7 +20,10 @@ pub enum EstimateError {
         name: String,
     },
     /// Thrust and resistance have no equilibrium.
-    #[error("{ship}: the propeller of {diameter_m:.3} m cannot drive it at {speed_m_s} m/s")]
+    #[error(
+        "{ship}: a propeller of {diameter_m:.3} m cannot give the thrust for {speed_m_s} m/s; \
+             check diameter and speed"
+    )]
     NoBalance {
         /// The ship.
         ship: String,

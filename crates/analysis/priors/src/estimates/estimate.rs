@@ -335,7 +335,7 @@ impl ShipEstimate {
         if let Some(note) = &mut model.note
             && !note.contains(BALANCE)
         {
-            note.push_str("; revolutions by thrust-balance");
+            note.push_str("; revolutions by thrust balance");
         }
         Ok(model)
     }

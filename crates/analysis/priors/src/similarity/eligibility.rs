@@ -123,7 +123,7 @@ fn judge_eligibility(
         similar_vector(target, candidate.vessel, limits),
     ];
     match &candidate.model {
-        None => steps.push(StepOutcome::with_failure("no model: known by particulars only".into())),
+        None => steps.push(StepOutcome::with_failure("no model, only particulars".into())),
         // A simulation costs more than a comparison of numbers: it is run only if the other steps
         // are passed.
         Some(_) if steps.iter().all(|step| step.passed) => {
@@ -183,7 +183,7 @@ fn similar_vector(target: &Vessel, source: &Vessel, limits: &EligibilityLimits) 
         ))
     } else {
         StepOutcome::with_failure(format!(
-            "vector too different: {percent:.0} % in {name}, at most {limit:.0} %"
+            "vector too different: {percent:.0} % in {name}, allowed {limit:.0} %"
         ))
     }
 }
@@ -196,12 +196,15 @@ fn captures_trend(
         Ok(None) => {
             StepOutcome::with_pass("trend of the trials: not checked, no trials given".into())
         }
-        Err(reason) => StepOutcome::with_failure(format!("does not capture the trials: {reason}")),
+        Err(reason) => {
+            StepOutcome::with_failure(format!("cannot be compared with the trials: {reason}"))
+        }
         Ok(Some(r)) if r >= limits.trend => StepOutcome::with_pass(format!(
-            "captures the trend of the trials: yaw rate correlates at {r:.2}"
+            "captures the trend of the trials: correlation of the yaw rates {r:.2}"
         )),
         Ok(Some(r)) => StepOutcome::with_failure(format!(
-            "misses the trend of the trials: yaw rate correlates at {r:.2}, at least {:.2}",
+            "does not capture the trend of the trials: correlation of the yaw rates {r:.2}, \
+             needed {:.2}",
             limits.trend
         )),
     }

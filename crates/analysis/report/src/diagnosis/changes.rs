@@ -34,8 +34,8 @@ pub fn change_words(of: &EffectChange) -> String {
     let course = match of.course {
         ChangeCourse::Begins => format!("begins{}{between}", time(of.at_s)),
         ChangeCourse::Ends => format!("ends{}{between}", time(of.at_s)),
-        ChangeCourse::Drifts => "grows from its beginning to its end".to_owned(),
-        ChangeCourse::Throughout => "is there throughout, and not in all other trials".to_owned(),
+        ChangeCourse::Drifts => "grows throughout the trial".to_owned(),
+        ChangeCourse::Throughout => "acts throughout, but not in all other trials".to_owned(),
     };
     format!("in {} {name} {course}", of.trial)
 }
@@ -75,6 +75,6 @@ mod tests {
     fn what_has_no_time_is_told_without() {
         let told =
             change_words(&EffectChange { or: Vec::new(), ..damage(ChangeCourse::Throughout) });
-        assert!(told.ends_with("is there throughout, and not in all other trials"), "{told}");
+        assert!(told.ends_with("acts throughout, but not in all other trials"), "{told}");
     }
 }

@@ -121,8 +121,8 @@ pub(crate) fn manoeuvre_table(manoeuvres: &[ManoeuvreOutcome]) -> ReportTable {
         TableColumn::number_column("measured", ""),
         TableColumn::number_column("before", ""),
         TableColumn::number_column("after", ""),
-        TableColumn::number_column("before off by", "%"),
-        TableColumn::number_column("after off by", "%"),
+        TableColumn::number_column("error before", "%"),
+        TableColumn::number_column("error after", "%"),
     ];
     ReportTable { columns, rows: manoeuvres.iter().flat_map(manoeuvre_rows).collect() }
 }

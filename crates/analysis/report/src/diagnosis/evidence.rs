@@ -39,7 +39,7 @@ fn hypothesis_columns() -> Vec<TableColumn> {
         TableColumn::prose_column("hypothesis"),
         TableColumn::number_column("evidence", "ln"),
         TableColumn::text_column("that is", ""),
-        TableColumn::number_column("on trials left out", "ln"),
+        TableColumn::number_column("held-out", "ln"),
         TableColumn::prose_column("parameters ± standard error"),
         TableColumn::text_column("", ""),
     ]
@@ -48,7 +48,7 @@ fn hypothesis_columns() -> Vec<TableColumn> {
 fn hypothesis_row(hypothesis: &HypothesisReport) -> TableRow {
     let effects: Vec<String> =
         hypothesis.effects.iter().map(|effect| effect_words(effect)).collect();
-    let name = if effects.is_empty() { "the model alone".to_owned() } else { effects.join(" + ") };
+    let name = if effects.is_empty() { "no effect".to_owned() } else { effects.join(" + ") };
     let taken = if hypothesis.taken {
         TableCell::new("").with_mark("✓ taken", "chosen")
     } else {
@@ -79,7 +79,7 @@ fn effect_words(effect: &str) -> String {
 fn evidence_strength(evidence: f64) -> &'static str {
     match evidence {
         evidence if evidence < 0.0 => "against it",
-        evidence if evidence < 1.0 => "worth no more than a mention",
+        evidence if evidence < 1.0 => "not worth more than a bare mention",
         evidence if evidence < 3.0 => "positive",
         evidence if evidence < 5.0 => "strong",
         _ => "very strong",
@@ -161,16 +161,13 @@ pub(crate) fn confounded_table(found: &MissingEffect) -> ReportTable {
     let columns = vec![
         TableColumn::text_column("effect", ""),
         TableColumn::number_column("angle", "deg"),
-        TableColumn::number_column("evidence behind", "ln"),
+        TableColumn::number_column("evidence difference", "ln"),
         TableColumn::text_column("", ""),
     ];
     let row = |other: &ConfoundedEffect| {
         // Below 3 in the logarithm the evidence does not separate the two.
-        let (mark, kind) = if other.behind < 3.0 {
-            ("could as well be this", "bad")
-        } else {
-            ("less likely", "open")
-        };
+        let (mark, kind) =
+            if other.behind < 3.0 { ("equally plausible", "bad") } else { ("less likely", "open") };
         let cells = vec![
             TableCell::code_cell(&other.name),
             TableCell::new(format_fixed(other.angle_deg, 1)),
@@ -187,8 +184,8 @@ pub(crate) fn confounded_table(found: &MissingEffect) -> ReportTable {
 pub(crate) fn next_trial_instruction(next: &NextTrial) -> String {
     let names: Vec<String> = next.separates.iter().map(|name| name.replace('-', " ")).collect();
     format!(
-        "Sail a {} at {} m/s ({} kn) on a heading of {:.0} deg. It is expected to tell {} apart \
-         (by {} in the logarithm of the evidence).",
+        "Carry out a {} at {} m/s ({} kn) on a heading of {:.0} deg. It is expected to \
+         distinguish {} (by {} in the logarithm of the evidence).",
         next.manoeuvre,
         format_significant(next.speed_m_s, 3),
         format_fixed(next.speed_m_s / KNOT_M_S, 1),
@@ -202,7 +199,7 @@ pub(crate) fn next_trial_instruction(next: &NextTrial) -> String {
 pub(crate) fn point_of_action(acts_on: ActsOn) -> &'static str {
     match acts_on {
         ActsOn::Force => "a force on the ship",
-        ActsOn::Inflow => "what the hull, propeller or rudder sees",
-        ActsOn::Measurement => "what the instruments say",
+        ActsOn::Inflow => "the inflow of hull, propeller or rudder",
+        ActsOn::Measurement => "the readings of instruments",
     }
 }

@@ -199,7 +199,7 @@ fn plot_caption(replayed: &ReplayedTrial<'_>) -> String {
     let dots = format_stated(plots::mark_interval_s(shown.duration_s), 3);
     format!(
         "Outlines of the ship (dots where they would be too small to see) every {dots} s. RMS \
-         error over the whole run, before → after: {}.",
+         error over the whole simulation, before → after: {}.",
         join_words(&errors)
     )
 }

@@ -12,10 +12,10 @@ pub(crate) fn limit_table(diagnosis: &Diagnosis) -> ReportTable {
         TableColumn::text_column("effect", ""),
         TableColumn::text_column("form", ""),
         TableColumn::text_column("parameter", ""),
-        TableColumn::number_column("shown from", ""),
+        TableColumn::number_column("detection limit", ""),
         TableColumn::number_column("usual", ""),
         TableColumn::text_column("unit", ""),
-        TableColumn::prose_column("told"),
+        TableColumn::prose_column("detectable"),
     ];
     ReportTable { columns, rows: diagnosis.limits.iter().map(limit_row).collect() }
 }
@@ -41,20 +41,16 @@ fn limit_row(limit: &DetectionLimit) -> TableRow {
 /// Reason why an effect cannot be detected.
 fn limit_reason(limited_by: LimitedBy) -> &'static str {
     match limited_by {
-        LimitedBy::Model => {
-            "cannot tell: the model resembles it by its own errors; refine it first"
-        }
-        LimitedBy::Trials => "cannot tell: these trials do not excite it by itself",
-        LimitedBy::Sensors => "cannot tell: the instruments scatter too much",
+        LimitedBy::Model => "no: errors of the model have the same shape; refine the model first",
+        LimitedBy::Trials => "no: these trials do not excite it separately",
+        LimitedBy::Sensors => "no: the instruments are too noisy",
     }
 }
 
 /// Table of the prior odds of each effect.
 pub(crate) fn odds_table(diagnosis: &Diagnosis) -> ReportTable {
-    let columns = vec![
-        TableColumn::text_column("effect", ""),
-        TableColumn::number_column("odds beforehand", ""),
-    ];
+    let columns =
+        vec![TableColumn::text_column("effect", ""), TableColumn::number_column("prior odds", "")];
     let row = |(name, odds): (&String, &f64)| {
         TableRow::from_cells(vec![
             TableCell::new(name.replace('-', " ")),

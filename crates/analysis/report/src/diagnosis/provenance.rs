@@ -19,14 +19,14 @@ pub(crate) fn model_facts(model: &Model) -> Vec<(&'static str, String)> {
     );
     let carried: Vec<String> = model.effects.iter().map(effect_text).collect();
     lines.push((
-        "Effects it carries already",
+        "Effects included already",
         if carried.is_empty() { "none".into() } else { carried.join("; ") },
     ));
     let open = match &model.uncertainty {
-        Some(uncertainty) => format!("learned on {}", uncertainty.trials.join(", ")),
-        None => "not known; what the settings say is allowed instead".into(),
+        Some(uncertainty) => format!("estimated on {}", uncertainty.trials.join(", ")),
+        None => "unknown; the setting `slack` is used instead".into(),
     };
-    lines.push(("What its own trials leave open", open));
+    lines.push(("Uncertainty of the model", open));
     lines.extend(model.note.iter().map(|note| ("Note", note.clone())));
     lines
 }

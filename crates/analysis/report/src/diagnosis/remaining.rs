@@ -47,7 +47,7 @@ pub fn origin_sentence(all: &[RemainderOrigin]) -> Option<String> {
     };
     let (most, trials) = (origin_words(first), first.trials);
     Some(format!(
-        "It comes most likely from {most}, {kind} (evidence {}, foremost in {} of {trials} \
+        "The most probable origin is {most}, {kind} (evidence {}, largest in {} of {trials} \
          trials){beside}.",
         evidence(first),
         first.first_in
@@ -70,13 +70,13 @@ pub fn dependence_sentence(of: &RemainderDependence) -> String {
     let equation = motion_word(&of.channel);
     let explained = percent(of.explained);
     match (names.is_empty(), explained == "0") {
-        (true, true) => format!("What is left in {equation} follows nothing that was recorded."),
+        (true, true) => format!("The residual in {equation} depends on no recorded variable."),
         (true, false) => format!(
-            "{explained} % of what is left in {equation} follows what was recorded, no one \
-             variable by itself."
+            "{explained} % of the residual in {equation} depends on recorded variables, but on no \
+             single one."
         ),
         (false, _) => format!(
-            "{explained} % of what is left in {equation} follows what was recorded, most of all \
+            "{explained} % of the residual in {equation} depends on recorded variables, mainly on \
              {}.",
             join_words(&names)
         ),
@@ -144,21 +144,17 @@ pub(crate) fn coefficient_table(before: &Model, after: &Model) -> Option<ReportT
 const MEANINGS: [(&str, &str); 6] = [
     (
         "restart_s",
-        "simulations that judge start anew from the measured state every so often, s; by default \
+        "interval after which held-out simulations restart from the measured state, s; by default \
          ten times L/U",
     ),
     (
         "least_step_s",
         "shortest interval between samples that are used, s; by default a fiftieth of L/U",
     ),
-    (
-        "slack",
-        "how far a published coefficient may be from the truth, as a share of its value, where the \
-         model does not say",
-    ),
-    ("least_evidence", "least evidence for an effect to be named"),
-    ("most_effects", "most effects that are named together"),
-    ("prior_odds", "odds that trials have an effect, where others than the library's are set"),
+    ("slack", "relative standard deviation of coefficients of a model without a posterior"),
+    ("least_evidence", "smallest evidence of a reported effect"),
+    ("most_effects", "largest number of effects in a combination"),
+    ("prior_odds", "prior odds of effects that replace those of the library"),
 ];
 
 /// Table of all settings with their meaning.

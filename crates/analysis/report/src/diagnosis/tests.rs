@@ -14,8 +14,8 @@ fn a_current_is_said_in_one_sentence() {
     let RenderedReport { html, json } = Case::new().render();
     assert_eq!(json["sentence"], "Your model lacks: current (0.60 m/s towards 45 deg).");
     assert!(html.contains("Your model lacks: current (0.60 m/s towards 45 deg)."));
-    assert!(html.contains("Sail a zigzag 10/10 at 7.00 m/s (13.6 kn) on a heading of 90 deg"));
-    assert!(html.contains("0.601") && html.contains("could as well be this"));
+    assert!(html.contains("Carry out a zigzag 10/10 at 7.00 m/s (13.6 kn) on a heading of 90 deg"));
+    assert!(html.contains("0.601") && html.contains("equally plausible"));
     assert_eq!(
         (json["verdict"].as_str(), json["version"]["made"]["number"].as_i64()),
         (Some("effects"), Some(3))
@@ -56,8 +56,8 @@ fn every_part_is_there_and_in_order() {
     // each variable on which what is left depends.
     assert_eq!(html.matches("class=\"plot\"").count(), 2 * 3 + 2 + 2);
     assert!(html.contains(
-        "It comes most likely from yaw, a force or moment that the model lacks (evidence 412, \
-         foremost in 2 of 2 trials); the readings of the heading (96)."
+        "The most probable origin is yaw, a force or moment that the model lacks (evidence 412, \
+         largest in 2 of 2 trials); the readings of the heading (96)."
     ));
     assert!(
         html.contains("class=\"band\"")
@@ -138,8 +138,8 @@ fn the_page_says_where_it_comes_from() {
         "published",
         "600",
         "delta",
-        "Effects it carries already",
-        "Made by sistership",
+        "Effects included already",
+        "Created by Sistership",
     ] {
         assert!(provenance.contains(part), "{part}");
     }
@@ -196,6 +196,6 @@ fn nothing_to_show_is_no_fault() {
     (case.diagnosis.before, case.diagnosis.after) = Default::default();
     let html = case.render().html;
     assert!(
-        html.contains("No hypothesis could be tried") && !html.contains("<section id=\"against\"")
+        html.contains("No hypothesis could be tested") && !html.contains("<section id=\"against\"")
     );
 }

@@ -30,8 +30,8 @@ fn dependence_plot(channel: &str, variable: &VariableDependence) -> SvgPlot {
     let line = Shape::Path { d: path_data(&places, |_, _| false), class: "refined" };
     plot.with_content(
         vec![line],
-        format!("left of d{channel}/dt [{of_rest}]"),
+        format!("residual of d{channel}/dt [{of_rest}]"),
         format!("{name} [{unit}]"),
-        format!("What is left of d{channel}/dt by {name}"),
+        format!("Residual of d{channel}/dt by {name}"),
     )
 }

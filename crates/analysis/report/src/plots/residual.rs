@@ -63,7 +63,7 @@ fn acceleration_panel(
     // The band is symmetric, so its negative side must also fit.
     let (low, high) = padded_range((low.min(-high_band(series, factor)), high), 0.06);
     let scale = AxisScale { low, high, length: HEIGHT, reversed: true };
-    let title = format!("d{}/dt: what must be added to the model [{unit}]", series.channel);
+    let title = format!("residual of d{}/dt [{unit}]", series.channel);
     let mut shapes = vec![Shape::Text { at: (LEFT, top - 6.0), text: title, class: "title" }];
     let place = |values: &[f64]| -> Vec<(f64, f64)> {
         series

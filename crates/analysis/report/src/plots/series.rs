@@ -78,7 +78,7 @@ fn channel_panel(
     };
     let (low, high) = padded_range(display_range(range(true), range(false)), 0.06);
     let scale = AxisScale { low, high, length: HEIGHT, reversed: true };
-    let given = if channel == Channel::Delta { ", given to both models" } else { "" };
+    let given = if channel == Channel::Delta { ", input of both models" } else { "" };
     let title = format!("{} {} [{}]{given}", quantity.name, quantity.symbol, quantity.unit);
     let mut shapes = vec![Shape::Text { at: (LEFT, top - 6.0), text: title, class: "title" }];
     shapes.extend(grid_rows((LEFT, top), time.length, &scale, 5));

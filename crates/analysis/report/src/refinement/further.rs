@@ -25,10 +25,12 @@ pub(crate) fn simulate_further(
 /// Remarks that are needed to read the figures.
 pub(crate) fn further_remarks(sailed: &FurtherManoeuvres, lpp_m: f64) -> Vec<String> {
     let stable = match sailed.straight_line_stable {
-        Some(true) => Some("by pull-outs to both sides the ship is stable on a straight course"),
-        Some(false) => Some("by pull-outs the ship is not stable on a straight course"),
+        Some(true) => {
+            Some("according to pull-outs to both sides, the ship is straight-line stable")
+        }
+        Some(false) => Some("according to pull-outs, the ship is not straight-line stable"),
         None if sailed.pull_outs.is_empty() => None,
-        None => Some("by pull-outs it cannot be told whether it is stable on a straight course"),
+        None => Some("pull-outs do not decide whether the ship is straight-line stable"),
     };
     let mut all = sailed.reader_remarks(lpp_m);
     all.extend(stable.map(str::to_owned));

@@ -162,10 +162,11 @@ fn plot_caption(shown: &ReplaySummary<'_>) -> String {
         |quantity: &&words::DisplayChannel| ["r", "psi", "x", "y"].contains(&quantity.channel);
     let errors: Vec<String> = words::CHANNELS.iter().filter(wanted).filter_map(error).collect();
     let dots = format_stated(plots::mark_interval_s(shown.duration_s), 3);
-    let part = if shown.fitted { "was fitted with" } else { "has not seen" };
+    let part = if shown.fitted { "was fitted to" } else { "was not fitted to" };
     format!(
         "Outlines of the ship (dots where they would be too small to see) every {dots} s. The \
-         refined model {part} this trial. RMS error over the whole run, source → refined: {}.",
+         refined model {part} this trial. RMS error over the whole simulation, source → refined: \
+         {}.",
         join_words(&errors)
     )
 }

@@ -25,7 +25,7 @@ pub(crate) fn collect_figures(input: &RefinementInput<'_>) -> Vec<MeasuredFigure
 }
 
 fn compared_figures(manoeuvre: &MeasuredManoeuvre) -> Vec<MeasuredFigure> {
-    let seen = if manoeuvre.fitted { "fitted" } else { "kept out of the fit" };
+    let seen = if manoeuvre.fitted { "fitted" } else { "held out of the fit" };
     let trial = format!("{}, {seen}", manoeuvre.trial);
     let measured = manoeuvre_figures(&manoeuvre.measured);
     let of = |metrics: &Option<ManoeuvreMetrics>| {

@@ -99,7 +99,7 @@ fn derivation_kind(source: &str) -> Option<&'static str> {
         "approach-speed" => Some("from trials"),
         _ if source.starts_with(SCALED) => Some("scaled"),
         _ if is_estimated(source) => Some("estimated"),
-        _ if source.starts_with("mean of what") => Some("of a population"),
+        _ if source.starts_with("mean over a population") => Some("of a population"),
         _ => None,
     }
 }

@@ -15,8 +15,8 @@ pub(crate) fn selection_report_table(ladder: &SelectionReport) -> ReportTable {
         TableColumn::number_column("error", ""),
         TableColumn::number_column("std. error", ""),
         TableColumn::number_column("elsewhere", ""),
-        TableColumn::number_column("took", "s"),
-        TableColumn::prose_column("why"),
+        TableColumn::number_column("time", "s"),
+        TableColumn::prose_column("reason"),
     ];
     ReportTable { columns, rows: ladder.lines.iter().map(candidate_row).collect() }
 }
@@ -28,7 +28,7 @@ fn candidate_row(line: &ReportLine) -> TableRow {
     };
     let cells = vec![
         match (line.chosen, line.reference) {
-            (true, _) => source.with_mark("taken", "chosen"),
+            (true, _) => source.with_mark("selected", "chosen"),
             (false, true) => source.with_mark("reference", "note"),
             (false, false) => source,
         },
@@ -47,7 +47,7 @@ fn candidate_row(line: &ReportLine) -> TableRow {
 /// Estimator of a stage.
 fn stage_estimator(rung: SelectionStage) -> &'static str {
     match rung {
-        SelectionStage::CarriedOver => "none: as carried over",
+        SelectionStage::CarriedOver => "none: source unchanged",
         SelectionStage::Weak => "weak form",
         SelectionStage::Trajectory => "trajectory form",
     }

@@ -30,10 +30,10 @@ pub(crate) fn source_remark(similarity: &SimilarityRanking, chosen: &str) -> Opt
     match first {
         Some(first) if first == chosen => None,
         Some(first) => Some(format!(
-            "The source was named for this refinement; by the ranking it would have been {first}."
+            "The source was given for this refinement; the ranking would have selected {first}."
         )),
         None => Some(
-            "The source was named for this refinement; by the ranking no ship is eligible.".into(),
+            "The source was given for this refinement; no ship of the ranking is eligible.".into(),
         ),
     }
 }

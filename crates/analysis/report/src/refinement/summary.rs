@@ -92,32 +92,36 @@ impl<'a> HeldOutErrors<'a> {
 fn without_coefficients(input: &RefinementInput<'_>) -> String {
     let source = &input.refinement.source;
     let who = match source == TRIALS_ALONE {
-        true => "No ship was the source".to_owned(),
-        false => format!("What {source} says is the prior, not what is compared"),
+        true => "No ship served as the source".to_owned(),
+        false => format!(
+            "The accelerations of {source} are the prior, not the basis of the \
+                          comparison"
+        ),
     };
     format!(
-        " {who}: the comparison is with the law without coefficients, which answers to no rudder, \
-         so these factors are no measure of what a similar ship would have given."
+        " {who}: the errors are compared with those of the law without coefficients, which does \
+         not respond to the rudder, so these factors do not show the gain over the model of a \
+         similar ship."
     )
 }
 
 /// Result of the refinement, as a sentence.
 fn verdict_sentence(input: &RefinementInput<'_>, errors: &HeldOutErrors<'_>) -> String {
     if input.refinement.is_source_kept() {
-        return "No refinement beat the source on manoeuvres left out: the source model is kept as \
-            it is.".into();
+        return "No refinement was better than the source on held-out manoeuvres: the source model \
+                is kept unchanged.".into();
     }
     let phrases: Vec<String> = ["fell", "rose", "unchanged"]
         .into_iter()
         .filter_map(|word| change_phrase(errors, word))
         .collect();
     let place = if errors.on_fitted_trial {
-        "On the trial that was fitted (nothing could be left out)"
+        "On the fitted trial (no trial could be held out)"
     } else {
-        "On manoeuvres that the fit had not seen"
+        "On held-out manoeuvres"
     };
     if phrases.is_empty() {
-        return format!("{place}, no error is known.");
+        return format!("{place}, the error is unknown.");
     }
     let compared =
         if has_no_coefficients(input) { without_coefficients(input) } else { String::new() };

@@ -85,14 +85,11 @@ pub fn run_restore(restore: &RestoreArguments) -> Result<(), Failure> {
 
 fn format_manifest(done: &str, manifest: &BackupManifest) -> String {
     let files: u64 = manifest.files.values().map(|file| file.bytes).sum();
-    let lost: String = manifest
-        .lost
-        .iter()
-        .map(|key| format!("lost: the samples {key} are missing or damaged\n"))
-        .collect();
+    let lost: String =
+        manifest.lost.iter().map(|key| format!("missing or damaged samples: {key}\n")).collect();
     let objects = format_count(manifest.objects, "object");
     format!(
-        "{lost}{done}: {files} bytes of the database, {objects} of {} bytes\n",
+        "{lost}{done}: a database of {files} bytes, {objects} with {} bytes\n",
         manifest.object_bytes
     )
 }

@@ -28,8 +28,8 @@ Examples:
   sistership branch --model mariner --trials a.csv b.csv c.csv --kind forest --mode parallel --out m.yaml --json
 
 The weights are written next to the model: with-branch.weights.json for with-branch.yaml. By default
-every kind is compared on held-out trials, and none is used that is not significantly better than
-the model without a correction: --out then writes nothing, and the exit status is 0.";
+all kinds are compared on held-out trials, and the best is used if it is significantly better than
+the model without a correction. Otherwise --out writes nothing, and the exit status is 0.";
 
 /// Train a learned correction on the residual accelerations of a model.
 #[derive(Debug, Args)]
@@ -155,9 +155,9 @@ pub fn run(zoo: &Zoo, arguments: &BranchArguments) -> Result<(), Failure> {
         (Some(out), Some(beside), Some(trained)) => {
             // Weights first, so that a model that exists has its weights.
             beside.write(&trained.weights)?;
-            out.write(model_file(zoo, &trained.model, "with a learned branch")?.as_bytes())?;
+            out.write(model_file(zoo, &trained.model, "with a learned correction")?.as_bytes())?;
         }
-        (Some(_), ..) => print_note("no branch is taken, and --out writes nothing"),
+        (Some(_), ..) => print_note("no learned correction is used, and --out writes nothing"),
         _ => {}
     }
     // The output names only files that were written.
@@ -197,7 +197,7 @@ fn train_and_judge(
 ) -> Result<(Option<BranchChoice>, Option<TrainedCorrection>), Failure> {
     let (choice, settings) = if settings.is_open() {
         let told = |kind: BranchKind| {
-            print_note(&format!("trying {} on trials left out", kind.name()));
+            print_note(&format!("cross-validating {}", kind.name()));
             true
         };
         // The foundation is the same in every fold.
@@ -214,14 +214,14 @@ fn train_and_judge(
         (None, settings.clone())
     };
     let training = settings.complete_training(model, law, trials).map_err(refusal)?;
-    print_note("training the branch, and judging it on trials left out");
+    print_note("training the learned correction and cross-validating it");
     let (branch, weights) = train_correction(model, law, trials, &training).map_err(refusal)?;
     let judgement = evaluate_training(model, law, trials, &training).map_err(refusal)?;
     let weights = weights.to_bytes().map_err(refusal)?;
     let mut model = with_branch(model, branch);
     // The calibration simulates the model, so the weights must be attached before it.
     attach(&mut model, &weights).map_err(refusal)?;
-    print_note("learning what these trials leave open beside it");
+    print_note("estimating the noise model of the corrected model");
     let effects: Vec<_> = zoo.effects().cloned().collect();
     let model = correction_with_uncertainty(model, law, &effects, trials);
     Ok((choice, Some(TrainedCorrection { model, weights, training, judgement })))

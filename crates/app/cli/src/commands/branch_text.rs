@@ -9,10 +9,10 @@ use crate::table::{TextTable, format_number, format_optional};
 pub(super) fn format_branch(document: &BranchDocument<'_>) -> String {
     let tried = document.choice.map_or(String::new(), format_choice);
     let Some(branch) = &document.branch else {
-        return format!("{tried}{}: no branch is taken\n", document.model);
+        return format!("{tried}{}: no learned correction is used\n", document.model);
     };
     let judged = document.judgement.map_or_else(
-        || "one trial only: none is left to judge it on\n".to_owned(),
+        || "there is only one trial, so that cross-validation is not possible\n".to_owned(),
         |judgement| format_judgement(judgement, document.wins == Some(true)),
     );
     let written = match (document.files.out, document.weights) {
@@ -25,7 +25,7 @@ pub(super) fn format_branch(document: &BranchDocument<'_>) -> String {
 }
 
 fn format_choice(choice: &BranchChoice) -> String {
-    let mut table = TextTable::new(["kind", "foundation", "with branch", "std. error"]);
+    let mut table = TextTable::new(["kind", "foundation", "corrected", "std. error"]);
     for tried in &choice.tried {
         table.add_row([
             tried.kind.name().to_owned(),
@@ -34,11 +34,11 @@ fn format_choice(choice: &BranchChoice) -> String {
             format_optional(tried.standard_error),
         ]);
     }
-    format!("standardised MSE on trials left out of the training\n\n{table}\n{}\n\n", choice.reason)
+    format!("standardised MSE on held-out trials\n\n{table}\n{}\n\n", choice.reason)
 }
 
 fn format_judgement(judgement: &CorrectionEvaluation, wins: bool) -> String {
-    let mut table = TextTable::new(["trial left out", "foundation", "with branch", "share %"]);
+    let mut table = TextTable::new(["held-out trial", "foundation", "corrected", "share %"]);
     for trial in &judgement.trials {
         let errors = [trial.foundation.standardised_mse, trial.branch.standardised_mse];
         let share = format_number(100.0 * trial.share);
@@ -54,12 +54,16 @@ fn format_judgement(judgement: &CorrectionEvaluation, wins: bool) -> String {
         format_number(100.0 * share),
     ]);
     let Some(standard_error) = standard_error else {
-        return format!("standardised MSE; share: what the branch counted for\n\n{table}\n");
+        return format!(
+            "standardised MSE on held-out trials; share: mean share of the correction \
+                        in the simulation\n\n{table}\n"
+        );
     };
-    let word = if wins { "wins by more than" } else { "does NOT win by more than" };
+    let word = if wins { "better by more than" } else { "NOT better by more than" };
     format!(
-        "standardised MSE; share: what the branch counted for\n\n{table}\nthe branch {word} the \
-         standard error of the difference, {}\n",
+        "standardised MSE on held-out trials; share: mean share of the correction in the \
+         simulation\n\n{table}\nthe correction is {word} the standard error of the difference, \
+         {}\n",
         format_number(*standard_error)
     )
 }

@@ -11,12 +11,11 @@ use crate::output::{self, format_count};
 use crate::table::format_number;
 use crate::trials::format_finding;
 
-const EXAMPLES: &str = "\
-Examples:
+const EXAMPLES: &str = "Examples:
   sistership check zigzag.csv turning.parquet
   sistership check trials.yaml --json
 
-Exit status 1 when any trial is refused; warnings refuse nothing.";
+Exit status 1 if a trial is refused; a trial with warnings only is accepted.";
 
 /// Check trial files: units, signs, gaps, jumps, time.
 #[derive(Debug, Args)]

@@ -18,8 +18,8 @@ Examples:
   sistership compare kvlcc2 my-tanker.yaml
   sistership compare my-model.yaml source.yaml --trials trials.yaml --json
 
-Errors are root mean squares of simulations that start once from the first sample. An IMO criterion
-that is not met is a result: the exit status is 0.";
+Errors are root mean squares of simulations that start once from the first sample. The exit status
+is 0 even if an IMO criterion is not met.";
 
 /// Compare two to five models: coefficients, errors on the same trials, standard manoeuvres.
 #[derive(Debug, Args)]

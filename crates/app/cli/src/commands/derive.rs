@@ -86,7 +86,7 @@ fn file_error(path: &Path, field: String, message: String) -> FileError {
 }
 
 fn format_report(derived: &LawDerivation, unknowns: &UnknownCounts, out: Option<&Path>) -> String {
-    let mut table = TextTable::new(["terms after", "setting", "X", "Y", "N", "all"]);
+    let mut table = TextTable::new(["rule", "setting", "X", "Y", "N", "all"]);
     for rule in &unknowns.rules {
         let counts = [rule.x, rule.y, rule.n, rule.total].map(|count| count.to_string());
         table.add_row([rule.rule.to_owned(), rule.setting.clone()].into_iter().chain(counts));

@@ -27,9 +27,9 @@ Examples:
   sistership diagnose --model my-model.yaml --trials a.csv b.csv c.csv --out with-effects.yaml --json
   sistership diagnose --zoo my-effects --model kvlcc2 --trials trials.yaml
 
-Give several trials that the model was not fitted on, on several headings: on a single heading a
-current and a wind cannot be distinguished. The verdict is `complete`, `effects` or `unexplained`;
-the exit status is 0 for each.";
+Give several trials that the model was not fitted on, on several headings: on a single heading
+current and wind cannot be distinguished. The verdict is `complete`, `effects` or `unexplained`;
+the exit status is 0 for all three.";
 
 /// Find the physical effects that a model lacks, from trials that it was not fitted on.
 #[derive(Debug, Args)]
@@ -132,7 +132,10 @@ fn diagnosis_settings(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<Settin
     let unknown = |(name, _): &&(String, f64)| zoo.effect(name).is_none();
     if let Some((name, _)) = arguments.prior_odds.iter().find(unknown) {
         let known: Vec<&str> = zoo.effects().map(|effect| effect.name.as_str()).collect();
-        let message = format!("--prior-odds: no effect `{name}`; there are {}", known.join(", "));
+        let message = format!(
+            "--prior-odds: there is no effect `{name}`; choose one of {}",
+            known.join(", ")
+        );
         return Err(Failure::Call(message));
     }
     let default = Settings::default();
@@ -175,7 +178,10 @@ fn write_model(zoo: &Zoo, out: Option<OutputFile>, diagnosis: &Diagnosis) -> Res
             .write(model_file(zoo, model, "with the effects that a diagnosis found")?.as_bytes())
             .map(|()| true),
         (Some(_), None) => {
-            print_note("no effect was found: the model stays as it is, and --out writes nothing");
+            print_note(
+                "no missing effect was found: the model is unchanged, and --out writes \
+                        nothing",
+            );
             Ok(false)
         }
         (None, _) => Ok(false),
@@ -191,7 +197,7 @@ fn report_html(
     let trials = trials::trial_refs(read);
     let input = DiagnosisInput { diagnosis, model, law, trials: &trials, of: None, made: None };
     let rendered = render_diagnosis(&input)
-        .map_err(|error| Failure::Refused(format!("the report: {error}")))?;
+        .map_err(|error| Failure::Refused(format!("the report cannot be written: {error}")))?;
     Ok(rendered.html.into_bytes())
 }
 

@@ -28,10 +28,7 @@ pub fn format_diagnosis(diagnosis: &Diagnosis, model: &Model, files: &WrittenFil
     )];
     parts.extend(diagnosis.effects.iter().map(format_effect));
     if !diagnosis.unexplained.is_empty() {
-        parts.push(format!(
-            "What no effect explains\n{}",
-            format_unexplained(&diagnosis.unexplained)
-        ));
+        parts.push(format!("Unexplained segments\n{}", format_unexplained(&diagnosis.unexplained)));
         parts.extend(format_changes(diagnosis));
         parts.extend(origin_sentence(&diagnosis.origins).map(|said| said + "\n"));
         parts.extend(diagnosis.depends_on.iter().map(|left| dependence_sentence(left) + "\n"));
@@ -81,13 +78,16 @@ fn format_effect(found: &MissingEffect) -> String {
         "{name} ({form}): {meaning}; evidence {evidence:.1} (above 5 is very strong)\n{table}"
     );
     let other = |other: &ConfoundedEffect| {
-        format!("{} ({:.1} deg, evidence {:.1} behind)", other.name, other.angle_deg, other.behind)
+        format!(
+            "{} (angle {:.1} deg, evidence lower by {:.1})",
+            other.name, other.angle_deg, other.behind
+        )
     };
     let others: Vec<String> = found.confounded_with.iter().map(other).collect();
     if others.is_empty() {
         head
     } else {
-        format!("{head}  hard to tell by these trials from {}\n", others.join(", "))
+        format!("{head}  these trials hardly distinguish it from {}\n", others.join(", "))
     }
 }
 
@@ -104,14 +104,14 @@ fn format_unexplained(stretches: &[UnexplainedSegment]) -> TextTable {
 fn format_changes(diagnosis: &Diagnosis) -> Option<String> {
     let lines: Vec<String> =
         diagnosis.changes.iter().map(|one| format!("  {}\n", change_words(one))).collect();
-    let of_the_day = "it is of that day: no model carries it";
-    (!lines.is_empty()).then(|| format!("What changed then ({of_the_day})\n{}", lines.concat()))
+    let of_the_day = "specific to these trials, not added to the model";
+    (!lines.is_empty()).then(|| format!("Changes within trials ({of_the_day})\n{}", lines.concat()))
 }
 
 fn format_next_trial(next: &NextTrial) -> String {
     let (speed, heading) = (format_number(next.speed_m_s), format_number(next.heading_deg));
     format!(
-        "To be sure, sail next: {} at {speed} m/s, heading {heading} deg; it tells {} apart\n",
+        "Recommended next trial: {} at {speed} m/s, heading {heading} deg; it distinguishes {}\n",
         next.manoeuvre,
         next.separates.join(" and ")
     )
@@ -119,20 +119,24 @@ fn format_next_trial(next: &NextTrial) -> String {
 
 /// Formats the detection limits of effects; `None` if there are none.
 fn format_limits(diagnosis: &Diagnosis) -> Option<String> {
-    let mut table = TextTable::new(["effect", "form", "parameter", "shown from", "usual", "told"]);
+    let mut table = TextTable::new(["effect", "form", "parameter", "limit", "usual", "detectable"]);
     for limit in &diagnosis.limits {
         // The cause says what would lower the limit.
         let told = limit.limited_by.map_or("yes", |cause| match cause {
-            LimitedBy::Model => "cannot tell: refine the model first",
-            LimitedBy::Trials => "cannot tell: other trials are needed",
-            LimitedBy::Sensors => "cannot tell: the instruments scatter too much",
+            LimitedBy::Model => "no: refine the model first",
+            LimitedBy::Trials => "no: other trials are needed",
+            LimitedBy::Sensors => "no: the instruments are too noisy",
         });
         let names = [&limit.effect, &limit.form, &limit.parameter].map(Clone::clone);
         let sizes = [format_optional(limit.size), format_number(limit.usual), told.to_owned()];
         table.add_row(names.into_iter().chain(sizes));
     }
-    (!diagnosis.limits.is_empty())
-        .then(|| format!("The smallest sizes that would have been shown (90 %)\n{table}"))
+    (!diagnosis.limits.is_empty()).then(|| {
+        format!(
+            "Detection limits: sizes that would be detected with 90 % \
+                          probability\n{table}"
+        )
+    })
 }
 
 /// Formats the errors on held-out trials, before and after, also relative to the noise.
@@ -176,10 +180,10 @@ fn format_errors(diagnosis: &Diagnosis) -> TextTable {
 }
 
 fn format_hypotheses(hypotheses: &[HypothesisReport]) -> TextTable {
-    let mut table = TextTable::new(["hypothesis", "evidence", "on trials left out", "taken"]);
+    let mut table = TextTable::new(["hypothesis", "evidence", "held-out", "selected"]);
     for hypothesis in distinct_hypotheses(hypotheses).into_iter().take(MAX_HYPOTHESES) {
         let name = if hypothesis.effects.is_empty() {
-            "the model alone".to_owned()
+            "no effect".to_owned()
         } else {
             hypothesis.effects.join(" + ")
         };

@@ -29,9 +29,9 @@ Examples:
   sistership estimate --ship pcc --out pcc-estimate.yaml
   sistership manoeuvre --model pcc-estimate.yaml --all
 
-The ship needs lpp_m, beam_m and draught_m. What else it does not state (block coefficient, speed,
-centre of gravity, rudder, propeller) is estimated and named with its band. What comes out is an
-estimate by published regressions (models/regressions), not a measurement.";
+The ship needs lpp_m, beam_m and draught_m. Other particulars that it does not state (block
+coefficient, speed, centre of gravity, rudder, propeller) are estimated and listed with their bands.
+The model follows from published regressions (models/regressions), not from measurements.";
 
 /// Estimate a model of a ship from its particulars, with uncertainty bands of the standard
 /// manoeuvres.
@@ -86,8 +86,13 @@ pub fn run(zoo: &Zoo, asked: &EstimateArguments) -> Result<(), Failure> {
     let file = output_file(asked.out.as_deref(), &inputs)?;
     let (estimate, law) = estimate_model(zoo, &vessel, asked.speed_m_s)?;
     let speed_m_s = approach_speed(&vessel, asked.speed_m_s)?;
-    let bands = estimate_bands(&estimate, &law, asked.seed)
-        .ok_or_else(|| Failure::Refused(format!("{}: the law does not fit", vessel.name())))?;
+    let bands = estimate_bands(&estimate, &law, asked.seed).ok_or_else(|| {
+        Failure::Refused(format!(
+            "{}: no model of this law can be built from its \
+                                                 particulars",
+            vessel.name()
+        ))
+    })?;
     if let Some(file) = file {
         let text = model_file(zoo, &estimate.model, "estimated from particulars")?;
         file.write(text.as_bytes())?;
@@ -135,7 +140,12 @@ pub(super) fn estimate_model(
 ) -> Result<(ShipEstimate, Arc<Law>), Failure> {
     let speed_m_s = approach_speed(vessel, speed_m_s)?;
     let library = RegressionLibrary::parse_embedded()?;
-    let law = zoo.law(LAW).ok_or_else(|| Failure::Refused(format!("there is no law `{LAW}`")))?;
+    let law = zoo.law(LAW).ok_or_else(|| {
+        Failure::Refused(format!(
+            "the law `{LAW}` is not in the \
+                                                                   zoo"
+        ))
+    })?;
     let refused =
         |error: sistership_priors::estimates::EstimateError| Failure::Refused(error.to_string());
     let estimate = estimated(&library, vessel, law, speed_m_s).map_err(refused)?;
@@ -175,8 +185,8 @@ fn format_estimate(
     let estimated = describe_estimates(&document.model.particulars);
     let estimated = estimated.map(|words| format!("remark: {words}\n")).unwrap_or_default();
     format!(
-        "{head}\n{}\n{}\n{estimated}Bands hold 95 % of {} models drawn from the estimate's \
-         covariance; {} of them left the physical range in some manoeuvre.\n{written}",
+        "{head}\n{}\n{}\n{estimated}Bands contain 95 % of {} models drawn from the covariance of \
+         the estimate; {} of them left the physical range in a manoeuvre.\n{written}",
         format_manoeuvres(bands),
         format_values(document.values),
         document.draws,

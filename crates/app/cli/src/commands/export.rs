@@ -59,7 +59,9 @@ pub fn run(zoo: &Zoo, asked: &ExportArguments) -> Result<(), Failure> {
         ExportFormat::Bundle => return export_bundle(asked),
         // Refused instead of ignored: the user expects a signed file.
         ExportFormat::Model(_) if asked.sign_key.is_some() => {
-            return Err(Failure::Call("--sign-key: only a bundle is signed".to_owned()));
+            return Err(Failure::Call(
+                "--sign-key: only a bundle can be signed; add --format bundle".to_owned(),
+            ));
         }
         ExportFormat::Model(format) => format,
     };
@@ -85,7 +87,7 @@ fn export_bundle(asked: &ExportArguments) -> Result<(), Failure> {
     })?;
     file.write(&bytes)?;
     let by = key.map_or_else(String::new, |key| format!(", signed by {}", key.verifying_key()));
-    output::print_note(&format!("{ship} with its versions: {}{by}", asked.out.display()));
+    output::print_note(&format!("{ship} with all versions: {}{by}", asked.out.display()));
     Ok(())
 }
 

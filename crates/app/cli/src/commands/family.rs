@@ -209,7 +209,7 @@ async fn learn_prior(archive: &Archive, family: &str) -> FamilyResult {
     let document = serde_json::to_string(&prior)?;
     let kept = archive.store.families().insert_prior(family, &document).await?;
     // One row for each coefficient of each axis.
-    let mut table = TextTable::new(["coefficient", "mean", "differs by", "told by trials"]);
+    let mut table = TextTable::new(["coefficient", "mean", "std. deviation", "share from trials"]);
     for axis in &prior.axes {
         for (j, name) in axis.names.iter().enumerate() {
             table.add_row([
@@ -221,7 +221,8 @@ async fn learn_prior(archive: &Archive, family: &str) -> FamilyResult {
         }
     }
     let head = format!(
-        "{family}: prior {} of {}; one sample in {:.1} counts; {:.0} % of the correlations kept\n",
+        "{family}: prior {} of {}; {:.1} samples count as one independent sample; {:.0} % of the \
+         correlations kept\n",
         kept.revision,
         format_count(prior.members.len(), "member"),
         prior.design_effect,

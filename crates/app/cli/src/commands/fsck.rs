@@ -13,8 +13,8 @@ Examples:
   sistership fsck --database-url postgres://user@host/sistership --data-dir /var/lib/sistership --json
 
 Checks the hash of every law, version, object and entry of the audit, and every reference between
-ships, trials, versions, aliases, jobs, reports, diagnoses and objects. Changes nothing; servers
-and workers may go on. Exit status 1 when there are faults.";
+ships, trials, versions, aliases, jobs, reports, diagnoses and objects. It changes nothing; servers
+and workers may keep running. Exit status 1 if there are faults.";
 
 /// Check every hash and every reference of a store.
 #[derive(Debug, Args)]
@@ -44,7 +44,7 @@ fn format_findings(findings: &Findings) -> String {
         |fault: &IntegrityFault| format!("{}: {}: {}\n", fault.check, fault.place, fault.message);
     let mut text: String = faults.iter().map(fault).collect();
     text += &format!(
-        "looked at {laws} laws, {effects} libraries of effects, {versions} versions, {trials} \
+        "checked {laws} laws, {effects} libraries of effects, {versions} versions, {trials} \
          trials, {jobs} jobs, {diagnoses} diagnoses, {objects} objects, {audit} entries of the \
          audit: {}\n",
         if faults.is_empty() { "clean".to_owned() } else { format_count(faults.len(), "fault") }
@@ -53,15 +53,15 @@ fn format_findings(findings: &Findings) -> String {
     if unreferred.objects > 0 {
         let (objects, bytes) = (format_count(unreferred.objects, "object"), unreferred.bytes);
         text += &format!(
-            "{objects} ({bytes} bytes) that no trial refers to; `sistership gc` removes what is \
-             old enough\n"
+            "{objects} ({bytes} bytes) without a reference; `sistership gc` removes the older \
+             ones\n"
         );
     }
     if unfinished.objects > 0 {
         let (puts, bytes) = (format_count(unfinished.objects, "put"), unfinished.bytes);
         text += &format!(
-            "{puts} ({bytes} bytes) under way or never ended; `sistership gc` removes what is old \
-             enough\n"
+            "{puts} ({bytes} bytes) in progress or interrupted; `sistership gc` removes the older \
+             ones\n"
         );
     }
     text

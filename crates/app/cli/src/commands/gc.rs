@@ -15,8 +15,8 @@ Examples:
   sistership gc --dry-run
   sistership gc --grace-h 72 --data-dir /var/lib/sistership
 
-Removes samples that no trial (deleted trials included) and no version refers to, such as the
-remains of refused or interrupted uploads. Servers and workers may keep running.";
+Removes samples to which no trial (deleted trials included) and no version refers, such as those of
+refused or interrupted uploads. Servers and workers may keep running.";
 
 /// Remove unreferenced objects.
 #[derive(Debug, Args)]
@@ -53,7 +53,7 @@ fn format_removed(collected: &RemovedObjects) -> String {
     let done = if *dry_run { "would be removed" } else { "removed" };
     let puts = format_count(unfinished.len(), "put");
     format!(
-        "{lines}{} of {objects} and {puts} that never ended ({bytes} bytes) {done}\n",
+        "{lines}{} of {objects} and {puts} that were interrupted ({bytes} bytes) {done}\n",
         format_count(removed.len(), "object")
     )
 }

@@ -29,12 +29,12 @@ Examples:
   sistership import --bundle my-ship.bundle --data-dir sistership-data
 
 Columns are identified by their names (in nine languages), their values and the relations between
-them; what was settled by those is said, and where two readings are nearly as likely one question is
-asked, with the `--column` that answers it. Faulty values are excluded in the manifest, which may be
-edited. It is then used in place of the files: sistership refine --trials trials.yaml
+them, and the reason is reported. Where two readings are nearly equally likely, one question is
+asked, with the `--column` option that answers it. Faulty values are excluded in the manifest, which
+can be edited. Use the manifest in place of the files: sistership refine --trials trials.yaml
 
-Of a log of many hours the stretches in which rudder or propeller move beyond course keeping become
-trials, each with the reason; the table also says what is left, steady course keeping.
+A log of many hours is divided into segments: those with manoeuvres become trials, each with the
+reason; the rest is listed as steady course keeping.
 
 Exit status 1 when a file cannot be read, or is refused by the manifest that was written.";
 
@@ -52,15 +52,15 @@ pub struct ImportArguments {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Meaning of a column, to answer a question or correct a guess:
-    /// HEADER=CHANNEL[:UNIT[:reversed]], nothing after `=` to leave the column out; `#3` is the
-    /// third column of a file without a header.
+    /// HEADER=CHANNEL[:UNIT[:reversed]], or HEADER= to ignore the column; `#3` is the third column
+    /// of a file without a header.
     #[arg(long = "column", value_name = "COLUMN", value_parser = given_column)]
     columns: Vec<GivenColumn>,
     /// List every column of every file with the reason for its reading.
     #[arg(long)]
     explain: bool,
-    /// Length between perpendiculars, which scales the segmentation of a long log. By default that
-    /// of the zoo's ship of this name, or else one that suits the speed.
+    /// Length between perpendiculars, which scales the segmentation of a long log; the default is
+    /// the length of the zoo's ship of this name, or else a length typical of the speed.
     #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
     length: Option<f64>,
     /// Import a ship from a bundle of `sistership export --format bundle` into a store.
@@ -80,12 +80,14 @@ pub struct ImportArguments {
 fn given_column(text: &str) -> Result<GivenColumn, String> {
     let (header, rest) = text
         .rsplit_once('=')
-        .ok_or("write HEADER=CHANNEL[:UNIT[:reversed]], or HEADER= to leave the column out")?;
+        .ok_or("write HEADER=CHANNEL[:UNIT[:reversed]], or HEADER= to ignore the column")?;
     let mut parts = rest.split(':');
     let name = parts.next().unwrap_or_default().trim();
     let role = match name {
         "" => None,
-        name => Some(Role::from_name(name).ok_or_else(|| format!("`{name}` is not a channel"))?),
+        name => {
+            Some(Role::from_name(name).ok_or_else(|| format!("`{name}` is not a channel name"))?)
+        }
     };
     // An empty unit leaves the unit to the identification.
     let unit = parts.next().map(|unit| unit.trim().to_owned()).filter(|unit| !unit.is_empty());
@@ -120,7 +122,7 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     let out = arguments.out.clone().unwrap_or_else(|| default_manifest(&arguments.files));
     // A manifest may have been edited by hand; only an explicit --out replaces it.
     if arguments.out.is_none() && out.exists() {
-        return Err(about_file(&out, "is there already; name another place with --out"));
+        return Err(about_file(&out, "exists already; choose another file with --out"));
     }
     let promised = OutputFile::new(&out, &arguments.files)?;
     let files: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();

@@ -50,10 +50,11 @@ fn format_import(import: &BundleImportDocument) -> String {
     let signer = match &import.signed_by {
         None => "not signed".to_owned(),
         Some(key) if import.known_signer => format!("signed by {key}"),
-        Some(key) => format!("signed by {key}, which no --signed-by has asked for"),
+        Some(key) => format!("signed by {key} (not checked: give --signed-by)"),
     };
     format!(
-        "{ship}, {signer}\n  new ships: {}\n  new versions: {}\n  {} of them there already\n  {}\n",
+        "{ship}, {signer}\n  new ships: {}\n  new versions: {}\n  versions present already: {}\n  \
+         {}\n",
         named(ships),
         named(versions),
         format_count(*known, "version"),

@@ -51,8 +51,8 @@ pub fn segment_logs(
             Some(found) if found.is_log() => {
                 let hours = found.whole.duration_s() / 3600.0;
                 print_note(&format!(
-                    "note: {}: {hours:.1} h, in which neither rudder nor propeller moves beyond \
-                     course keeping",
+                    "note: {}: {hours:.1} h without a manoeuvre: rudder and propeller only keep \
+                     the course",
                     trial.file
                 ));
                 trials.push(trial.clone());
@@ -161,7 +161,7 @@ impl fmt::Display for SegmentedLog {
         let steady_s: f64 = self.steady.iter().map(TimeSpan::duration_s).sum();
         writeln!(
             out,
-            "{}: a log of {:.1} h and {} rows; {} stand out of course keeping",
+            "{}: a log of {:.1} h and {} rows with {}",
             self.file,
             hours(self.duration_s),
             self.rows,
@@ -169,7 +169,8 @@ impl fmt::Display for SegmentedLog {
         )?;
         writeln!(
             out,
-            "(lengths of {:.0} m at {:.1} m/s; the rudder scatters by {:.1} deg)\n{}",
+            "(ship length {:.0} m, speed {:.1} m/s; standard deviation of the rudder in course \
+             keeping {:.1} deg)\n{}",
             self.length_m,
             self.speed_m_s,
             self.rudder_scatter_deg,
@@ -177,7 +178,8 @@ impl fmt::Display for SegmentedLog {
         )?;
         writeln!(
             out,
-            "{:.1} h ({:.0} %) in {} are steady course keeping: left out of the fit, for drift\n",
+            "{:.1} h ({:.0} %) in {} are steady course keeping: not used for the fit, but for \
+             drift of the model\n",
             hours(steady_s),
             100.0 * steady_s / self.duration_s,
             format_count(self.steady.len(), "part"),

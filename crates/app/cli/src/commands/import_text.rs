@@ -79,10 +79,10 @@ fn format_group(files: &[&str], rows: &[&GuessRow]) -> String {
     let left = rows.iter().filter(|row| row.channel.is_none() && !row.column.is_empty());
     let left: Vec<String> = left.map(|row| format!("`{}`", row.column)).collect();
     let left =
-        if left.is_empty() { String::new() } else { format!("  left out: {}\n", left.join(", ")) };
+        if left.is_empty() { String::new() } else { format!("  ignored: {}\n", left.join(", ")) };
     let told: String = rows
         .iter()
-        .filter(|row| row.channel.is_some() && (!row.certain || row.why.contains("other way")))
+        .filter(|row| row.channel.is_some() && (!row.certain || row.why.contains("reversed")))
         .map(|row| format!("  `{}`: {}\n", row.column, row.why))
         .collect();
     let questions = format_questions(rows.iter().copied());
@@ -110,7 +110,7 @@ fn format_laws(needs: &[LawNeeds]) -> String {
         needs.iter().partition(|need| need.lacks.is_empty());
     let names: Vec<&str> = ready.iter().map(|need| need.law.as_str()).collect();
     let can = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-    format!("Laws that these trials can be fitted with: {can}\n{}", format_missing(&lacking))
+    format!("Laws that can be fitted to these trials: {can}\n{}", format_missing(&lacking))
 }
 
 /// Formats each missing channel once, with the laws that need it.
@@ -145,6 +145,6 @@ mod tests {
         let text = format_laws(&all);
         let lines: Vec<&str> = text.lines().skip(1).collect();
         assert_eq!(lines, ["Missing for other laws:", "  n (all other laws)", "  phi (b)"]);
-        assert!(text.starts_with("Laws that these trials can be fitted with: a\n"), "{text}");
+        assert!(text.starts_with("Laws that can be fitted to these trials: a\n"), "{text}");
     }
 }

@@ -18,7 +18,8 @@ Examples:
   sistership keys list
   sistership keys revoke 3f9a0c11d2e4
 
-A key is printed once; only its hash is kept. A program sends it as `Authorization: Bearer KEY`.";
+A key is printed only once; the store keeps its hash. A program sends it as
+`Authorization: Bearer KEY`.";
 
 /// One day, µs.
 const DAY_US: i64 = 86_400_000_000;

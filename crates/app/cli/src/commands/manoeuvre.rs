@@ -147,7 +147,7 @@ fn adapt_to_speed(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) 
         // Revolutions in proportion to speed: the advance ratio of the propeller stays.
         model.revolutions_rps = model.revolutions_rps.map(|n| n * speed / own);
         remarks.push(format!(
-            "the law is expanded about {speed} m/s here; the model belongs to {own} m/s"
+            "the law is expanded about {speed} m/s here; the model was fitted at {own} m/s"
         ));
     }
     let largest = manoeuvre
@@ -159,7 +159,7 @@ fn adapt_to_speed(manoeuvre: &ManoeuvreArguments, model: &mut Model, law: &Law) 
     let ordered = if largest == 0.0 { 35.0 } else { largest };
     if ordered > model.steering.limit_deg {
         remarks.push(format!(
-            "{ordered} deg were ordered; the rudder stops at {} deg",
+            "a rudder angle of {ordered} deg was ordered; the rudder stops at {} deg",
             model.steering.limit_deg
         ));
     }
@@ -204,7 +204,7 @@ fn draw_bands(
     let sampling = Sampling { samples, seed: manoeuvre.seed };
     sampling.check().map_err(|message| Failure::Call(format!("--bands: {message}")))?;
     let none = || {
-        let why = "only a refined model whose coefficients are those that were estimated has one";
+        let why = "only a refined model with unchanged coefficients has one";
         Failure::Refused(format!("--bands: {} has no posterior to draw from; {why}", model.name))
     };
     uncertainty_bands(model, law, &manoeuvre_settings(manoeuvre), manoeuvre.depth_m, sampling)

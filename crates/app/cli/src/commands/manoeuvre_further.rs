@@ -108,7 +108,12 @@ fn stopping_table(stop: &StoppingMetrics, lpp_m: f64) -> TextTable {
 }
 
 fn pull_out_table(all: &[PullOutMetrics]) -> TextTable {
-    let mut table = TextTable::new(["rudder deg", "turning deg/s", "left deg/s", "left by U/L"]);
+    let mut table = TextTable::new([
+        "rudder deg",
+        "steady rate deg/s",
+        "residual rate deg/s",
+        "residual rate L/U",
+    ]);
     for one in all {
         table.add_row([
             format_number(one.rudder_deg),
@@ -122,8 +127,8 @@ fn pull_out_table(all: &[PullOutMetrics]) -> TextTable {
 
 fn spiral_title(spiral: &SpiralMetrics) -> String {
     format!(
-        "Spirals: loop {:.1} deg wide by the reverse one, {:.1} deg by the direct one, {:.2} deg/s \
-         high; not above {:.1} deg by guidance",
+        "Spirals: width of the loop {:.1} deg in the reverse spiral, {:.1} deg in the direct \
+         spiral; height {:.2} deg/s; recommended width at most {:.1} deg",
         spiral.loop_width_deg,
         spiral.direct_loop_width_deg,
         spiral.loop_height_deg_s,

@@ -75,7 +75,7 @@ fn build_ship(model: &Model, law: &Law) -> Result<Ship, Failure> {
 fn set_depth(ship: &mut Ship, model: &Model, law: &Law, depth_m: f64) -> Result<(), Failure> {
     if !has_depth_input(law) {
         return Err(Failure::Refused(format!(
-            "law `{}` does not know water depth: it sails in deep water only",
+            "law `{}` does not depend on water depth: it is for deep water only",
             law.name
         )));
     }
@@ -93,7 +93,7 @@ fn check_floats(model: &Model, depth_m: f64) -> Result<(), Failure> {
     let draught_m = particulars::particular_value(&model.particulars, "draught_m").unwrap_or(0.0);
     if depth_m <= draught_m {
         return Err(Failure::Refused(format!(
-            "{depth_m} m of water do not float {}, which draws {draught_m} m",
+            "a water depth of {depth_m} m is less than the draught of {}, {draught_m} m",
             model.ship
         )));
     }
@@ -116,7 +116,7 @@ fn describe_status(status: Status) -> &'static str {
     match status {
         Status::Published => "as published",
         // Capitals warn: these figures are no measurements of the ship.
-        Status::Estimated => "ESTIMATED from particulars: a stopgap, not measured",
+        Status::Estimated => "ESTIMATED from particulars: provisional, not measured",
         Status::Transferred => "TRANSFERRED from another ship, not fitted to it",
         Status::Refined => "refined against trials",
     }

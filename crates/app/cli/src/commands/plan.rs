@@ -23,9 +23,9 @@ Examples:
   sistership plan --ship my-ship.yaml --json
   sistership plan --ship my-model.yaml --trials since.yaml --apart wind --apart current
 
-SHIP is a refined model (its posterior gives the present uncertainty), or a ship: without a model it
-is estimated from its particulars. Durations include the approach to each trial and the time to
-return to steady full speed; both are simulated.";
+SHIP is a refined model, whose posterior gives the present uncertainty, or a ship; a ship without a
+model is estimated from its particulars. Durations include the approach to each trial and the time
+to return to steady full speed; both are simulated.";
 
 /// Design the trials that reduce the uncertainty of the IMO criteria most within a given time.
 #[derive(Debug, Args)]
@@ -37,8 +37,8 @@ pub struct PlanArguments {
     /// Total duration of all trials including their approaches.
     #[arg(long, value_name = "MIN", default_value_t = 60.0, value_parser = positive, allow_negative_numbers = true)]
     budget_min: f64,
-    /// An effect that the trials shall distinguish from the others given here, as a diagnosis asks
-    /// for; repeatable.
+    /// An effect that the trials must distinguish from the other effects given here, such as those
+    /// that a diagnosis could not distinguish; repeatable.
     #[arg(long, value_name = "EFFECT")]
     apart: Vec<String>,
     /// Trials since the model was fitted: their information counts, and new trials are assumed to

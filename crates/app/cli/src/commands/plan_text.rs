@@ -8,7 +8,7 @@ use crate::table::{TextTable, format_number};
 pub fn format_plan(plan: &TrialPlan) -> String {
     let mut parts = vec![format!("{}\n{}\n", plan.model, format_summary(plan))];
     parts.push(format!("Most informative first\n{}", trial_table(&plan.trials)));
-    parts.push(format!("Bands of 95 %, plus or minus\n{}", band_table(&plan.bands)));
+    parts.push(format!("Half widths of the 95 % bands\n{}", band_table(&plan.bands)));
     parts.extend(plan.remarks.iter().map(|remark| format!("remark: {remark}")));
     parts.join("\n")
 }
@@ -19,8 +19,8 @@ fn format_summary(plan: &TrialPlan) -> String {
     let standard: Vec<&str> =
         plan.standard.trials.iter().map(|trial| trial.manoeuvre.as_str()).collect();
     format!(
-        "{} trials in {:.0} of {:.0} min. The bands of the IMO criteria are expected to be {} \
-         narrower in the mean;\nafter {} of IMO's manoeuvres in the same time ({}), {} narrower.",
+        "{} trials in {:.0} of {:.0} min. The bands of the IMO criteria are expected to become {} \
+         narrower on average;\nwith {} of IMO's manoeuvres in the same time ({}), {} narrower.",
         plan.trials.len(),
         plan.takes_min,
         plan.budget_min,
@@ -37,8 +37,8 @@ fn trial_table(trials: &[PlannedTrial]) -> TextTable {
         "speed m/s",
         "heading deg",
         "manoeuvre min",
-        "in all min",
-        "narrower so far",
+        "total min",
+        "cumulative gain",
     ]);
     for trial in trials {
         // Without a heading, any one serves.
@@ -52,7 +52,7 @@ fn trial_table(trials: &[PlannedTrial]) -> TextTable {
 }
 
 fn band_table(bands: &[ExpectedBand]) -> TextTable {
-    let mut table = TextTable::new(["figure", "unit", "value", "now", "after", "after IMO's"]);
+    let mut table = TextTable::new(["figure", "unit", "value", "now", "after", "with IMO trials"]);
     for band in bands {
         let widths = [band.value, band.now, band.after, band.after_standard].map(format_number);
         table.add_row([band.figure.clone(), band.unit.clone()].into_iter().chain(widths));

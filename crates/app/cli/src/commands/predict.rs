@@ -24,8 +24,8 @@ Examples:
   sistership predict --model my-ship/3 --data-dir here --wind-m-s 15 --wind-from-deg 270 \\
     --duration-s 300
 
-Orders are a CSV file with the columns t_s, delta_deg or delta_rad, and n_rps; a cell that is empty
-keeps the previous order. The result is that of `POST /v1/predictions` with a horizon.
+Orders are a CSV file with the columns t_s, delta_deg or delta_rad, and n_rps; an empty cell keeps
+the previous order. The result is that of `POST /v1/predictions` with a horizon.
 Exit status 1 when the motion leaves the physical range.";
 
 /// Predict the motion over a horizon under future orders, in wind and current, with a prediction

@@ -59,7 +59,7 @@ fn parse_orders(text: &str) -> Result<Vec<OrderRow>, Vec<String>> {
         }
     }
     if orders.is_empty() && faults.is_empty() {
-        faults.push("has no rows of orders".to_owned());
+        faults.push("has no rows; give at least one order".to_owned());
     }
     if faults.is_empty() { Ok(orders) } else { Err(limit_faults(faults)) }
 }
@@ -84,11 +84,11 @@ fn parse_header(header: &StringRecord) -> Result<Vec<OrderColumn>, String> {
             "n_rps" => OrderColumn::Revolutions,
             other => {
                 let known = "t_s, delta_deg or delta_rad, n_rps";
-                return Err(format!("line 1: there is no column `{other}` of orders; {known}"));
+                return Err(format!("line 1: `{other}` is not a column of orders; use {known}"));
             }
         };
         if columns.contains(&column) {
-            return Err(format!("line 1: the column `{name}` stands twice"));
+            return Err(format!("line 1: the column `{name}` appears twice; keep one"));
         }
         columns.push(column);
     }
@@ -97,13 +97,17 @@ fn parse_header(header: &StringRecord) -> Result<Vec<OrderColumn>, String> {
     }
     match columns.contains(&OrderColumn::Time) {
         true => Ok(columns),
-        false => Err("line 1: there is no column `t_s`".to_owned()),
+        false => Err("line 1: the column `t_s` is missing".to_owned()),
     }
 }
 
 fn parse_row(cells: &StringRecord, columns: &[OrderColumn]) -> Result<OrderRow, Vec<String>> {
     if cells.len() != columns.len() {
-        return Err(vec![format!("has {} cells, the header {}", cells.len(), columns.len())]);
+        return Err(vec![format!(
+            "has {} cells, but the header has {}",
+            cells.len(),
+            columns.len()
+        )]);
     }
     let (mut orders, mut faults) =
         (OrderRow { t_s: f64::NAN, delta_rad: None, n_rps: None }, vec![]);

@@ -72,7 +72,7 @@ fn format_band(answer: &Value) -> String {
     let ends = |column: &str| ["low", "high"].map(|end| band[end][column][last].as_f64());
     let words = |name: &str, [low, high]: [Option<f64>; 2]| match (low, high) {
         (Some(low), Some(high)) => format!("{name} {low:.1} to {high:.1}"),
-        _ => format!("{name} not known"),
+        _ => format!("{name} unknown"),
     };
     let degrees = ends("psi_rad").map(|end| end.map(f64::to_degrees));
     format!(
@@ -95,14 +95,15 @@ fn format_stop(answer: &Value) -> String {
 /// Formats a line for each of wind, current and depth that the model's trials do not cover.
 fn format_outside_trials(answer: &Value) -> String {
     let inputs = answer["outside_trials"].as_array().into_iter().flatten();
-    let line =
-        |input: &Value| Some(format!("OUTSIDE the trials: {}\n", input["message"].as_str()?));
+    let line = |input: &Value| {
+        Some(format!("OUTSIDE the conditions of the trials: {}\n", input["message"].as_str()?))
+    };
     inputs.filter_map(line).collect()
 }
 
 fn format_outside(answer: &Value) -> String {
     match answer["outside"]["along"].as_str() {
-        Some(along) => format!("OUTSIDE what the model's trials covered, along {along}\n"),
+        Some(along) => format!("OUTSIDE the range covered by the model's trials, in {along}\n"),
         None => String::new(),
     }
 }

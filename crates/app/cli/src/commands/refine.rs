@@ -37,16 +37,17 @@ Examples:
   sistership refine --ship my-ship.yaml --source kvlcc2 --law low-speed --trials trials.yaml --method weak
   sistership refine --ship my-ship.yaml --source old-model.yaml --trials trials.yaml --held-out zigzag/last.csv
 
-By default, without --source, --law and --method, models are selected by cross-validation: each
-candidate (a source model, the estimate from particulars, a population of published ships or no
-source, with a law of motion and an estimator) is fitted with whole manoeuvres held out and
-simulated on those. The candidate with the least held-out error is used; candidates that are
-statistically tied are ranked by how much their predictions vary where no trial reaches. The
-selection report lists all of them. With enough trials learned corrections are candidates as well;
-the weights of one are written next to the model (m.weights.json for m.yaml).
+Without --source, --law and --method, the model is selected by cross-validation. A candidate is a
+source model (or the estimate from particulars, a population of published ships, or no source) with
+a law of motion and an estimator. Each candidate is fitted with whole manoeuvres held out and
+simulated on those; the one with the least error is selected. Among statistically tied candidates,
+the one whose predictions vary least outside the trials is preferred. The selection report lists
+all candidates. With enough trials, learned corrections are compared as well; the weights of a
+correction are written next to the model (m.weights.json for m.yaml).
 
-With --source, --law or --method, the coefficients of the source are the mean of an l2 prior, whose
-strength is chosen by the error on held-out manoeuvres. Give several manoeuvres of different kinds.";
+With --source, --law or --method, there is no selection: the coefficients of the source are the mean
+of a Gaussian (l2) prior whose strength is chosen by the error on held-out manoeuvres. Give several
+manoeuvres of different kinds.";
 
 /// Refine a source model against a ship's trials.
 #[derive(Debug, Args)]
@@ -79,7 +80,8 @@ pub struct RefineArguments {
     /// Settings of the refinement (YAML); flags override them.
     #[arg(long, value_name = "FILE.yaml")]
     settings: Option<PathBuf>,
-    /// Trials that are used neither for fitting nor for model selection, but for the final errors.
+    /// Trials that are used neither for fitting nor for model selection, but only for the reported
+    /// errors.
     #[arg(long, value_name = "NAME", num_args = 1..)]
     held_out: Vec<String>,
     /// Interval at which simulations of held-out manoeuvres restart from the measured state; the
@@ -289,7 +291,7 @@ fn report_html(
         version: None,
     };
     let rendered = render_refinement(&input)
-        .map_err(|error| Failure::Refused(format!("the report: {error}")))?;
+        .map_err(|error| Failure::Refused(format!("the report cannot be written: {error}")))?;
     Ok(rendered.html.into_bytes())
 }
 
@@ -315,8 +317,9 @@ fn named_files(arguments: &RefineArguments) -> Vec<PathBuf> {
 
 fn find_law(zoo: &Zoo, name: &str) -> Result<Arc<Law>, Failure> {
     let known = || zoo.laws().map(|law| law.name.as_str()).collect::<Vec<_>>().join(", ");
-    let missing =
-        || Failure::Refused(format!("--law {name}: the zoo has no such law; it has {}", known()));
+    let missing = || {
+        Failure::Refused(format!("--law {name}: there is no such law; choose one of {}", known()))
+    };
     zoo.law(name).cloned().ok_or_else(missing)
 }
 
@@ -341,13 +344,13 @@ fn choose_source(
     settings: &RefinementSettings,
     read: &[ReadTrial],
 ) -> Result<(Model, SimilarityRanking), Failure> {
-    print_note("choosing the source: similarity, and the trend of the trials");
+    print_note("selecting the source by similarity and by the trend of the trials");
     let fitted = trials::trial_refs(read)
         .into_iter()
         .filter(|trial| !settings.held_out.contains(&trial.name));
     let similarity = rank_similar(zoo, target, None, &fitted.collect::<Vec<_>>());
     let source = best_source(zoo, &similarity)
-        .map_err(|reasons| Failure::Refused(format!("{reasons}; name one with --source")))?;
+        .map_err(|reasons| Failure::Refused(format!("{reasons}; choose one with --source")))?;
     print_note(&format!("source: {}", source.name));
     Ok((source, similarity))
 }
@@ -386,7 +389,7 @@ fn calibrate_uncertainty(
     law: &Law,
     read: &[ReadTrial],
 ) -> Refinement {
-    print_note("learning what these trials leave open");
+    print_note("estimating the noise model");
     let effects: Vec<_> = zoo.effects().cloned().collect();
     with_uncertainty(refinement, law, &effects, &trials::trial_refs(read))
 }

@@ -33,7 +33,7 @@ impl RefinementCorrection {
     ) -> Result<Option<Self>, Failure> {
         let choice = ladder.and_then(|ladder| ladder.branch.as_ref());
         let Some(kind) = choice.and_then(|choice| choice.taken) else { return Ok(None) };
-        print_note(&format!("training a branch of {}", kind.name()));
+        print_note(&format!("training a learned correction ({})", kind.name()));
         // Held-out trials judge the final model, so the correction must not be trained on them.
         let held_out = &refinement.settings.held_out;
         let fitted: Vec<&Trial> = trials::trial_refs(read)
@@ -46,7 +46,7 @@ impl RefinementCorrection {
         let (branch, weights) =
             train_correction(model, law, &fitted, &training).map_err(refusal)?;
         let beside = Self::from_model(with_branch(model, branch), &weights)?;
-        print_note("learning what these trials leave open beside it");
+        print_note("estimating the noise model of the corrected model");
         let effects: Vec<_> = zoo.effects().cloned().collect();
         let model = correction_with_uncertainty(beside.model, law, &effects, &fitted);
         Ok(Some(Self { model, weights: beside.weights }))

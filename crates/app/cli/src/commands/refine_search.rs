@@ -60,7 +60,7 @@ pub fn select_start(
         if last.is_none_or(|last: Instant| last.elapsed() >= PROGRESS_INTERVAL) {
             *last = Some(Instant::now());
             let left = time_left(begun.elapsed().as_secs_f64(), fraction);
-            print_note(&format!("search {:3.0} %{left}: {what}", 100.0 * fraction));
+            print_note(&format!("model selection {:3.0} %{left}: {what}", 100.0 * fraction));
         }
         true
     };

@@ -48,7 +48,7 @@ pub fn resolve_held_out(names: &[String], read: &[ReadTrial]) -> Result<Vec<Stri
         let known: Vec<&str> = read.iter().map(|read| read.trial.name.as_str()).collect();
         found.ok_or_else(|| {
             Failure::Refused(format!(
-                "--held-out {name}: no trial is called so; there are {}",
+                "--held-out {name}: there is no such trial; choose from {}",
                 known.join(", ")
             ))
         })
@@ -93,6 +93,6 @@ mod tests {
         let found = |name: &str| resolve_held_out(&[name.to_owned()], &read);
         assert_eq!(found("b.csv").unwrap(), ["b.csv"]);
         assert_eq!(found("a/b.csv").unwrap(), ["b.csv"]);
-        assert!(found("c.csv").unwrap_err().message().unwrap().contains("there are b.csv"));
+        assert!(found("c.csv").unwrap_err().message().unwrap().contains("choose from b.csv"));
     }
 }

@@ -32,17 +32,20 @@ pub fn format_refinement(
         false => refinement.source.clone(),
     };
     let head = format!("{} refined from {from} by `{}`\n\n", refinement.ship, refinement.method);
-    let restart = refinement.settings.restart_s.map_or(String::new(), |s| {
-        format!(";\nsimulations start anew every {} s", format_number(s))
-    });
+    let restart = refinement
+        .settings
+        .restart_s
+        .map_or(String::new(), |s| format!(";\nsimulations restart every {} s", format_number(s)));
     let smoothed = refinement.settings.compared_smoothing_s().map_or(String::new(), |s| {
         format!(";\nmeasured motions are smoothed over {} s", format_number(s))
     });
     let how = format!("Root mean square errors: {}{restart}{smoothed}", refinement.held_out.how);
     let errors =
         format!("{how}\n{}\n", format_errors(&refinement.held_out, has_roll(&refinement.model)));
-    let options =
-        format!("Options, from the source outwards\n{}\n", format_options(&refinement.options));
+    let options = format!(
+        "Options, by increasing distance from the source\n{}\n",
+        format_options(&refinement.options)
+    );
     let coefficients = format!(
         "Coefficients (moved: in standard deviations of the prior)\n{}\n",
         format_coefficients(&refinement.coefficients)
@@ -63,7 +66,7 @@ pub fn wide_band_warning(refinement: &Refinement) -> String {
 
 /// Names the file with the weights of the model's learned correction.
 pub fn format_weights_file(file: &Path) -> String {
-    format!("with a learned branch, weights written to {}\n", file.display())
+    format!("weights of the learned correction written to {}\n", file.display())
 }
 
 /// Formats the selection report.
@@ -71,19 +74,19 @@ pub fn format_selection_report(ladder: &SelectionReport) -> String {
     let mut table = TextTable::new([
         "source",
         "law",
-        "taken to",
+        "stage",
         "fitted",
         "error",
         "std. error",
         "elsewhere",
         "s",
-        "taken",
+        "selected",
         "why",
     ]);
     for line in &ladder.lines {
         let source = line.source.clone().unwrap_or_else(|| "none".to_owned());
         let rung = match line.rung {
-            SelectionStage::CarriedOver => "carried over",
+            SelectionStage::CarriedOver => "unchanged",
             SelectionStage::Weak => "weak",
             SelectionStage::Trajectory => "trajectory",
         };
@@ -97,11 +100,12 @@ pub fn format_selection_report(ladder: &SelectionReport) -> String {
         let end = [format!("{:.1}", line.cost_s), taken.to_owned(), line.reason.clone()];
         table.add_row(names.into_iter().chain(figures).chain(end));
     }
-    let what = "standardised squared errors on manoeuvres left out, and the variance elsewhere";
+    let what = "standardised squared error on held-out manoeuvres; elsewhere: variance outside \
+                the trials";
     // Empty if no learned correction was considered.
     let branch = ladder.branch.as_ref().map_or("", |choice| &choice.reason);
     let reference = ladder.reference_summary();
-    format!("Tried: {what}\n{table}\n{reference}\n\nLearned branch: {branch}\n\n")
+    format!("Candidates: {what}\n{table}\n{reference}\n\nLearned correction: {branch}\n\n")
 }
 
 /// True if the model has roll; without it the errors of roll say nothing.
@@ -141,7 +145,7 @@ fn format_change(before: f64, after: f64) -> String {
 }
 
 fn format_options(options: &[StepOption]) -> TextTable {
-    let mut table = TextTable::new(["step", "least lambda", "error", "taken", "why not"]);
+    let mut table = TextTable::new(["step", "min. lambda", "error", "selected", "reason"]);
     for option in options {
         let least =
             option.lambda_min.map_or_else(|| "-".to_owned(), |lambda| format!("{lambda:.0e}"));
@@ -203,15 +207,15 @@ fn format_manoeuvres(manoeuvres: &RefinementManoeuvres) -> TextTable {
 }
 
 fn format_remarks(refinement: &Refinement, files: &WrittenFiles<'_>) -> String {
-    let mut lines =
-        vec![format!("condition number {}", format_number(refinement.condition_number))];
+    let mut lines = vec![format!(
+        "condition number of the regression: {}",
+        format_number(refinement.condition_number)
+    )];
     lines.extend(format_collinear_groups(&refinement.collinear_groups));
     let failures = refinement.manoeuvres.refined.failures.iter();
-    lines.extend(
-        failures.map(|failure| {
-            format!("remark: the refined model fails a standard manoeuvre: {failure}")
-        }),
-    );
+    lines.extend(failures.map(|failure| {
+        format!("remark: the refined model does not complete a standard manoeuvre: {failure}")
+    }));
     let bands = refinement.manoeuvres.bands.as_ref();
     lines.extend(bands.and_then(|bands| Some(bands.next_trial.as_ref()?.as_sentence())));
     let outside = refinement.manoeuvres.refined.outside.iter();
@@ -230,12 +234,12 @@ const MAX_GROUPS: usize = 5;
 
 /// Formats the groups of coefficients that the trials cannot distinguish.
 fn format_collinear_groups(groups: &[Vec<String>]) -> Vec<String> {
-    let line =
-        |group: &Vec<String>| format!("cannot be told apart by these trials: {}", group.join(", "));
+    let line = |group: &Vec<String>| {
+        format!("cannot be distinguished by these trials: {}", group.join(", "))
+    };
     let mut lines: Vec<String> = groups.iter().take(MAX_GROUPS).map(line).collect();
     let (all, more) = (groups.len(), groups.len().saturating_sub(MAX_GROUPS));
-    let rest =
-        || format!("and {more} more such groups, of {all}; --json and --report have them all");
+    let rest = || format!("and {more} more such groups, of {all}; --json and --report list all");
     lines.extend((more > 0).then(rest));
     lines
 }

@@ -114,7 +114,7 @@ pub fn run_until_stopped<T>(
     let runtime = new_runtime()?;
     let told = watch_signals(bound)?;
     let ended = runtime.block_on(async {
-        let unheard = || Failure::Refused("signals cannot be heard".into());
+        let unheard = || Failure::Refused("stop signals cannot be received".into());
         let mut told = told;
         // A signal during the start must end the command, too.
         let running = tokio::select! {
@@ -133,7 +133,7 @@ pub fn run_until_stopped<T>(
 /// Starts to receive signals on a separate thread; the receiver gets the first one.
 fn watch_signals(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
     let (tell, told) = oneshot::channel();
-    let none = |error| Failure::Refused(format!("no threads: {error}"));
+    let none = |error| Failure::Refused(format!("threads cannot be started: {error}"));
     let runtime =
         // A runtime of its own: the main one may have no free thread when a signal arrives.
         tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(none)?;
@@ -143,10 +143,13 @@ fn watch_signals(bound: Duration) -> Result<oneshot::Receiver<()>, Failure> {
             signals.next().await;
             // The receiver is gone if the start has failed meanwhile; the process is ending then.
             tell.send(()).ok();
-            output::print_note("stopping; once more to stop at once");
+            output::print_note(
+                "stopping after the work in progress; repeat the signal to stop at \
+                                once",
+            );
             if tokio::time::timeout(bound, signals.next()).await.is_err() {
                 output::print_note(&format!(
-                    "not everything under way has ended within {} s",
+                    "stopped after {} s with work still in progress",
                     bound.as_secs()
                 ));
             }
@@ -169,7 +172,7 @@ impl StopSignals {
     #[cfg(unix)]
     fn install_handler() -> Result<Self, Failure> {
         use tokio::signal::unix::{SignalKind, signal};
-        let unheard = |error| Failure::Refused(format!("signals cannot be heard: {error}"));
+        let unheard = |error| Failure::Refused(format!("stop signals cannot be received: {error}"));
         let interrupt = signal(SignalKind::interrupt()).map_err(unheard)?;
         Ok(Self { interrupt, terminate: signal(SignalKind::terminate()).map_err(unheard)? })
     }

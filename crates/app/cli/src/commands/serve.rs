@@ -30,8 +30,8 @@ Examples:
 
 The API key is read from SISTERSHIP_API_KEY or --api-key-file, never from a flag that others could
 see; requests carry it as `Authorization: Bearer KEY`. Without a key or --accounts the server
-listens on loopback only. Stop it with Ctrl-C or SIGTERM: jobs under way get --drain-s to end and
-then go back to the queue.";
+listens on loopback only. Stop it with Ctrl-C or SIGTERM: running jobs get --drain-s to finish and
+then return to the queue.";
 
 /// Run the REST server.
 #[derive(Debug, Args)]
@@ -97,8 +97,8 @@ pub fn run(serve: &ServeArguments, zoo: &[PathBuf]) -> Result<(), Failure> {
     if !zoo.is_empty() {
         // Folders of a zoo would make versions depend on files outside of the store.
         return Err(Failure::Call(
-            "a server keeps its ships and laws in its database: send them to /v1/ships and \
-             /v1/laws, not by --zoo; it diagnoses with the effects of the program"
+            "a server has no --zoo: its ships and laws are in its database; send them to \
+             /v1/ships and /v1/laws. Diagnoses use the effects of the program"
                 .into(),
         ));
     }
@@ -199,15 +199,19 @@ fn api_key(serve: &ServeArguments, file: &ConfigFile) -> Result<Option<String>, 
 
 fn read_key(file: &Path) -> Result<String, Failure> {
     let key = read_text_file(file)?.trim().to_owned();
-    if key.is_empty() { Err(about_file(file, "holds no API key")) } else { Ok(key) }
+    if key.is_empty() {
+        Err(about_file(file, "is empty; write the API key into it"))
+    } else {
+        Ok(key)
+    }
 }
 
 /// Converts an error; one that concerns only the call gives the exit status of a wrong call.
 fn start_failure(error: StartError) -> Failure {
     match error {
         StartError::OpenWithoutKey(listen) => Failure::Call(format!(
-            "refusing to listen on {listen} without an API key: set {API_KEY_VARIABLE} or --api-key-file, let \
-             people sign in with --accounts, or listen on 127.0.0.1"
+            "refusing to listen on {listen} without an API key: set {API_KEY_VARIABLE} or \
+             --api-key-file, use accounts with --accounts, or listen on 127.0.0.1"
         )),
         // Errors of the call, which the user can correct without looking at the data.
         StartError::Key | StartError::OpenIdWithoutAccounts => Failure::Call(error.to_string()),

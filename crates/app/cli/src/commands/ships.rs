@@ -20,8 +20,8 @@ Examples:
   sistership ships --particular lpp_m:100..200 --metric turn_35.tactical_diameter_m:..900
   sistership ships --similar-to kvlcc2 --limit 10 --json
 
-Without ranges ships come by name, with ranges by the first of them (particulars before metrics),
-with --similar-to the most similar first. Values are SI; metrics are those of the champion's
+Ships are listed by name; with ranges, by the value of the first range (particulars before metrics);
+with --similar-to, the most similar first. Values are SI; metrics are those of the champion's
 standard manoeuvres, the greater of both sides.";
 
 /// Find ships of a store.
@@ -65,7 +65,7 @@ pub struct ShipsArguments {
 pub fn run(ships: &ShipsArguments) -> Result<(), Failure> {
     let ranges: Vec<FactRange> = ships.particular.iter().chain(&ships.metric).cloned().collect();
     if ranges.len() > MAX_RANGES {
-        return Err(Failure::Call(format!("at most {MAX_RANGES} ranges can be asked for at once")));
+        return Err(Failure::Call(format!("at most {MAX_RANGES} ranges can be given at once")));
     }
     let known = ShipSearch { category: ships.category.clone(), tag: ships.tag.clone(), ranges };
     let search =
@@ -98,6 +98,6 @@ fn format_ships(ships: &[FoundShip], more: bool) -> String {
         let value = ship.value.map_or_else(|| "-".to_owned(), format_number);
         table.add_row([ship.name.clone(), ship.category.clone(), value, ship.title.clone()]);
     }
-    let rest = if more { "and more; see --limit\n" } else { "" };
+    let rest = if more { "more ships match; raise --limit\n" } else { "" };
     format!("{table}{rest}")
 }

@@ -25,8 +25,8 @@ Examples:
   sistership similar esso-osaka-3m --trials zigzags.yaml
   sistership similar my-ship --data-dir sistership-data
 
-Where a store is named, its ships are ranked in place of those of the zoo, each by its champion where
-that may serve as a source.";
+With a store, its ships are ranked instead of those of the zoo; the source model of a ship is its
+champion, if that is eligible.";
 
 /// Rank the ships of the zoo or of a store by similarity to a ship, and say which may be the source
 /// of a refinement.

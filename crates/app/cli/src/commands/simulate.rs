@@ -152,8 +152,8 @@ fn format_simulation(
     law: &Law,
     document: &SimulateDocument<'_>,
 ) -> String {
-    let restart = simulate.restart_s.map_or("once from the first sample".to_owned(), |s| {
-        format!("anew every {} s", format_number(s))
+    let restart = simulate.restart_s.map_or("once, from the first sample".to_owned(), |s| {
+        format!("every {} s, from the measured state", format_number(s))
     });
     let head =
         format!("{}\nstarted {restart}; root mean square errors\n\n", model_line(model, law));

@@ -90,9 +90,9 @@ impl StoreArguments {
         match self.objects_url.as_ref().or(file.objects_url.as_ref()) {
             Some(url) => ObjectsPlace::parse_s3(url, endpoint, region)
                 .map_err(|error| Failure::Call(error.to_string())),
-            None if endpoint.is_some() => {
-                Err(Failure::Call("objects_endpoint: say where on it, with objects_url".into()))
-            }
+            None if endpoint.is_some() => Err(Failure::Call(
+                "objects_endpoint: the bucket is missing; add objects_url".into(),
+            )),
             None => Ok(ObjectsPlace::Folder(data_dir.to_path_buf())),
         }
     }
@@ -119,13 +119,13 @@ impl StorePlace {
     pub fn check_exists(&self) -> Result<(), Failure> {
         if let Some(file) = sqlite_file(&self.database_url).filter(|file| !file.is_file()) {
             return Err(Failure::Refused(format!(
-                "there is no database {}; name it with --database-url or --data-dir",
+                "there is no database {}; give its place with --database-url or --data-dir",
                 file.display()
             )));
         }
         match self.objects.folder_path().filter(|folder| !folder.is_dir()) {
             Some(folder) => Err(Failure::Refused(format!(
-                "there is no data folder {}; name it with --data-dir",
+                "there is no data folder {}; give its place with --data-dir",
                 folder.display()
             ))),
             None => Ok(()),
@@ -176,7 +176,7 @@ pub fn block_on<T>(work: impl Future<Output = Result<T, Failure>>) -> Result<T, 
 /// Returns an error if no threads can be started.
 pub fn new_runtime() -> Result<tokio::runtime::Runtime, Failure> {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
-    runtime.map_err(|error| Failure::Refused(format!("no threads: {error}")))
+    runtime.map_err(|error| Failure::Refused(format!("threads cannot be started: {error}")))
 }
 
 #[cfg(test)]

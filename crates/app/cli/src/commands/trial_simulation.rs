@@ -94,8 +94,8 @@ impl TrialSimulator<'_> {
             Some(depth_m) => {
                 let law = &self.law.name;
                 print_note(&format!(
-                    "warning: {}: sailed in {depth_m} m of water; law `{law}` knows deep water \
-                     only",
+                    "warning: {}: recorded in a water depth of {depth_m} m; law `{law}` is for \
+                     deep water only",
                     trial.name
                 ));
             }

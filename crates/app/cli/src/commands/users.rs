@@ -178,19 +178,19 @@ async fn run_action(
                 .grants()
                 .replace_roles(&User::principal_name(name), &grant_rows(roles))
                 .await?;
-            user_result(name, "has these roles now", None)
+            user_result(name, "the roles are set", None)
         }
         UsersAction::Identity { name, identity } => {
             let pair = |pair: &[String]| (pair[0].clone(), pair[1].clone());
             // An empty list removes the link to a provider.
             let those: Vec<_> = identity.chunks_exact(2).map(pair).collect();
             archive.store.identities().replace_identities(name, &those).await?;
-            user_result(name, "is known so by providers now", None)
+            user_result(name, "the link with the provider is set", None)
         }
         UsersAction::Password { name, .. } => {
             let hash = chosen.map(|chosen| hash_password(&chosen.text)).transpose()?;
             users.set_password(name, hash.as_deref().unwrap_or_default()).await?;
-            user_result(name, "has another password", chosen)
+            user_result(name, "the password is set", chosen)
         }
         UsersAction::Disable { name } => {
             user_result(&users.disable(name).await?.name, "disabled", None)
@@ -219,7 +219,12 @@ async fn second_person(archive: &Archive, set: Option<OnOff>) -> UsersResult {
         settings.set_second_person(set == OnOff::On).await?;
     }
     let on = settings.requires_second_person().await?;
-    let text = if on { "a second person is asked for" } else { "no second person is asked for" };
+    let text = if on {
+        "approval by a second person is required"
+    } else {
+        "approval by a second \
+                                                                           person is not required"
+    };
     Ok((json!({ "second_person": on }), text.to_owned()))
 }
 

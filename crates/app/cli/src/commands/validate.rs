@@ -19,8 +19,8 @@ Examples:
   sistership validate --model my-model.yaml --ship my-ship.yaml --trials kept-out.yaml
   sistership validate --model my-model.yaml --ship my-ship.yaml --trials kept-out.yaml --report validation.html
 
-The trials must not be those that the model was fitted on. Repeated manoeuvres give the uncertainty
-of the data. The exit status is 0 also when a quantity is not validated.";
+Give trials that the model was not fitted on. Repeated manoeuvres give the uncertainty of the data.
+The exit status is 0 even if a quantity is not validated.";
 
 /// Validate a model against trials of its ship by ITTC 7.5-02-06-03.
 #[derive(Debug, Args)]
@@ -77,7 +77,8 @@ pub fn run(zoo: &Zoo, asked: &ValidateArguments) -> Result<(), Failure> {
 }
 
 fn format_validation(done: &Validation) -> String {
-    let head = format!("{}, law {}: validation after {}\n", done.model, done.law, done.procedure);
+    let head =
+        format!("{}, law {}: validation according to {}\n", done.model, done.law, done.procedure);
     let table = if done.quantities.is_empty() {
         String::new()
     } else {

@@ -72,11 +72,11 @@ fn format_verification(verification: &Verification) -> String {
     let Verification { model, number, sha256, derived_sha256, identical, remarks, .. } =
         verification;
     let head = if *identical {
-        format!("{model}/{number}: derived again, identical byte for byte\n  sha256 {sha256}\n")
+        format!("{model}/{number}: reproduced, identical byte for byte\n  sha256 {sha256}\n")
     } else {
         format!(
-            "{model}/{number}: DIFFERS from what its recipe gives\n  recorded sha256 {sha256}\n  \
-             derived sha256  {derived_sha256}\n"
+            "{model}/{number}: NOT reproduced by its recipe\n  recorded sha256   {sha256}\n  \
+             reproduced sha256 {derived_sha256}\n"
         )
     };
     head + &remarks.iter().map(|remark| format!("remark: {remark}\n")).collect::<String>()

@@ -15,10 +15,10 @@ Examples:
   sistership work --data-dir /var/lib/sistership
   sistership work --workers 8 --database-url postgres://user@host/sistership --data-dir /mnt/shared/sistership
 
-Any number of such processes may run beside `sistership serve` (which leaves all work to them with
---no-worker), on any machines that reach the same database and the same samples. A job belongs to
-one of them at a time; when that one dies, its job goes to another after --lease-s. Stop it with
-Ctrl-C or SIGTERM: jobs under way get --drain-s to end and then go back to the queue.";
+Any number of workers may run in addition to `sistership serve` (which runs no jobs with
+--no-worker), on any machines that reach the same database and the same samples. A job is run by one
+worker at a time; if that worker stops, another takes over the job after --lease-s. Stop it with
+Ctrl-C or SIGTERM: running jobs get --drain-s to finish and then return to the queue.";
 
 /// Run a worker for the jobs that servers have queued.
 #[derive(Debug, Args)]
@@ -51,7 +51,7 @@ pub fn run(work: &WorkArguments) -> Result<(), Failure> {
             .await
             .map_err(|error| Failure::Refused(error.to_string()))?;
         output::print_result(false, &(), || {
-            format!("sistership works as process {}", std::process::id())
+            format!("sistership worker started as process {}", std::process::id())
         })?;
         Ok(workers)
     };

@@ -166,11 +166,11 @@ fn copy_vessel(
 ) -> Result<PathBuf, Failure> {
     let vessels = zoo_folder.join("vessels");
     std::fs::create_dir_all(&vessels)
-        .map_err(|error| about_file(&vessels, format!("cannot be made a folder: {error}")))?;
+        .map_err(|error| about_file(&vessels, format!("the folder cannot be created: {error}")))?;
     let path = vessels.join(format!("{name}.yaml"));
     // A vessel may have been edited in the zoo folder.
     if path.exists() {
-        return Err(about_file(&path, "is there already; move it away first"));
+        return Err(about_file(&path, "exists already; move it away first"));
     }
     let text = read_text_file(file)?;
     OutputFile::new(&path, &[])?.write(text.as_bytes())?;
@@ -206,7 +206,7 @@ mod tests {
         assert_eq!(std::fs::read_to_string(&added).unwrap(), text);
         let again =
             run(&zoo, &asked(ZooAction::Add { file: file.clone(), into, page: None })).unwrap_err();
-        assert!(again.message().unwrap().contains("is there already"));
+        assert!(again.message().unwrap().contains("exists already"));
         let wrong = text.replace("rudder_positive: port_turn", "rudder_positive: starboard_turn");
         assert_ne!(wrong, text);
         std::fs::write(&file, wrong).unwrap();

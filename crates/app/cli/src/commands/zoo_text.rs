@@ -40,8 +40,15 @@ fn model_table(models: &[ModelAppraisal]) -> String {
 }
 
 fn trial_table(models: &[ModelAppraisal]) -> String {
-    let mut table =
-        TextTable::new(["model", "published trial", "unit", "published", "sailed", "allowed", ""]);
+    let mut table = TextTable::new([
+        "model",
+        "published trial",
+        "unit",
+        "published",
+        "simulated",
+        "allowed",
+        "",
+    ]);
     // The table is omitted without published trials.
     let mut any = false;
     for model in models {
@@ -69,9 +76,7 @@ fn trial_cells(model: &ModelAppraisal, one: &FigureComparison) -> [String; 7] {
 pub fn format_review(review: &ShipReview, written: Option<&Path>) -> String {
     let mut text =
         format!("{}: {}\n\n{}", review.ship, review.title, format_models(&review.models));
-    for (severity, head) in
-        [(Severity::Refused, "Refused"), (Severity::Look, "A reviewer should look at")]
-    {
+    for (severity, head) in [(Severity::Refused, "Refused"), (Severity::Look, "To be reviewed")] {
         let of = review.findings.iter().filter(|finding| finding.severity == severity);
         let lines: Vec<String> =
             of.map(|finding| format!("  {}: {}", finding.about, finding.message)).collect();
@@ -100,6 +105,6 @@ pub fn format_citations(graph: &[CatalogueEntry]) -> String {
 fn format_source(work: &CitedWork) -> String {
     let url = work.url.as_ref().map_or(String::new(), |url| format!("\n    {url}"));
     // A licence, else the terms of use, if one of them is known.
-    let terms = work.license.as_deref().or(work.usage).unwrap_or("not known");
+    let terms = work.license.as_deref().or(work.usage).unwrap_or("unknown");
     format!("  {}: {}{url}\n    licence: {terms}\n", work.alternate_name, work.name)
 }

@@ -100,7 +100,7 @@ async fn send_request(request: RequestBuilder) -> Result<Response, Failure> {
     // A refusal of the server is a problem document with a `detail`.
     let problem: Value = response.json().await.map_err(connection_failure)?;
     Err(Failure::Refused(format!(
-        "the server says: {}",
+        "the server refused the request: {}",
         problem["detail"].as_str().unwrap_or("no reason given")
     )))
 }

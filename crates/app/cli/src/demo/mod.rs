@@ -46,8 +46,8 @@ const HELD_OUT_TRIALS: usize = 2;
 const ABOUT: &str = "\
 Starts the server on a database in FOLDER, creates a ship, uploads trials, selects a source,
 refines, queries the champion, prints the errors before and after, and writes FOLDER/report.html.
-The trials are sailed by the four-degree-of-freedom ship SR108 with sensor noise; it is taken out
-of the zoo first, so that no model of its law can be chosen.";
+The trials are simulations of the ship SR108 (4-DOF, with sensor noise), which is removed from the
+zoo first, so that no model of its law can be selected.";
 
 /// Show the whole loop: ship, trials, source, refinement, champion, report.
 #[derive(Debug, Args)]
@@ -82,12 +82,12 @@ pub fn run(demo: &DemoArguments, zoo: &Zoo) -> Result<(), Failure> {
 /// Simulates and records the trials of the unknown ship.
 fn record_trials(zoo: &Zoo) -> Result<Vec<Trial>, Failure> {
     output::print_note(
-        "1/8  sailing the trials: SR108 with roll, by Son and Nomoto's law, and noisy instruments",
+        "1/8  simulating the trials: SR108 with roll, by Son and Nomoto's law, with sensor noise",
     );
     let model = zoo.find_model(TRIAL_SHIP).map_err(|error| Failure::Refused(error.to_string()))?;
     let law = zoo
         .law(&model.law)
-        .ok_or_else(|| Failure::Refused(format!("there is no law `{}`", model.law)))?;
+        .ok_or_else(|| Failure::Refused(format!("the law `{}` is not in the zoo", model.law)))?;
     let ship = Ship::new(&model, law).map_err(|error| Failure::Refused(error.to_string()))?;
     record_programme(&ship, SPEED_M_S, &PROGRAMME, SEED)
         .map_err(|stopped| Failure::Refused(stopped.to_string()))
@@ -102,7 +102,10 @@ fn empty_folder(folder: &Path) -> Result<(), Failure> {
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let entry = entry.map_err(failed)?;
         if !ours(&entry.file_name()) {
-            return Err(about_file(folder, "holds other files; name an empty folder with --out"));
+            return Err(about_file(
+                folder,
+                "contains other files; choose an empty folder with --out",
+            ));
         }
     }
     for (name, is_folder) in [("data", true), ("report.html", false)] {
@@ -125,7 +128,7 @@ async fn run_steps(running: &RunningServer, trials: &[Trial], out: &Path) -> Res
     // The ship of the trials must not be available as a source.
     api.delete(&format!("/v1/ships/{TRIAL_SHIP}")).await?;
     output::print_note(
-        "3/8  creating the ship northern-star; SR108 is taken out of the zoo, as it made the \
+        "3/8  creating the ship northern-star; SR108 is removed from the zoo, because it made the \
          trials",
     );
     api.post_yaml("/v1/ships", SHIP_YAML.to_owned()).await?;
@@ -134,7 +137,7 @@ async fn run_steps(running: &RunningServer, trials: &[Trial], out: &Path) -> Res
     let champion = api.get(&format!("/v1/ships/{SHIP_NAME}/model")).await?;
     output::print_note(&format!("7/8  champion: {}", describe_champion(&champion)));
     let report =
-        job["report"].as_str().ok_or_else(|| Failure::Refused("the job names no report".into()))?;
+        job["report"].as_str().ok_or_else(|| Failure::Refused("the job has no report".into()))?;
     let path = out.join("report.html");
     let html = api.get_text(&format!("/v1/reports/{report}"), "text/html").await?;
     std::fs::write(&path, html).map_err(|error| about_file(&path, error.to_string()))?;
@@ -185,7 +188,7 @@ async fn refine_model(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failur
     let queued = api.post_json("/v1/refinements", &request).await?;
     let id = queued["id"].as_str().unwrap_or_default().to_owned();
     output::print_note(&format!(
-        "5/8  refinement job {id}; kept out to judge on: {}",
+        "5/8  refinement job {id}; held-out trials: {}",
         held_out.join(", ")
     ));
     // Each message of the job is printed once.
@@ -203,7 +206,7 @@ async fn refine_model(api: &ApiClient, trials: &[Trial]) -> Result<Value, Failur
         match job["state"].as_str() {
             Some("succeeded") => return print_selection(&job["result"]),
             Some("failed" | "cancelled") => {
-                return Err(Failure::Refused(format!("the job ended: {}", job["error"])));
+                return Err(Failure::Refused(format!("the job failed: {}", job["error"])));
             }
             _ => tokio::time::sleep(Duration::from_millis(100)).await,
         }

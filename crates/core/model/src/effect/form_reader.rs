@@ -154,7 +154,10 @@ fn check_actions(acts_on: ActsOn, file: &FormFile) -> Result<(), FieldFault> {
     if counts.iter().all(|(.., count)| *count == 0) {
         return Err((
             String::new(),
-            format!("does nothing: an effect that acts on {} says how", section_names(acts_on)),
+            format!(
+                "has no formulas; an effect that acts on {} needs some",
+                section_names(acts_on)
+            ),
         ));
     }
     if file.parameters.is_empty() {
@@ -189,7 +192,10 @@ fn read_parameters(
 fn read_parameter(raw: &EffectParameterFile) -> Result<EffectParameter, String> {
     let unit = Unit::parse(&raw.unit).map_err(|e| e.to_string())?;
     if unit.to_si != 1.0 {
-        return Err(format!("effects use SI and radians; `{}` is not of them", raw.unit));
+        return Err(format!(
+            "effects use SI units and radians; `{}` is not one of these",
+            raw.unit
+        ));
     }
     // By default a search starts at the absence of the effect.
     let start = raw.start.unwrap_or(raw.absent);
@@ -246,7 +252,7 @@ fn particular_dimension(name: &str) -> Result<Dimension, String> {
 
 fn replaced_dimension(name: &str) -> Result<Dimension, String> {
     names::replaceable_dimension(name).ok_or_else(|| {
-        "a law sees u, v, r, p, phi, psi and channels such as delta, n and depth".into()
+        "a law has the inputs u, v, r, p, phi, psi and channels such as delta, n and depth".into()
     })
 }
 

@@ -166,8 +166,8 @@ fn ordered_factors(
         let is = |odd| symmetry::has_parity(&IndexMap::new(), &IndexMap::new(), formula, odd);
         // A factor must be either odd or even; one that is both is zero.
         if is(true) == is(false) {
-            let message = "breaks the port/starboard symmetry: mirrored it should stay as it is, \
-                or change its sign";
+            let message = "breaks the port/starboard symmetry: mirrored, it should be unchanged \
+                           or change its sign";
             return Err((format!("factors.{symbol}"), message.into()));
         }
         let (text, absolute) = (file.factors[symbol].clone(), file.absolute.contains(symbol));

@@ -107,7 +107,7 @@ fn read_forms(acts_on: ActsOn, raw: &[FormFile]) -> Result<Vec<Arc<EffectForm>>,
 
 fn read_grammar(acts_on: ActsOn, raw: &GrammarFile) -> Result<TermGrammar, (String, String)> {
     if acts_on != ActsOn::Force {
-        return Err(("acts_on".into(), "a grammar spells forces: write `force`".into()));
+        return Err(("acts_on".into(), "a grammar defines forces: write `force`".into()));
     }
     TermGrammar::from_file(raw).map_err(|(field, message)| (format!("grammar.{field}"), message))
 }
@@ -195,11 +195,11 @@ forms:
             ("[-1, 1]", "[1, -1]", "in order"),
             ("[-1, 1]", "[0.5, 1]", "absent, 0, is outside"),
             ("unit: '1'", "unit: deg", "SI"),
-            ("      share: {", "      draught_m: {", "already means"),
+            ("      share: {", "      draught_m: {", "is already a state"),
             ("forces:\n      X", "measures:\n      u", "`measurement`"),
             ("share_percent: share", "share_deg_s: share", "s^-1"),
             ("share_percent: share", "share_percent: share*u", "unknown name `u`"),
-            ("name: only", "name: Only one", "is not a name"),
+            ("name: only", "name: Only one", "is not a valid name"),
         ] {
             let error = refused(from, to);
             assert!(error.contains(part), "{error}");

@@ -117,12 +117,12 @@ impl FormScope {
     fn check_name(&self, field: &str, name: &str) -> Result<(), FieldFault> {
         // The text must be parsed as a single name, not as a number or a call.
         if formula::parse(name) != Ok(Expr::Name(name.to_owned())) {
-            return Err((field.to_owned(), "is not a name that formulas can use".into()));
+            return Err((field.to_owned(), "is not a valid name in formulas".into()));
         }
         if self.name_dimension(name).or_else(|| names::name_dimension(name, true)).is_some() {
             return Err((
                 field.to_owned(),
-                "this name already means a state, channel, particular, parameter or value".into(),
+                "this name is already a state, channel, particular, parameter or value".into(),
             ));
         }
         Ok(())

@@ -63,7 +63,7 @@ fn check_finite(form: &EffectForm, action: &FormulaAction<'_>) -> Result<(), Str
     if SEEDS.into_iter().all(finite) {
         Ok(())
     } else {
-        Err("has no finite value at an ordinary state".into())
+        Err("has no finite value in an ordinary state".into())
     }
 }
 

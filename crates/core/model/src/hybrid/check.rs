@@ -50,8 +50,8 @@ fn check_name(name: &str) -> Result<(), String> {
     let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
     if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(letters) {
         return Err(
-            "an actuator's name is made of letters, digits and underscores and starts with \
-            a letter"
+            "the name of an actuator consists of letters, digits and underscores and starts with \
+             a letter"
                 .into(),
         );
     }
@@ -61,7 +61,7 @@ fn check_name(name: &str) -> Result<(), String> {
         || formula::Function::by_name(name).is_some()
         || name == "if";
     if known || particulars::particular_dimension(name).is_some() {
-        return Err(format!("`{name}` means something else in formulas; choose another name"));
+        return Err(format!("`{name}` has another meaning in formulas; choose another name"));
     }
     Ok(())
 }
@@ -72,7 +72,7 @@ fn check_actuator(actuator: &ActuatorFile) -> Result<(), (&'static str, String)>
     if actuator.pair && kind == TunnelThruster {
         return Err((
             ".pair",
-            "a tunnel thruster has no twin on the other side; declare each by its name".into(),
+            "a tunnel thruster cannot be a pair; declare each one separately".into(),
         ));
     }
     // Only rudders and azimuth thrusters have an angle.
@@ -84,11 +84,11 @@ fn check_actuator(actuator: &ActuatorFile) -> Result<(), (&'static str, String)>
         .as_ref()
         .is_some_and(|axes| axes.is_empty() || axes.iter().any(|axis| !HYBRID_AXES.contains(axis)))
     {
-        return Err((".axes", "give some of X, Y and N".into()));
+        return Err((".axes", "give at least one of X, Y and N".into()));
     }
     let Some(stall) = actuator.stall_deg else { return Ok(()) };
     if !matches!(kind, Rudder | Vectwin) {
-        return Err((".stall_deg", "only rudders stall".into()));
+        return Err((".stall_deg", "only rudders can stall".into()));
     }
     match side_suffixes(actuator)
         .iter()
@@ -137,13 +137,13 @@ fn check_rules(file: &HybridFile, variables: &[ExpansionVariable]) -> Result<(),
     if mirrors && rules.zeroth_powers {
         return Err((
             "rules.zeroth_powers".into(),
-            "keeps biases, which `symmetry: mirror` excludes".into(),
+            "keeps constant terms, which `symmetry: mirror` excludes".into(),
         ));
     }
     if mirrors && rules.squares == Squares::AsPrinted {
         return Err((
             "rules.squares".into(),
-            "`as_printed` makes biases, which `symmetry: mirror` excludes".into(),
+            "`as_printed` gives constant terms, which `symmetry: mirror` excludes".into(),
         ));
     }
     for exception in &rules.trigonometric_exceptions {
@@ -154,7 +154,7 @@ fn check_rules(file: &HybridFile, variables: &[ExpansionVariable]) -> Result<(),
             let known: Vec<&str> =
                 variables.iter().filter(|v| v.trigonometric).map(|v| v.symbol.as_str()).collect();
             let message =
-                format!("there is no `{}`; there are {}", exception.factor, known.join(", "));
+                format!("there is no `{}`; choose one of {}", exception.factor, known.join(", "));
             return Err(("rules.trigonometric_exceptions".into(), message));
         }
     }
@@ -168,8 +168,8 @@ fn check_size(file: &HybridFile, variables: usize) -> Result<(), FieldFault> {
         .fold(1, |product, i| product * (variables + file.order as usize - i) / (i + 1));
     if terms > MAX_TERMS {
         let message = format!(
-            "{variables} variables to order {} make {terms} terms on an axis; {MAX_TERMS} are the \
-             most",
+            "{variables} variables to order {} give {terms} terms on an axis; the limit is \
+             {MAX_TERMS}",
             file.order
         );
         return Err(("order".into(), message));

@@ -58,8 +58,8 @@ pub fn derive_law(file: &str, text: &str) -> Result<LawDerivation, FileError> {
 fn write_yaml(law: &LawFile) -> Result<String, String> {
     let yaml = serde_yaml::to_string(law).map_err(|error| error.to_string())?;
     Ok(format!(
-        "# Derived by `sistership derive` from the declaration of the same name: change that, not \
-         this.\n{yaml}"
+        "# Derived by `sistership derive` from the declaration of the same name: edit the \
+         declaration instead.\n{yaml}"
     ))
 }
 

@@ -82,8 +82,8 @@ fn single_propeller(file: &HybridFile) -> Result<String, String> {
 fn stall_condition(file: &HybridFile, comparison: &str) -> Result<String, String> {
     let beyond = |(name, angle): (String, f64)| format!("abs({name}) - {angle}*pi/180");
     let excess = stall_angles(file).into_iter().map(beyond).reduce(|a, b| format!("max({a}, {b})"));
-    let excess =
-        excess.ok_or("this scheme tells rudders by their stall: give a rudder `stall_deg`")?;
+    let excess = excess
+        .ok_or("this scheme distinguishes rudders by their stall: give a rudder `stall_deg`")?;
     Ok(format!("{excess} {comparison} 0"))
 }
 

@@ -97,7 +97,7 @@ impl LawDerivation {
                 || zoo.effects().map(|effect| effect.name.clone()).collect::<Vec<_>>().join(", ");
             let effect = zoo.effect(&used.effect);
             let effect = effect.ok_or_else(|| {
-                fault(format!("there is no effect `{}`; there are {}", used.effect, names()))
+                fault(format!("there is no effect `{}`; choose one of {}", used.effect, names()))
             })?;
             let forms = || {
                 effect

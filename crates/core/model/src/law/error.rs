@@ -28,7 +28,7 @@ pub enum TermError {
         known: String,
     },
     /// The law does not define a factor.
-    #[error("law `{law}` does not say what factor `{symbol}` stands for")]
+    #[error("law `{law}` does not define the factor `{symbol}`")]
     Factor {
         /// The law.
         law: String,

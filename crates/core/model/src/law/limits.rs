@@ -57,7 +57,7 @@ pub fn check_counts(raw: &LawFile) -> Result<(), FieldFault> {
 /// Refuses a field that lists more than some number of items.
 pub(crate) fn check_count(field: &str, found: usize, most: usize) -> Result<(), FieldFault> {
     if found > most {
-        Err((field.to_owned(), format!("there are {found}; {most} are the most")))
+        Err((field.to_owned(), format!("there are {found}; the limit is {most}")))
     } else {
         Ok(())
     }

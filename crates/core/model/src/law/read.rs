@@ -120,9 +120,10 @@ impl LawReader<'_> {
         if found == wanted {
             Ok(())
         } else {
-            Err(self
-                .blame
-                .field_error(field, format!("`from` gives {found}, the parameter is {wanted}")))
+            Err(self.blame.field_error(
+                field,
+                format!("`from` has the dimension {found}, but the parameter {wanted}"),
+            ))
         }
     }
 
@@ -191,7 +192,7 @@ impl LawReader<'_> {
                 let axis_law = law
                     .axes
                     .get_mut(axis)
-                    .ok_or_else(|| self.blame.field_error("axes", "an axis was lost"))?;
+                    .ok_or_else(|| self.blame.field_error("axes", "an axis is missing"))?;
                 if axis_law.terms.insert(name.clone(), expr).is_some() {
                     return Err(self
                         .blame
@@ -214,7 +215,7 @@ impl LawReader<'_> {
             TermFile::Formula(_) => {
                 return Err(self.blame.field_error(
                     &format!("axes.{axis}.terms"),
-                    "write one `{name: formula}` an entry",
+                    "write one `{name: formula}` per entry",
                 ));
             }
         };

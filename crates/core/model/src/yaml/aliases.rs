@@ -15,7 +15,7 @@ pub fn check_aliases(bytes: &[u8]) -> Result<(), (usize, String)> {
         return Err((*at, format!("`*{name}` is an alias: write out what `&{name}` stands for")));
     }
     match (0..bytes.len()).find(|&at| begins_line(bytes, at) && bytes[at..].starts_with(b"%TAG")) {
-        Some(at) => Err((at, "`%TAG` is not known here: leave tags out".into())),
+        Some(at) => Err((at, "`%TAG` is not supported: remove the tags".into())),
         None => Ok(()),
     }
 }

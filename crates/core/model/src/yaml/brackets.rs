@@ -37,8 +37,8 @@ pub fn check_brackets(bytes: &[u8]) -> Result<(), (usize, String)> {
             return Err((
                 at,
                 format!(
-                    "brackets nest too deep or are not closed: {MAX_PASSES} are the most in a long \
-                     document"
+                    "brackets nest too deep or are not closed: the limit is {MAX_PASSES} in a \
+                     long document"
                 ),
             ));
         };

@@ -42,7 +42,7 @@ impl SchemaChecker<'_> {
         }
         if !has_type(schema, value) {
             let message =
-                || format!("is {}; {} is asked for", value_kind(value), expected_kind(schema));
+                || format!("is {}, but should be {}", value_kind(value), expected_kind(schema));
             return single_fault(true, path, message);
         }
         match value {
@@ -112,7 +112,8 @@ impl SchemaChecker<'_> {
             match known.get(name) {
                 Some(schema) => found.extend(self.check_value(schema, value, &at)),
                 None if *others == Value::Bool(false) => {
-                    found.push((at, format!("is no field; there are {}", names.join(", "))));
+                    found
+                        .push((at, format!("is not a field; the fields are {}", names.join(", "))));
                 }
                 None if others.is_object() => found.extend(self.check_value(others, value, &at)),
                 None => {}
@@ -144,7 +145,7 @@ fn permitted_words(schema: &Value) -> Option<Vec<&Value>> {
 
 fn unknown_word_message<'v>(value: &Value, words: impl Iterator<Item = &'v Value>) -> String {
     let known: Vec<String> = words.map(display_value).collect();
-    format!("is {}; there are {}", display_value(value), known.join(", "))
+    format!("is {}, but should be one of {}", display_value(value), known.join(", "))
 }
 
 fn schema_types(schema: &Value) -> Vec<&str> {

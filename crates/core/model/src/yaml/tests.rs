@@ -80,7 +80,7 @@ fn honest_documents_are_read() {
         read_document::<serde_yaml::Value>(&"a".repeat(MAX_BYTES + 1))
             .unwrap_err()
             .message
-            .contains("are the most")
+            .contains("the limit is")
     );
 }
 

@@ -97,7 +97,7 @@ fn file_entry<T>(file: &'static File<'static>) -> Result<(String, ZooEntry<T>), 
         file: file.path().display().to_string(),
         line: None,
         field: String::new(),
-        message: "is no text".to_owned(),
+        message: "is not text".to_owned(),
         further: Vec::new(),
     };
     let path = file.path().to_str().ok_or_else(no_text)?;

@@ -7,7 +7,7 @@ use sistership_model::law::TermError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlantError {
     /// A formula needs a particular or parameter that the model does not have.
-    #[error("law `{law}` needs `{name}`, which the model `{model}` does not give")]
+    #[error("law `{law}` needs `{name}`, which the model `{model}` lacks; add it")]
     Missing {
         /// The law.
         law: String,
@@ -22,10 +22,16 @@ pub enum PlantError {
     )]
     Mass(String),
     /// The mass matrix depends on the motion, but would have to be differentiated.
-    #[error("masses of law `{0}` change with the motion: no sensitivities")]
+    #[error(
+        "the masses of law `{0}` change with the motion, for which sensitivities are not \
+             available"
+    )]
     MovingMass(String),
     /// A view that can represent neither lags nor instruments.
-    #[error("`{model}` carries a lag, a dead band or an effect on instruments: no {view}")]
+    #[error(
+        "`{model}` has a lag, a dead band or an effect on instruments, for which {view} are \
+             not available"
+    )]
     Unsupported {
         /// The model.
         model: String,
@@ -41,7 +47,7 @@ pub enum PlantError {
         most: usize,
     },
     /// The weights of the model's learned correction are not attached.
-    #[error("branch: `{model}` has a learned branch, whose weights {sha256} are not here")]
+    #[error("branch: `{model}` has a learned correction whose weights {sha256} are missing")]
     Weights {
         /// The model.
         model: String,
@@ -50,8 +56,8 @@ pub enum PlantError {
     },
     /// A request that only the foundation of a model with a learned correction can answer.
     #[error(
-        "branch: `{0}` has a learned branch, which has no formulas and no coefficients: give the \
-         model that it was trained on"
+        "branch: `{0}` has a learned correction, which has no formulas and no coefficients: use \
+         the model without it"
     )]
     Branch(String),
     /// The law has no such coefficient.

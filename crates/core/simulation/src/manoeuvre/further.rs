@@ -92,8 +92,8 @@ impl FurtherManoeuvres {
         if let Some(stop) = &self.stopping {
             let StoppingMetrics { astern_rps, reversal_s, .. } = stop;
             remarks.push(format!(
-                "stopping: revolutions go to {astern_rps:.4} 1/s in {reversal_s} s, the rudder \
-                 stays amidships"
+                "stopping: the revolutions change to {astern_rps:.4} 1/s in {reversal_s} s with \
+                 the rudder amidships"
             ));
             let lengths = stop.track_reach_m.map_or(0.0, |metres| metres / lpp_m);
             let limit = stop.track_reach_criterion(lpp_m).limit;

@@ -17,20 +17,21 @@ use crate::state::{at, straight_state};
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ReversingError {
     /// Thrust does not depend on revolutions.
-    #[error("law `{law}` takes no propeller revolutions")]
+    #[error("law `{law}` has no propeller revolutions as input")]
     NoRevolutions {
         /// The law.
         law: String,
     },
     /// The revolutions of the approach are unknown.
-    #[error("{model} gives no revolutions for its approach speed: what is astern of them?")]
+    #[error("{model} has no revolutions for its approach speed; give those astern")]
     NoApproach {
         /// The model.
         model: String,
     },
     /// The propeller of the law covers revolutions ahead only.
     #[error(
-        "the propeller of law `{law}` is that of the first quadrant, ahead with revolutions ahead"
+        "the propeller model of law `{law}` covers the first quadrant only (ahead, with \
+         revolutions ahead)"
     )]
     FirstQuadrant {
         /// The law.
@@ -38,8 +39,8 @@ pub enum ReversingError {
     },
     /// The coefficients of the revolutions were fitted without revolutions astern.
     #[error(
-        "law `{law}` is a polynomial in the revolutions, and the trials of {model} never reversed \
-         the propeller"
+        "law `{law}` is a polynomial in the revolutions, but no trial of {model} has a reversed \
+         propeller"
     )]
     NotCovered {
         /// The law.
@@ -48,7 +49,7 @@ pub enum ReversingError {
         model: String,
     },
     /// Reversing does not slow the ship down.
-    #[error("by {model}, reversing the propeller does not brake the ship at {speed} m/s")]
+    #[error("in {model} a reversed propeller does not decelerate the ship at {speed} m/s")]
     DoesNotBrake {
         /// The model.
         model: String,

@@ -99,7 +99,7 @@ impl ZigzagTest {
 }
 
 fn empty_track_error() -> SimulationStop {
-    SimulationStop { t_s: 0.0, reason: "nothing was sailed".into() }
+    SimulationStop { t_s: 0.0, reason: "no manoeuvre was simulated".into() }
 }
 
 /// The standard manoeuvres: hard turns, zigzags, and turns with 10 deg of rudder for the initial

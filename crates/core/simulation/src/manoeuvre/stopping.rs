@@ -31,7 +31,7 @@ pub struct StoppingTest {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StoppingError {
     /// The model does not cover a reversed propeller.
-    #[error("not by this model: {0}")]
+    #[error("not supported by this model: {0}")]
     NotReversing(#[from] ReversingError),
     /// The motion left the physical range.
     #[error(transparent)]
@@ -75,6 +75,6 @@ pub fn simulate_stop(
         },
     )?;
     let metrics = StoppingMetrics::from_track(&track, astern_rps, order.reversal_s);
-    let nothing = || SimulationStop { t_s: 0.0, reason: "nothing was sailed".into() };
+    let nothing = || SimulationStop { t_s: 0.0, reason: "no manoeuvre was simulated".into() };
     Ok(StoppingTest { metrics: metrics.ok_or_else(nothing)?, track })
 }

@@ -42,7 +42,10 @@ fn check_position(recording: &Recording, findings: &mut Findings) {
     let begins = |k: usize| recording.segments.iter().any(|segment| segment.start == k);
     let gaps = recording.find_samples(1..t.len(), |k| jumps(k) && begins(k));
     findings.report_rows(Severity::Warning, header, &gaps, |k| {
-        format!("the position jumps {:.1} m across a gap; nothing is fitted across it", step(k))
+        format!(
+            "the position jumps {:.1} m across a gap; the trial is not fitted across it",
+            step(k)
+        )
     });
     let hits = recording.find_samples(1..t.len(), |k| jumps(k) && !begins(k));
     findings.report_rows(Severity::Error, header, &hits, |k| {
@@ -72,8 +75,8 @@ fn report_unusual_steps(
         unusual.inspect(|_| count += 1).max_by(|&a, &b| step(a).total_cmp(&step(b)))
     {
         let message = format!(
-            "the position steps {:.2} m here where 95 % of steps are below {typical:.3} m ({count} \
-             such steps); satellite fixes do so",
+            "the position steps {:.2} m here, while 95 % of steps are below {typical:.3} m \
+             ({count} such steps); this is common with satellite positions",
             step(largest)
         );
         findings.warning(
@@ -111,7 +114,7 @@ fn check_speed(recording: &Recording, channel: Channel, findings: &mut Findings)
     });
     findings.report_rows(Severity::Error, header, &hits, |k| {
         format!(
-            "the speed steps {:.2} m/s in {:.3} s, which no ship does; remove the faulty row",
+            "the speed changes by {:.2} m/s in {:.3} s, which is impossible; remove the faulty row",
             step(k),
             t[k] - t[k - 1]
         )
@@ -147,10 +150,14 @@ mod tests {
                 .starts_with("error Some(102) Some(\"psi_rad\") the heading steps")
         );
         assert!(
-            broken(Channel::U, 8.0).starts_with("error Some(102) Some(\"u_m_s\") the speed steps")
+            broken(Channel::U, 8.0)
+                .starts_with("error Some(102) Some(\"u_m_s\") the speed changes")
         );
         // A satellite fix that steps is the seafarer's daily bread.
         let text = broken(Channel::X, 27.0);
-        assert!(text.starts_with("warning Some(10") && text.contains("satellite fixes"), "{text}");
+        assert!(
+            text.starts_with("warning Some(10") && text.contains("satellite positions"),
+            "{text}"
+        );
     }
 }

@@ -14,33 +14,34 @@ use crate::stats::nearest_quantile;
 /// 1.5 rad/s (86 deg/s) beyond a free-running model at full rudder, 200 turns per second beyond a
 /// model's propeller.
 const LIMITS: [(Channel, f64, &str); 11] = [
-    (Channel::U, 40.0, "no ship is that fast; check the column and its unit"),
-    (Channel::V, 40.0, "no ship is that fast; check the column and its unit"),
-    (Channel::UWater, 40.0, "no ship is that fast; check the column and its unit"),
-    (Channel::VWater, 40.0, "no ship is that fast; check the column and its unit"),
+    (Channel::U, 40.0, "too fast for a ship; check the column and its unit"),
+    (Channel::V, 40.0, "too fast for a ship; check the column and its unit"),
+    (Channel::UWater, 40.0, "too fast for a ship; check the column and its unit"),
+    (Channel::VWater, 40.0, "too fast for a ship; check the column and its unit"),
     (
         Channel::R,
         1.5,
-        "no ship turns that fast; if the values are degrees per second declare `deg/s`",
+        "too large a yaw rate for a ship; if the values are degrees per second declare `deg/s`",
     ),
     (
         Channel::P,
         3.0,
-        "no ship rolls that fast; if the values are degrees per second declare `deg/s`",
+        "too large a roll rate for a ship; if the values are degrees per second declare `deg/s`",
     ),
-    (
-        Channel::Phi,
-        FRAC_PI_2,
-        "the ship would lie on its side; if the values are degrees declare `deg`",
-    ),
+    (Channel::Phi, FRAC_PI_2, "too large a roll angle; if the values are degrees declare `deg`"),
     (
         Channel::Delta,
         FRAC_PI_2,
-        "no rudder turns that far; if the values are degrees declare `deg`",
+        "too large a rudder angle; if the values are degrees declare `deg`",
     ),
-    (Channel::N, 200.0, "no propeller turns that fast; if the values are per minute declare `rpm`"),
-    (Channel::WindSpeed, 100.0, "no wind blows that fast; check the column and its unit"),
-    (Channel::ApparentWindSpeed, 100.0, "no wind blows that fast; check the column and its unit"),
+    (
+        Channel::N,
+        200.0,
+        "too high for propeller revolutions per second; if the values are per \
+                         minute declare `rpm`",
+    ),
+    (Channel::WindSpeed, 100.0, "too fast for a wind; check the column and its unit"),
+    (Channel::ApparentWindSpeed, 100.0, "too fast for a wind; check the column and its unit"),
 ];
 
 pub(crate) fn check_ranges(recording: &Recording, findings: &mut Findings) {
@@ -52,7 +53,7 @@ pub(crate) fn check_ranges(recording: &Recording, findings: &mut Findings) {
             recording,
             channel,
             |value| value < 0.0,
-            "a wind speed is not negative; give its direction apart",
+            "a wind speed cannot be negative; give the direction in its own column",
             findings,
         );
     }
@@ -101,8 +102,10 @@ fn tiny_rudder(recording: &Recording, findings: &mut Findings) {
     let most = values.iter().fold(0.0_f64, |most, value| most.max(value.abs())) * 180.0 / PI;
     // A rudder below 0.03 deg is amidships throughout.
     if (0.03..1.0).contains(&most) {
-        let message =
-            format!("the rudder never exceeds {most:.2} deg; if these are radians declare `rad`");
+        let message = format!(
+            "the largest rudder angle is {most:.2} deg; if the values are radians declare \
+                     `rad`"
+        );
         findings.warning(None, Some(recording.column_header(Channel::Delta)), message);
     }
 }
@@ -113,8 +116,8 @@ fn fast_propeller(recording: &Recording, findings: &mut Findings) {
     let typical = nearest_quantile(values.iter().map(|value| value.abs()), 0.5);
     if typical > 40.0 {
         let message = format!(
-            "the propeller typically makes {typical:.0} turns per second; if these are per minute \
-             declare `rpm`"
+            "the propeller revolutions are typically {typical:.0} per second; if the values are \
+             per minute declare `rpm`"
         );
         findings.warning(None, Some(recording.column_header(Channel::N)), message);
     }
@@ -134,7 +137,7 @@ mod tests {
         let text = of(Channel::Delta, &[0.0, 35.0, -20.0]);
         assert!(
             text.starts_with(
-                "error Some(3) Some(\"delta_rad\") 35.0000 rad: no rudder turns that far"
+                "error Some(3) Some(\"delta_rad\") 35.0000 rad: too large a rudder angle"
             ),
             "{text}"
         );
@@ -145,7 +148,7 @@ mod tests {
     #[test]
     fn impossible_values_are_refused() {
         assert!(of(Channel::U, &[41.0]).starts_with("error Some(2)"));
-        assert!(of(Channel::WindSpeed, &[-1.0]).contains("not negative"));
+        assert!(of(Channel::WindSpeed, &[-1.0]).contains("cannot be negative"));
         assert!(of(Channel::Depth, &[0.0]).contains("positive"));
         assert!(of(Channel::N, &[80.0, 80.0]).starts_with("warning"));
     }

@@ -16,7 +16,7 @@ const ALMOST: f64 = 0.98;
 pub(crate) fn check_shape(recording: &Recording, findings: &mut Findings) {
     if recording.trial.len() < FEWEST {
         let message = format!(
-            "{} usable rows are no trial; at least {FEWEST} are needed",
+            "{} usable rows are too few for a trial; at least {FEWEST} are needed",
             recording.trial.len()
         );
         findings.error(None, None, message);
@@ -58,8 +58,8 @@ fn short_turn(recording: &Recording, findings: &mut Findings) {
     };
     if turned < ALMOST * TAU {
         let message = format!(
-            "the turn is too short: {:.0} deg of heading, where a turning circle takes 360 deg or \
-             more",
+            "the turn is too short: the heading changes by {:.0} deg, but a turning circle needs \
+             360 deg or more",
             turned.to_degrees()
         );
         findings.warning(None, Some(recording.column_header(Channel::Psi)), message);

@@ -11,10 +11,10 @@ pub(crate) fn in_order(recording: &Recording, findings: &mut Findings) -> bool {
     let t = recording.time();
     let hits = recording.find_samples(1..t.len(), |k| t[k] <= t[k - 1]);
     findings.report_rows(Severity::Error, &recording.time, &hits, |k| match t[k] == t[k - 1] {
-        true => format!("time {} s stands twice; remove one of the rows", t[k]),
+        true => format!("time {} s appears twice; remove one of the rows", t[k]),
         false => format!(
-            "time goes back from {} s to {} s; sort the rows, or split the file if two runs follow \
-             each other",
+            "time decreases from {} s to {} s; sort the rows, or split the file if it contains \
+             two trials",
             t[k - 1],
             t[k]
         ),
@@ -31,7 +31,7 @@ pub(crate) fn report_gaps(recording: &Recording, findings: &mut Findings) {
     });
     findings.report_rows(Severity::Warning, &recording.time, &hits, |k| {
         format!(
-            "gap of {:.3} s (samples are {:.3} s apart); nothing is interpolated over it",
+            "gap of {:.3} s (sampling interval {:.3} s); it is not interpolated",
             t[k] - t[k - 1],
             recording.interval_s
         )

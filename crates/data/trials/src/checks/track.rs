@@ -28,21 +28,21 @@ const DECLARED: AxisMapping = |u, v, c, s| (u * c - v * s, u * s + v * c);
 const MISTAKES: [(AxisMapping, &str); 4] = [
     (
         |u, v, _, _| (u, v),
-        "u and v are the velocities north and east, not along the ship; rotate them by the heading \
-         first",
+        "u and v are velocities north and east instead of ahead and to starboard; map them as \
+         `v_north` and `v_east`",
     ),
     (
         |u, v, c, s| (u * s + v * c, u * c - v * s),
-        "x and y are exchanged: x points north and y east; map them the other way round",
+        "x and y are exchanged: x is north and y is east; exchange the columns",
     ),
     (
         |u, v, c, s| (u * c - v * s, -u * s - v * c),
-        "y points west, or the heading counts anticlockwise; y points east and the heading counts \
-         clockwise: change the sign",
+        "y is positive to the west, or the heading is anticlockwise: y must be positive to the \
+         east and the heading clockwise; change the sign",
     ),
     (
         |u, v, c, s| (u * c + v * s, u * s - v * c),
-        "v is positive to port; it counts to starboard: change its sign",
+        "v is positive to port, but must be positive to starboard; change its sign",
     ),
 ];
 
@@ -143,7 +143,7 @@ impl<'a> TrackCheck<'a> {
         });
         let (best, message) = left.min_by(|a, b| a.0.total_cmp(&b.0))?;
         (best < MUCH_BETTER * declared && best < MUCH_BETTER * whole)
-            .then(|| format!("the track shows that {message}"))
+            .then(|| format!("according to the track, {message}"))
     }
 
     fn scale_mistake(&self) -> Option<String> {
@@ -157,8 +157,8 @@ impl<'a> TrackCheck<'a> {
         let found = fit_proportion(&pairs).filter(|found| found.correlation > 0.98)?;
         let unit = SCALES.iter().find(|(factor, _)| (found.slope / factor - 1.0).abs() < 0.03)?.1;
         Some(format!(
-            "the positions move {:.4} times as fast as u and v say; the velocities are likely \
-             {unit}",
+            "the speed of the positions is {:.4} times that of u and v; the velocities are \
+             probably {unit}",
             found.slope
         ))
     }
@@ -178,16 +178,16 @@ impl<'a> TrackCheck<'a> {
             let towards =
                 rest.drift.1.atan2(rest.drift.0).to_degrees().rem_euclid(360.0).round() % 360.0;
             let message = format!(
-                "the positions drift {drift:.3} m/s towards {towards:.0} deg beyond what u and v \
-                 say: where these are of a log through the water, map them as `u_water` and \
-                 `v_water` and declare `derive: [u, v]`; else a speed sensor errs"
+                "the positions drift by {drift:.3} m/s towards {towards:.0} deg relative to u and \
+                 v: if these are from a log through the water, map them as `u_water` and \
+                 `v_water` and declare `derive: [u, v]`; otherwise check the speed sensors"
             );
             findings.warning(None, Some(header), message);
         }
         if scatter > UNSTEADY * speed {
             let message = format!(
-                "positions and velocities disagree by {scatter:.3} m/s (mean speed {speed:.3} \
-                 m/s); check reference points and sensors"
+                "positions and velocities differ by {scatter:.3} m/s (mean speed {speed:.3} m/s); \
+                 check reference points and sensors"
             );
             findings.warning(None, Some(header), message);
         }

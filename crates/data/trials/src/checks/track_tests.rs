@@ -24,7 +24,7 @@ fn earth_fixed_velocities_are_refused() {
     });
     assert!(
         text.starts_with(
-            "error None Some(\"u_m_s\") the track shows that u and v are the velocities north"
+            "error None Some(\"u_m_s\") according to the track, u and v are velocities north"
         ),
         "{text}"
     );

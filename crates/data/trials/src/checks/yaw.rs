@@ -45,7 +45,7 @@ fn unit_mistake(recording: &Recording, slope: f64) -> Option<String> {
         (recording.declared_unit(Channel::Psi), recording.declared_unit(Channel::R));
     if near(DEGREES) {
         return Some(format!(
-            "the heading `{psi}` turns 57.3 times as fast as the yaw rate: declare `{psi}` in \
+            "the heading `{psi}` changes 57.3 times as fast as the yaw rate: declare `{psi}` in \
              `deg` if its `{psi_unit}` is wrong, or the yaw rate in `rad/s` if its `{r_unit}` is"
         ));
     }
@@ -57,8 +57,8 @@ fn unit_mistake(recording: &Recording, slope: f64) -> Option<String> {
     }
     near(-1.0).then(|| {
         format!(
-            "the yaw rate and the heading `{psi}` turn opposite ways; heading counts clockwise \
-            from north and yaw rate to starboard: change the sign of one"
+            "the yaw rate and the heading `{psi}` have opposite signs; the heading is clockwise \
+             from north and the yaw rate positive to starboard: change the sign of one"
         )
     })
 }
@@ -67,8 +67,7 @@ fn report_difference(recording: &Recording, found: ProportionalFit, findings: &m
     if (found.slope - 1.0).abs() > MODERATE {
         let psi = recording.column_header(Channel::Psi);
         let message = format!(
-            "the heading `{psi}` turns {:.2} times as fast as the yaw rate says; check both \
-             sensors",
+            "the heading `{psi}` changes {:.2} times as fast as the yaw rate; check both sensors",
             found.slope
         );
         findings.warning(None, Some(recording.column_header(Channel::R)), message);
@@ -92,7 +91,7 @@ mod tests {
                 .contains("declare `psi_rad` in `deg`")
         );
         assert!(
-            check_messages(&zigzag_with(Channel::R, |r| -r), check_yaw).contains("opposite ways")
+            check_messages(&zigzag_with(Channel::R, |r| -r), check_yaw).contains("opposite signs")
         );
         assert!(
             check_messages(&zigzag_with(Channel::R, |r| 1.2 * r), check_yaw).starts_with("warning")

@@ -64,7 +64,7 @@ impl AnnouncedStrings {
 }
 
 fn too_many(count: u64) -> String {
-    format!("announces {count} strings, more than the {STRINGS} that are read")
+    format!("announces {count} strings, more than the limit of {STRINGS}")
 }
 
 #[cfg(test)]

@@ -32,12 +32,12 @@ pub fn check_archive(input: &mut (impl Read + Seek), most: u64) -> Result<(), St
     let damaged = |error: zip::result::ZipError| format!("the archive is damaged: {error}");
     let mut archive = ZipArchive::new(input).map_err(damaged)?;
     if archive.len() > FILES {
-        return Err(format!("an archive of {} files is no workbook", archive.len()));
+        return Err(format!("an archive of {} files is not a workbook", archive.len()));
     }
     // An Excel workbook has files whose names contain `sheet`.
     let named = |name: &str| name.to_lowercase().contains("sheet");
     if !archive.file_names().any(|name| name.is_ok_and(|name| named(&name))) {
-        return Err("a ZIP archive that is no Excel workbook; unpack it".into());
+        return Err("a ZIP archive, but not an Excel workbook; unpack it".into());
     }
     let mut left = most;
     for index in 0..archive.len() {
@@ -61,7 +61,7 @@ fn count_unpacked(file: &mut impl Read, bound: u64, is_text: bool) -> Result<u64
         let read = file.read(&mut buffer).map_err(|error| error.to_string())?;
         bytes += read as u64;
         if bytes > bound {
-            return Err(format!("more than the {bound} unpacked bytes that are read"));
+            return Err(format!("more than the limit of {bound} bytes unpacked"));
         }
         if read == 0 {
             return Ok(bytes);

@@ -107,7 +107,7 @@ pub fn visit_arrays(
     let big = match &header[HEADER - 2..] {
         b"IM" => false,
         b"MI" => true,
-        _ => return Err(invalid_data("it does not say in which order its bytes are")),
+        _ => return Err(invalid_data("its byte order is unknown")),
     };
     let mut parser = ElementParser { big, left: most, visitor };
     for _ in 0..ELEMENTS {
@@ -117,7 +117,7 @@ pub fn visit_arrays(
             Err(error) => return Err(error),
         }
     }
-    Err(invalid_data("more variables than are read"))
+    Err(invalid_data("too many variables"))
 }
 
 struct ElementParser<'a> {
@@ -179,7 +179,7 @@ impl ElementParser<'_> {
         self.left = self
             .left
             .checked_sub(bytes)
-            .ok_or_else(|| invalid_data("it holds more bytes than are read when unpacked"))?;
+            .ok_or_else(|| invalid_data("it has too many bytes when unpacked"))?;
         Ok(())
     }
 
@@ -256,7 +256,7 @@ impl ElementParser<'_> {
             let field = format!("{name}.{}", String::from_utf8_lossy(&field));
             let tag = self.read_tag(input)?;
             if tag.kind != MATRIX || tag.inside.is_some() {
-                return Err(invalid_data("a field is no array"));
+                return Err(invalid_data("a field is not an array"));
             }
             self.read_matrix(input, tag.size, &field, depth + 1)?;
         }

@@ -72,8 +72,7 @@ pub fn measure_pages<R: ChunkReader>(
         if header.uncompressed.max(header.compressed) > most as u64 {
             let size = header.uncompressed.max(header.compressed);
             return Err(format!(
-                "has a page of {size} bytes, more than the {most} that are read; write smaller \
-                 pages"
+                "has a page of {size} bytes, more than the limit of {most}; write smaller pages"
             ));
         }
         if matches!(chunk.compression(), Compression::GZIP(_)) {
@@ -148,7 +147,11 @@ impl PageHeader {
         let packed = packed.take(self.compressed.saturating_sub(self.levels));
         let most = self.uncompressed.saturating_sub(self.levels);
         let size = io::copy(&mut MultiGzDecoder::new(packed).take(most + 1), &mut io::sink())?;
-        if size > most { Err(invalid_page("it is larger than its header says")) } else { Ok(()) }
+        if size > most {
+            Err(invalid_page("it is larger than declared in its header"))
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -209,7 +212,7 @@ impl<R: Read> ThriftReader<R> {
     ) -> io::Result<()> {
         let expected = (self.format)(path);
         if expected.is_some_and(|expected| !expected.is_kind(kind)) {
-            return Err(invalid_page("a field is of another kind than the format says"));
+            return Err(invalid_page("a field has a wrong type"));
         }
         match kind {
             9 => self.read_list(path, depth, expected, take),
@@ -240,7 +243,7 @@ impl<R: Read> ThriftReader<R> {
             }
             9 | 10 => self.read_list(path, depth, None, take),
             12 => self.read_fields(path, depth, take),
-            _ => Err(invalid_page("it holds what no Parquet file holds")),
+            _ => Err(invalid_page("it has an unknown element")),
         }
     }
 
@@ -260,11 +263,11 @@ impl<R: Read> ThriftReader<R> {
         let (entries, count) = (head & 15, u64::from(head >> 4));
         let count = if count == 15 { self.read_varint()? } else { count };
         if count > 0 && expected.is_some_and(|expected| !expected.holds_entries(entries)) {
-            return Err(invalid_page("a list is of another kind than the format says"));
+            return Err(invalid_page("a list has a wrong type"));
         }
         for _ in 0..count {
             match entries {
-                1 | 2 => return Err(invalid_page("it holds what no Parquet file holds")),
+                1 | 2 => return Err(invalid_page("it has an unknown element")),
                 kind => self.read_entry(kind, path, deeper, take)?,
             }
         }

@@ -51,7 +51,7 @@ pub enum SegmentationError {
     #[error("no column of the yaw rate or the heading: map `r` or `psi`")]
     Yaw,
     /// The ship never moves.
-    #[error("the ship never has way")]
+    #[error("the ship is never under way")]
     Still,
 }
 

@@ -57,7 +57,10 @@ impl ManoeuvreSegment {
         let excitation = Excitation::from_cells(inner, &steady, reversals, cells.scale.speed_m_s);
         let why = describe_reason(kind, inner, &holds, &excitation, before);
         let scatter = steady.rudder_scatter.to_degrees();
-        let why = format!("{why}; in course keeping the rudder scatters by {scatter:.1} deg");
+        let why = format!(
+            "{why}; standard deviation of the rudder in course keeping {scatter:.1} \
+                           deg"
+        );
         Self { span, kind, excitation, why }
     }
 }
@@ -79,27 +82,26 @@ fn describe_reason(
     };
     match kind {
         SegmentKind::Zigzag => format!(
-            "rudder {low:.0} to {high:+.0} deg, to the other side {} times, yaw rate to {yaw:.2} \
-             deg/s",
+            "rudder {low:.0} to {high:+.0} deg with {} reversals, yaw rate up to {yaw:.2} deg/s",
             excitation.rudder_reversals
         ),
         SegmentKind::PullOut => {
             format!(
-                "{rudder}, then amidships while the ship turns on; heading over {turned:.0} deg"
+                "{rudder}, then amidships while the ship continues to turn; heading changes by \
+                 {turned:.0} deg"
             )
         }
         SegmentKind::Stop | SegmentKind::SpeedChange => {
             let last = cells.last().map_or(before.revolutions, |cell| cell.revolutions);
             let range = cells.iter().map(|cell| cell.revolutions).fold(last, f64::min);
             format!(
-                "revolutions {:.2} to {:.2} 1/s (least {range:.2}), speed over {lost:.0} % of its \
-                 usual",
+                "revolutions {:.2} to {:.2} 1/s (minimum {range:.2}), speed varies by {lost:.0} %",
                 before.revolutions, last
             )
         }
         SegmentKind::Turn | SegmentKind::CourseChange | SegmentKind::RudderMovement => format!(
-            "{rudder}, heading over {turned:.0} deg, yaw rate to {yaw:.2} deg/s, speed over \
-             {lost:.0} %"
+            "{rudder}, heading changes by {turned:.0} deg, yaw rate up to {yaw:.2} deg/s, speed \
+             varies by {lost:.0} %"
         ),
     }
 }

@@ -134,7 +134,7 @@ impl Accounts<'_> {
         let (store, prefix) = (self.store.clone(), row.prefix.clone());
         tokio::spawn(async move {
             if let Err(error) = store.service_keys().record_use(&prefix).await {
-                tracing::warn!(%error, "the use of a key could not be noted");
+                tracing::warn!(%error, "the use of a key could not be recorded");
             }
         });
     }

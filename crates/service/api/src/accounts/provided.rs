@@ -38,7 +38,12 @@ type Admission = std::result::Result<String, String>;
 
 impl Accounts<'_> {
     fn openid_provider(&self) -> Result<&OpenIdProvider> {
-        let none = || Problem::not_found("people sign in here by name and password only");
+        let none = || {
+            Problem::not_found(
+                "this server has no OpenID provider; sign in with name \
+                                          and password",
+            )
+        };
         self.credentials.provider().ok_or_else(none)
     }
 
@@ -90,7 +95,7 @@ impl Accounts<'_> {
         // somebody else must not add an identity to the account.
         let session = self.by_session(headers).await?.filter(|principal| principal.name == user);
         if session.is_none() {
-            let why = format!("sign in as {user} again, and link from the page of your account");
+            let why = format!("sign in as {user} again, and link the account on its page");
             return Err(Problem::new(StatusCode::UNAUTHORIZED, why));
         }
         let actor = Actor::new(user, from);
@@ -110,7 +115,8 @@ impl Accounts<'_> {
         // back.
         let attempt = SignInAttempt { name: &whom, from: PROVIDER_ACTOR };
         attempts.begin_attempt(attempt, Instant::now()).map_err(|wait| {
-            let why = format!("you were refused often; try again in {} s", wait.as_secs().max(1));
+            let why =
+                format!("too many refused sign-ins; try again in {} s", wait.as_secs().max(1));
             Problem::new(StatusCode::TOO_MANY_REQUESTS, why)
         })?;
         let by_provider = Actor::new(PROVIDER_ACTOR, from);
@@ -147,7 +153,7 @@ impl Accounts<'_> {
         let Some(found) = found else { return self.create_user_of(provider, done, &roles).await };
         let user = self.store.users().get(&found.user_name).await?;
         if !user.is_enabled() {
-            return Ok(Err("your account here is disabled; ask an admin".to_owned()));
+            return Ok(Err("your account is disabled; ask an admin to enable it".to_owned()));
         }
         // Roles that come from groups are set anew at each sign-in.
         if admission.by_groups() {
@@ -172,8 +178,8 @@ impl Accounts<'_> {
         let title = settings.title();
         if !settings.admission_rules().auto_create {
             return Ok(Err(format!(
-                "{title} knows you, but no account here is yours yet: sign in with your password \
-                 and link your account on its page, or ask an admin to link it"
+                "you are signed in at {title}, but no account here is linked with it: sign in \
+                 with your password and link your account on its page, or ask an admin to link it"
             )));
         }
         if roles.is_empty() {
@@ -185,9 +191,8 @@ impl Accounts<'_> {
         };
         if self.store.users().find(&name).await?.is_some() {
             return Ok(Err(format!(
-                "there is an account `{name}` already that is not linked with {title}: if it is \
-                 yours, sign in with its password and link it on its page, or ask an admin to link \
-                 it"
+                "the account `{name}` exists but is not linked with {title}: if it is yours, sign \
+                 in with its password and link it on its page, or ask an admin to link it"
             )));
         }
         let called = identity.display_name().unwrap_or(&name);
@@ -199,7 +204,7 @@ impl Accounts<'_> {
 
 fn no_group_message(provider: &OpenIdProvider) -> String {
     format!(
-        "none of your groups at {} may do anything here; ask an admin",
+        "none of your groups at {} has a role here; ask an admin for one",
         provider.settings().title()
     )
 }

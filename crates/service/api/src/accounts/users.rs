@@ -118,7 +118,7 @@ impl Accounts<'_> {
         match self.is_password_correct(name, password).await {
             Ok(true) => attempts.record_success(attempt, Instant::now()),
             Ok(false) => {
-                tracing::warn!(name, from, "a wrong password");
+                tracing::warn!(name, from, "wrong password");
                 return Err(Problem::new(StatusCode::UNAUTHORIZED, "name or password is wrong"));
             }
             Err(problem) => {

@@ -41,7 +41,7 @@ pub(super) async fn run_training(app: &App, job: &Job, progress: JobProgress) ->
     let scaled = move |done: f64, what: &str| step.report(begun + (0.9 - begun) * done, what);
     let recipe = DerivationRecipe::Training(recipe);
     let derived = derive(app.archive(), &asked.ship, &recipe, Arc::new(scaled)).await?;
-    report_progress(&progress, 0.92, "keeping weights and version")?;
+    report_progress(&progress, 0.92, "storing the weights and the version")?;
     commit_training(app, job, derived, &version.head, choice).await
 }
 

@@ -35,7 +35,7 @@ pub(super) async fn run_chunk(app: &App, job: &Job, progress: JobProgress) -> Re
                     .collect::<Vec<_>>()
             })
             .await?;
-        report_progress(&progress, 0.9, "keeping the versions")?;
+        report_progress(&progress, 0.9, "storing the versions")?;
         let outcomes = done
             .into_iter()
             .map(|(member, outcome)| member_outcome(&loaded, &bulk.id, member, outcome));
@@ -52,7 +52,9 @@ pub(super) async fn run_chunk(app: &App, job: &Job, progress: JobProgress) -> Re
             other => return Ok(other.map(drop)?),
         }
     }
-    Err(permanent_failure("other versions of the ships kept coming in between; retry the job"))
+    Err(permanent_failure(
+        "other versions of the ships were stored at the same time; retry the job",
+    ))
 }
 
 async fn gather_members(

@@ -59,7 +59,7 @@ pub(super) async fn commit_refinement(
             other => return other,
         }
     }
-    Err(permanent_failure("other versions of the ship kept coming in between; retry the job"))
+    Err(permanent_failure("other versions of the ship were stored at the same time; retry the job"))
 }
 
 impl PendingVersion {
@@ -71,8 +71,8 @@ impl PendingVersion {
         let DerivedVersion { document, refined, .. } = derived;
         let named = |source: &Version| format!("{}/{}", source.head.model, source.head.number);
         let source = prepared.start.source.as_ref().map(named);
-        let refined =
-            refined.ok_or_else(|| permanent_failure("the recipe is not that of a refinement"))?;
+        let refined = refined
+            .ok_or_else(|| permanent_failure("the recipe is not the recipe of a refinement"))?;
         let version = NewVersion {
             model: document.ship.clone(),
             parent: prepared.start.source.map(|source| source.head.id),

@@ -52,7 +52,7 @@ pub(super) async fn commit_training(
             other => return other,
         }
     }
-    Err(permanent_failure("other versions of the ship kept coming in between; retry the job"))
+    Err(permanent_failure("other versions of the ship were stored at the same time; retry the job"))
 }
 
 /// Name of the method, such as `branch-kernel-ridge-parallel`.
@@ -66,7 +66,7 @@ impl<'a> PendingVersion<'a> {
         of: &'a VersionHead,
         choice: Option<BranchChoice>,
     ) -> Result<Self> {
-        let missing = || permanent_failure("the recipe is not that of a learned branch");
+        let missing = || permanent_failure("the recipe is not the recipe of a learned correction");
         let DerivedVersion { document, weights, .. } = derived;
         let branch = document.model.branch.clone().ok_or_else(missing)?;
         let judgement: Option<CorrectionEvaluation> =
@@ -93,8 +93,10 @@ impl<'a> PendingVersion<'a> {
     }
 
     async fn commit(&self, app: &App, job: &Job, standing: &VersionHistory) -> Result<()> {
-        let reason =
-            format!("trained beside {}/{} in job {}", self.of.model, self.of.number, job.id);
+        let reason = format!(
+            "learned correction of {}/{}, trained in job {}",
+            self.of.model, self.of.number, job.id
+        );
         let moves = vec![
             server_move(CANDIDATE, ExpectedRevision::Any, &reason),
             standing.move_latest(&reason),

@@ -68,7 +68,7 @@ pub(super) async fn commit_diagnosis(
             other => return other,
         }
     }
-    Err(permanent_failure("other versions of the ship kept coming in between; retry the job"))
+    Err(permanent_failure("other versions of the ship were stored at the same time; retry the job"))
 }
 
 fn new_version(diagnosed: &DiagnosisRun, of: &VersionHead) -> Result<Option<NewVersion>> {
@@ -161,8 +161,7 @@ impl PendingDiagnosis<'_> {
         standing: &VersionHistory,
         report: NewReport,
     ) -> Result<()> {
-        let reason =
-            format!("effects found missing from {} in job {}", self.version_name(), job.id);
+        let reason = format!("missing effects of {} added in job {}", self.version_name(), job.id);
         let moves: Vec<AliasMove> = vec![
             server_move(CANDIDATE, ExpectedRevision::Any, &reason),
             standing.move_latest(&reason),
@@ -216,7 +215,7 @@ async fn champion_drift(app: &App, of: &VersionHead) -> Option<RecentDrift> {
         // The drift must be that of the version diagnosed: the champion may have moved meanwhile.
         Ok(drift) => drift.filter(|drift| drift.version == of.number)?.over_newest(),
         Err(error) => {
-            tracing::warn!(ship = of.model, %error, "drift could not be measured");
+            tracing::warn!(ship = of.model, %error, "the drift of the model could not be computed");
             None
         }
     }

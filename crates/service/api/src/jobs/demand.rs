@@ -31,7 +31,7 @@ pub(super) async fn take_memory(
             Ok(share) => return Ok(share),
             Err(never @ MemoryShortage::Never { .. }) => {
                 return Err(permanent_failure(format!(
-                    "{never}: give it fewer or shorter trials, or let jobs have more memory"
+                    "{never}: use fewer or shorter trials, or raise the memory for jobs"
                 )));
             }
             // The report also returns false if the job has been cancelled meanwhile.

@@ -37,7 +37,7 @@ pub(super) async fn run_diagnosis_job(app: &App, job: &Job, progress: JobProgres
     let (all, of_new) = match whole {
         None => (new, None),
         Some(whole) => {
-            report_progress(&progress, middle, "with the trials before them")?;
+            report_progress(&progress, middle, "diagnosing together with earlier trials")?;
             let all =
                 diagnose_part(app, &asked, (&version, &whole), (&progress, middle, end)).await?;
             (all, Some(new))

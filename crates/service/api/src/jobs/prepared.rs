@@ -58,13 +58,13 @@ async fn refinement_start(
     }
     let zoo = app.zoo_around(&target).await?;
     if asked.search {
-        report_progress(progress, 0.02, "searching source, law and method")?;
+        report_progress(progress, 0.02, "selecting source, law and method")?;
         let told = progress.clone();
         let scaled = move |fraction: f64, what: &str| told.report(SELECTION_SHARE * fraction, what);
         let scaled = Arc::new(scaled);
         return Ok(select_start(app.archive(), zoo, target, trials, settings, scaled).await?);
     }
-    report_progress(progress, 0.03, "choosing the source")?;
+    report_progress(progress, 0.03, "selecting the source")?;
     let (near, named) = (Arc::clone(&zoo), target.clone());
     let (version, similarity) = most_similar_source(app.archive(), near, named, trials).await?;
     let start = RefinementStart {

@@ -30,6 +30,6 @@ pub(super) async fn run_refinement(app: &App, job: &Job, progress: JobProgress) 
     )
     .await?
     .with_explicit_settings()?;
-    report_progress(&progress, 0.92, "writing the report and keeping the version")?;
+    report_progress(&progress, 0.92, "writing the report and storing the version")?;
     commit_refinement(app, job, derived, (prepared, &asked.trials)).await
 }

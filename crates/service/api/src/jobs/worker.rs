@@ -91,7 +91,7 @@ impl Worker {
                 }
                 Err(error) => {
                     drop(turn);
-                    tracing::error!(%error, "no job could be claimed");
+                    tracing::error!(%error, "jobs could not be read from the queue");
                     self.pause_after(&error).await;
                 }
             }
@@ -142,7 +142,7 @@ impl Worker {
         let mut watched = WatchedWork { work, progress, seen };
         let ended = self.supervise(job, &mut watched).await;
         if let Err(error) = self.record_end(job, ended, watched.progress.stop_reason()).await {
-            tracing::error!(%error, "the end of a job could not be written");
+            tracing::error!(%error, "the result of a job could not be written");
             self.give_back(job, error).await;
         }
     }
@@ -179,7 +179,9 @@ impl Worker {
         let mut leave: Option<Instant> = None;
         loop {
             tokio::select! {
-                ended = &mut watched.work => return Some(ended.unwrap_or_else(|error| Err(JobError::Failed(format!("the computation broke off: {error}"))))),
+                ended = &mut watched.work => return Some(ended.unwrap_or_else(|error| Err(JobError::Failed(format!(
+                    "the computation was aborted by an internal error: {error}"
+                ))))),
                 () = self.stopping.wait(), if leave.is_none() => leave = Some(Instant::now() + self.app.leases().drain),
                 () = sleep_until(leave), if leave.is_some() => {
                     watched.progress.stop(StopReason::Leaving);
@@ -207,7 +209,7 @@ impl Worker {
             Err(StoreError::Conflict { .. } | StoreError::NotFound { .. }) => {
                 watched.progress.stop(StopReason::Lost)
             }
-            Err(error) => tracing::warn!(%error, "a beat was missed"),
+            Err(error) => tracing::warn!(%error, "a lease could not be renewed"),
         }
     }
 
@@ -223,7 +225,7 @@ impl Worker {
             // A job that succeeded has committed its end together with its results.
             (Some(Ok(())), _) => tracing::info!("done"),
             (_, Some(StopReason::Lost)) => {
-                tracing::warn!("another worker has the job now");
+                tracing::warn!("the job has been taken over by another worker");
                 jobs.mark_alive(&job.id, job.fence).await?;
             }
             (_, Some(StopReason::Leaving)) => drop(jobs.release_job(&job.id, job.fence).await?),
@@ -236,7 +238,7 @@ impl Worker {
             }
             // The job is run again once the database is back.
             (Some(Err(JobError::Store(error))), _) => return Err(error),
-            (None, _) => tracing::warn!("the work did not stop in time"),
+            (None, _) => tracing::warn!("a job did not stop at the deadline"),
         }
         Ok(())
     }
@@ -255,8 +257,8 @@ async fn run_work(app: App, job: Job, progress: JobProgress) -> Result<(), JobEr
         BRANCH_JOB_KIND => branch::run_training(&app, &job, progress).await,
         BULK_JOB_KIND => chunk::run_chunk(&app, &job, progress).await,
         PRIOR_JOB_KIND => family_prior::run_learning(&app, &job, progress).await,
-        other => {
-            Err(JobError::Failed(format!("this server does not know jobs of the kind `{other}`")))
-        }
+        other => Err(JobError::Failed(format!(
+            "this server does not support jobs of the kind `{other}`"
+        ))),
     }
 }

@@ -107,12 +107,12 @@ fn the_table_has_every_route() {
 fn written() -> String {
     let mut text =
         "# Who may do what\n\nGenerated from `crates/service/api/src/rights/table.rs` by \
-        `UPDATE_RIGHTS=1 cargo test -p sistership-api --lib the_table_is_written_down`. Each \
-        role has the rights of those before it. A role may be given for the whole server, or for \
-        one ship or family; then it opens what the last column names. What is moved to the alias \
-        `champion` needs the role approver where a second person is asked for.\n\n\
-        | method | route | reader | engineer | approver | admin | given for |\n\
-        | --- | --- | --- | --- | --- | --- | --- |\n"
+         `UPDATE_RIGHTS=1 cargo test -p sistership-api --lib the_table_is_written_down`. Each \
+         role has the rights of those before it. A role may be given for the whole server, or for \
+         one ship or family; then it opens what the last column names. Where approval by a second \
+         person is required, moving the alias `champion` needs the role approver.\n\n| method | \
+         route | reader | engineer | approver | admin | given for |\n| --- | --- | --- | --- | \
+         --- | --- | --- |\n"
             .to_owned();
     for (method, path, least, of) in ROLE_TABLE {
         let marks = Role::ALL.map(|role| if role >= *least { "yes" } else { "no" }).join(" | ");

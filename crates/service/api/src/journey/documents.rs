@@ -34,9 +34,9 @@ fn hostile() -> Vec<(&'static str, String, &'static str)> {
     ];
     let mut all: Vec<_> =
         values.into_iter().map(|value| ("/v1/laws", law(&value, "X_u"), "values.U")).collect();
-    all.push(("/v1/laws", law("1", &"X_u, ".repeat(3_320)), "1500 are the most"));
+    all.push(("/v1/laws", law("1", &"X_u, ".repeat(3_320)), "the limit is 1500"));
     all.push(("/v1/laws", "{a: ".repeat(50_000), "64 deep"));
-    all.push(("/v1/laws", format!("[{}", "1,".repeat(450_000)), "are the most"));
+    all.push(("/v1/laws", format!("[{}", "1,".repeat(450_000)), "the limit is"));
     let deep = format!("lpp_m: \"{}\"", around("(", 10_000, ")"));
     all.push(("/v1/ships", SHIP.replace("lpp_m: 175.0", &deep), "lpp_m"));
     all.push(("/v1/ships", format!("{SHIP}note: {}", "[".repeat(50_000)), "64 deep"));

@@ -83,7 +83,7 @@ async fn who_sends_too_much_is_told_so() {
         stream.write_all(&vec![b'a'; bytes]).await.unwrap();
         let answer = rest(stream).await;
         assert!(
-            answer.starts_with("HTTP/1.1 413") && answer.contains("KiB that are read"),
+            answer.starts_with("HTTP/1.1 413") && answer.contains("larger than the limit of"),
             "{bytes}: {answer}"
         );
     }

@@ -127,7 +127,9 @@ async fn has_role(store: &Store, rights: &Rights, role: Role, ship: &str) -> Res
 /// # Errors
 /// Returns 403 if the role is missing, and an internal error without a caller.
 pub(crate) async fn check_ship_role(store: &Store, role: Role, ship: &str) -> Result<()> {
-    let acting = current_actor().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+    let acting = current_actor().ok_or_else(|| {
+        Problem::internal("the request has no user or key; sign in, or send a key")
+    })?;
     let rights = &acting.principal.rights;
     match rights.on_server(role) || has_role(store, rights, role, ship).await? {
         true => Ok(()),
@@ -145,7 +147,9 @@ pub(crate) async fn filter_visible<T>(
     all: Vec<T>,
     ship: impl Fn(&T) -> &str,
 ) -> Result<Vec<T>> {
-    let acting = current_actor().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+    let acting = current_actor().ok_or_else(|| {
+        Problem::internal("the request has no user or key; sign in, or send a key")
+    })?;
     let rights = &acting.principal.rights;
     if rights.on_server(role) {
         return Ok(all);
@@ -181,6 +185,6 @@ fn access_denied(acting: &RequestActor, role: Role, of: RoleScope) -> Problem {
     let whom = of.description();
     Problem::new(
         StatusCode::FORBIDDEN,
-        format!("this needs the role {role} for {whom}; `{name}` has {has}. An admin can give it"),
+        format!("this needs the role {role} for {whom}; `{name}` has {has}. An admin can grant it"),
     )
 }

@@ -49,9 +49,9 @@ impl RoleScope {
             Self::Server => "the server",
             Self::Anything => "anything",
             Self::Ship(_) | Self::Job | Self::Trial | Self::Report | Self::Body => "the ship",
-            Self::ShipOfQuery => "the ship of the query, or the server",
+            Self::ShipOfQuery => "the ship in the query, or the server",
             Self::Family | Self::Bulk => "the family",
-            Self::FamilyOfQuery => "the family of the query, or the server",
+            Self::FamilyOfQuery => "the family in the query, or the server",
         }
     }
 }

@@ -18,22 +18,21 @@ use crate::problem::{Fault, Problem};
     ),
     components(schemas(Problem, Fault)),
     tags(
-        (name = "ships", description = "Ships, and the model that each is asked for."),
+        (name = "ships", description = "Ships, and the champion of each."),
         (name = "trials", description = "Free-running trials of ships."),
-        (name = "refinements", description = "Refining a model against trials, as a job."),
-        (name = "diagnoses", description = "Finding what a model lacks, as a job."),
-        (name = "jobs", description = "Long work."),
+        (name = "refinements", description = "Refinement of a model against trials, as a job."),
+        (name = "diagnoses", description = "Diagnosis of missing effects, as a job."),
+        (name = "jobs", description = "Jobs: long computations."),
         (name = "models", description = "Versions of models, insert-only, and the aliases that \
             move between them."),
         (name = "predictions", description = "Simulations with a version."),
-        (name = "branches", description = "What is learned beside a law of motion, and its \
-            weights."),
-        (name = "reports", description = "What a refinement, a diagnosis or a training reported."),
+        (name = "branches", description = "Learned corrections of models, and their weights."),
+        (name = "reports", description = "Reports of refinements, diagnoses and trainings."),
         (name = "laws", description = "Laws of motion."),
-        (name = "effects", description = "Libraries of effects, as recipes name them."),
-        (name = "access", description = "Who may do what, and who has done what."),
-        (name = "webhooks", description = "Who is told of what happens."),
-        (name = "health", description = "Whether the server lives and can work.")
+        (name = "effects", description = "Libraries of effects, by the hashes in recipes."),
+        (name = "access", description = "Users, keys, roles and the audit."),
+        (name = "webhooks", description = "Webhooks for events."),
+        (name = "health", description = "Health of the server.")
     )
 )]
 struct ApiDescription;

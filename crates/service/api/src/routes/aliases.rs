@@ -116,8 +116,7 @@ async fn get(
     put, path = "/v1/models/{model}/aliases/{alias}", tag = "models",
     params(
         ("model" = inline(Name), Path), ("alias" = inline(Name), Path),
-        ("If-Match" = inline(Option<EntityTags>), Header, description = "The ETag of the alias as \
-            you last read it, to move it"),
+        ("If-Match" = inline(Option<EntityTags>), Header, description = "ETag of the alias from your last request, to move it"),
         ("If-None-Match" = inline(Option<EntityTags>), Header, description = "`*`, to create it")
     ),
     request_body = AliasRequest,
@@ -175,7 +174,7 @@ fn check_alias_name(name: &str) -> Result<()> {
     match is_reserved(name) {
         true => Err(Problem::invalid(
             "alias",
-            format!("`{name}` is moved by the server itself; choose another name"),
+            format!("the alias `{name}` is reserved for the server; choose another name"),
         )),
         false => Ok(()),
     }

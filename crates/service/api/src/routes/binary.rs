@@ -3,5 +3,5 @@
 /// A file, byte for byte.
 #[derive(utoipa::ToSchema)]
 #[schema(value_type = String, format = Binary)]
-#[allow(dead_code, reason = "it only describes a body")]
+#[allow(dead_code, reason = "describes a body only")]
 pub(super) struct Binary(Vec<u8>);

@@ -56,7 +56,7 @@ struct BranchRequest {
 #[utoipa::path(
     post, path = "/v1/branches", tag = "branches",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
-    description = "Repeat the request safely under this key")),
+    description = "Key that makes it safe to repeat the request")),
     request_body = BranchRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
@@ -103,7 +103,8 @@ async fn base_version(app: &App, head: &sistership_store::VersionHead) -> Result
     let elsewhere = || {
         let name = format!("{}/{}", head.model, head.number);
         let message = format!(
-            "{name} has a learned correction that was not trained here; name a version without one"
+            "{name} has a learned correction that was not trained on this server; choose a \
+             version without one"
         );
         Problem::invalid("model", message)
     };
@@ -125,7 +126,11 @@ async fn weights(
 ) -> Result<Response> {
     let version = app.store().versions().get(&model, number.get()).await?;
     let missing = || {
-        Problem::not_found(format!("version {}/{} has no learned branch", &model[..], number.get()))
+        Problem::not_found(format!(
+            "version {}/{} has no learned correction",
+            &model[..],
+            number.get()
+        ))
     };
     let branch = version_document(&version)?.model.branch.ok_or_else(missing)?;
     let bytes = app.objects().get(&branch.weights_sha256).await?;

@@ -165,7 +165,7 @@ impl OutcomeView {
 #[utoipa::path(
     post, path = "/v1/families/{family}/refinements", tag = "families",
     params(("family" = inline(Word), Path),
-    ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
+    ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Key that makes it safe to repeat the request")),
     request_body = BulkRefinementRequest, responses((status = 202, body = BulkView, headers(("Location" = String))))
 )]
 async fn refine(

@@ -62,12 +62,11 @@ enum Format {
 #[utoipa::path(
     get, path = "/v1/ships/{ship}/model", tag = "ships",
     params(("ship" = inline(Name), Path), ChampionQuery,
-        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you \
-            have")),
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "ETag of the copy that you have")),
     responses(
         (status = 200, content((Champion = "application/json"), (String = "application/yaml")),
         headers(("ETag" = String))),
-        (status = 304, description = "As you have it")
+        (status = 304, description = "Your copy is current")
     )
 )]
 async fn champion(
@@ -131,9 +130,7 @@ async fn no_champion(app: &App, ship: &str) -> Problem {
         return error.into();
     }
     let todo = "upload trials to /v1/trials and POST a refinement to /v1/refinements";
-    Problem::not_found(format!(
-        "the ship `{ship}` is known by particulars only and has no model yet; {todo}"
-    ))
+    Problem::not_found(format!("the ship `{ship}` has only particulars and no model yet; {todo}"))
 }
 
 fn yaml_body(model: &Model) -> Result<String> {

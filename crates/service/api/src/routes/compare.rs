@@ -21,7 +21,7 @@ pub(super) fn comparison_routes() -> OpenApiRouter<App> {
 
 #[derive(Debug, IntoParams)]
 #[into_params(parameter_in = Query)]
-#[allow(dead_code, reason = "it only describes the query, whose parameters come several times")]
+#[allow(dead_code, reason = "describes the query only; its parameters may be repeated")]
 struct CompareQuery {
     /// Two to five versions: `ship` (its champion), `ship/number` or `ship/alias`.
     #[param(inline, style = Form, explode, min_items = 2, max_items = 5)]
@@ -76,7 +76,7 @@ fn repeated_values<T: std::str::FromStr<Err = String>>(
     let values = given.map(|(_, value)| one(value)).collect::<Result<Vec<String>>>()?;
     if !(least..=most).contains(&values.len()) {
         let count = values.len();
-        return Err(wrong(format!("there is no comparison of {count}; give {least} to {most}")));
+        return Err(wrong(format!("{count} versions cannot be compared; give {least} to {most}")));
     }
     Ok(values)
 }

@@ -55,7 +55,7 @@ struct DiagnosisRequest {
 #[utoipa::path(
     post, path = "/v1/diagnoses", tag = "diagnoses",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
-    description = "Repeat the request safely under this key")),
+    description = "Key that makes it safe to repeat the request")),
     request_body = DiagnosisRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
@@ -95,7 +95,7 @@ async fn resolve_request(app: &App, request: DiagnosisRequest) -> Result<Diagnos
     let ship = version.head.model.clone();
     let trials = match trials {
         Some(ids) => {
-            checked_trials(app, &ship, ids, "those that the version was not made of").await?
+            checked_trials(app, &ship, ids, "those that the version was not fitted to").await?
         }
         None => unseen_trials(app, &version).await?,
     };

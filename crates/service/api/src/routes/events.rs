@@ -56,7 +56,7 @@ fn follow_job(app: App, first: Job) -> impl Stream<Item = Result<Event, Infallib
             }
             match app.store().jobs().get(&id).await {
                 Ok(now) => job = now,
-                Err(error) => tracing::warn!(%error, "a job could not be looked at"),
+                Err(error) => tracing::warn!(%error, "a job could not be read"),
             }
         }
     }
@@ -71,5 +71,5 @@ fn job_event(job: Job) -> Event {
     let event = Event::default().event("job");
     event
         .json_data(JobView::from_job(job))
-        .unwrap_or_else(|_| Event::default().comment("the job cannot be shown"))
+        .unwrap_or_else(|_| Event::default().comment("the job cannot be read"))
 }

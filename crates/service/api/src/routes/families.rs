@@ -162,7 +162,7 @@ async fn list(
 #[utoipa::path(
     post, path = "/v1/families", tag = "families",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
-    description = "Repeat the request safely under this key")),
+    description = "Key that makes it safe to repeat the request")),
     request_body = NewFamily,
     responses((status = 201, body = FamilyView, headers(("Location" = String))))
 )]

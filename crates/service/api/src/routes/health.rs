@@ -58,6 +58,6 @@ fn not_ready(what: &str, error: &StoreError) -> Problem {
     tracing::warn!(%error, "the {what} does not answer");
     Problem::new(
         StatusCode::SERVICE_UNAVAILABLE,
-        format!("the {what} does not answer; the server's log tells why"),
+        format!("the {what} does not answer; see the server's log"),
     )
 }

@@ -66,7 +66,7 @@ async fn list(
 #[utoipa::path(
     post, path = "/v1/laws", tag = "laws",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
-    description = "Repeat the request safely under this key")),
+    description = "Key that makes it safe to repeat the request")),
     request_body(content = String, content_type = "application/yaml"),
     responses((status = 201, body = LawHead))
 )]

@@ -22,12 +22,12 @@ pub(super) async fn checked_trials(
     if ids.is_empty() {
         return Err(Problem::invalid(
             "trials",
-            format!("is empty; name at least one, or leave it out for {left_out}"),
+            format!("is empty; give at least one trial, or omit it for {left_out}"),
         ));
     }
     for (index, id) in ids.iter().enumerate() {
         let wrong = if ids[..index].contains(id) {
-            Some("is named twice".to_owned())
+            Some("is listed twice".to_owned())
         } else {
             mismatch_message(app, ship, id).await?
         };
@@ -47,7 +47,10 @@ async fn mismatch_message(app: &App, ship: &str, id: &str) -> Result<Option<Stri
     Ok(match readable_trial(app.store(), id).await? {
         Some(trial) if trial.ship == ship => None,
         Some(trial) => Some(format!("is a trial of `{}`, not of `{ship}`", trial.ship)),
-        None => Some(format!("is not there; GET /v1/trials?ship={ship} lists its trials")),
+        None => Some(format!(
+            "does not exist; GET /v1/trials?ship={ship} lists the trials of the \
+                              ship"
+        )),
     })
 }
 

@@ -77,7 +77,7 @@ async fn list(
     params(
         ("ship" = inline(Name), Path),
         ("Idempotency-Key" = inline(Option<RequestKey>), Header,
-        description = "Repeat the request safely under this key"),
+        description = "Key that makes it safe to repeat the request"),
     ),
     request_body = NewNote,
     responses((status = 201, body = NoteReceipt))

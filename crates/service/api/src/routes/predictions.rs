@@ -22,12 +22,21 @@ pub(super) fn prediction_routes() -> OpenApiRouter<App> {
 #[utoipa::path(
     post, path = "/v1/predictions", tag = "predictions", request_body = PredictionRequest,
     responses((status = 200, body = Object, description = "`model`, `version`, `sha256`, `law`; \
-        `trajectory` under canonical names; `metrics`; `stopped` where recorded inputs led out of \
-        the physical range; for all standard manoeuvres `turns`, `zigzags`, `imo` and, where asked \
-        for, `bands`; `outside` where the motion left what the model's trials covered; over a \
-        horizon `foundation`, the track without the learned branch, and `band`, of each state \
-        `low` and `high`, where draws were asked for; `branch` of a version with a learned branch: \
-        its kind and mode, and `branch_share`: what it counted for, 0 to 1"))
+                                                           `trajectory` under canonical names; \
+                                                           `metrics`; `stopped` if the recorded \
+                                                           inputs led out of the physical range; \
+                                                           for all standard manoeuvres `turns`, \
+                                                           `zigzags`, `imo` and, if requested, \
+                                                           `bands`; `outside` if the motion left \
+                                                           the range covered by the model's \
+                                                           trials; over a horizon `foundation`, \
+                                                           the track without the learned \
+                                                           correction, and, if draws were \
+                                                           requested, `band` with `low` and \
+                                                           `high` of each state; for a version \
+                                                           with a learned correction `branch`, \
+                                                           its kind and mode, and `branch_share`, \
+                                                           its share in the simulation, 0 to 1"))
 )]
 async fn create(State(app): State<App>, payload: DocumentBody) -> Result<Json<Value>> {
     let request: PredictionRequest = payload.parse_json()?;

@@ -68,7 +68,7 @@ const AUTO: &str = "auto";
 #[utoipa::path(
     post, path = "/v1/refinements", tag = "refinements",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
-    description = "Repeat the request safely under this key")),
+    description = "Key that makes it safe to repeat the request")),
     request_body = RefinementRequest,
     responses((status = 202, body = JobView, headers(("Location" = String))))
 )]
@@ -169,8 +169,8 @@ fn check_repeatable(settings: &RefinementSettings) -> Result<()> {
         .cma_es
         .as_ref()
         .is_some_and(|search| search.wall_s.is_some() || search.cpu_s.is_some());
-    let message = "a search that time ends cannot be derived again; limit `evaluations` in place \
-        of wall_s and cpu_s";
+    let message = "a search that is limited by time cannot be reproduced; limit `evaluations` \
+                   instead of wall_s and cpu_s";
     if timed { Err(Problem::invalid("settings.cma_es", message)) } else { Ok(()) }
 }
 
@@ -180,7 +180,7 @@ async fn check_law(app: &App, law: Option<&str>) -> Result<()> {
     match app.store().laws().get(law).await {
         Err(StoreError::NotFound { .. }) => Err(Problem::invalid(
             "law",
-            format!("there is no law `{law}`; GET /v1/laws lists those that there are"),
+            format!("there is no law `{law}`; GET /v1/laws lists the laws"),
         )),
         other => other.map(drop).map_err(Problem::from),
     }

@@ -52,8 +52,7 @@ struct RegisterRequest {
     post, path = "/v1/models/{model}/versions", tag = "models",
     params(
         ("model" = inline(Name), Path, description = "The ship"),
-        ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request \
-            safely under this key")
+        ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Key that makes it safe to repeat the request")
     ),
     request_body = RegisterRequest,
     responses((status = 201, body = VersionHead, headers(("Location" = String))))
@@ -130,7 +129,8 @@ async fn checked_weights(app: &App, model: &Model) -> Result<Option<String>> {
     let refuse = |error: DeriveError| match error {
         DeriveError::Store(StoreError::NotFound { .. }) => Problem::invalid(
             "model.branch.weights_sha256",
-            "there are no such weights here; train a branch with POST /v1/branches",
+            "these weights are not on this server; train a learned correction with POST \
+             /v1/branches",
         ),
         DeriveError::Join(error) => Problem::invalid("model.branch", error.to_string()),
         other => other.into(),

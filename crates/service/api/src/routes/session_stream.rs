@@ -43,7 +43,7 @@ pub(super) fn stream_routes() -> OpenApiRouter<App> {
 /// The stream ends with the session, and after an hour.
 #[utoipa::path(
     get, path = "/v1/sessions/{id}/stream", tag = "predictions", params(("id" = inline(Id), Path)),
-    responses((status = 101, description = "The protocol is a WebSocket's now"))
+    responses((status = 101, description = "The protocol changes to WebSocket"))
 )]
 async fn stream(
     State(app): State<App>,
@@ -55,9 +55,11 @@ async fn stream(
     check_same_site(&headers)?;
     find_session(&app, &id).await?;
     let upgrade = upgrade.map_err(|error| {
-        Problem::bad_request(format!("this is to be opened as a WebSocket: {error}"))
+        Problem::bad_request(format!("open this address as a WebSocket: {error}"))
     })?;
-    let acting = current_actor().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+    let acting = current_actor().ok_or_else(|| {
+        Problem::internal("the request has no user or key; sign in, or send a key")
+    })?;
     let upgrade = upgrade.max_message_size(MESSAGE_BYTES).max_frame_size(MESSAGE_BYTES);
     let peer = peer.map(|Extension(peer)| peer);
     Ok(upgrade.on_upgrade(move |socket| async move {
@@ -72,7 +74,7 @@ fn check_same_site(headers: &HeaderMap) -> Result<()> {
     let host = headers.get(header::HOST).and_then(|host| host.to_str().ok());
     let host: Option<Authority> = host.and_then(|host| host.parse().ok());
     if headers.contains_key(header::ORIGIN) && !host::is_same_origin(headers, host.as_ref())? {
-        let why = "another web site may not open a stream of this server";
+        let why = "a page of another web site may not open a stream of this server";
         return Err(Problem::new(StatusCode::FORBIDDEN, why));
     }
     Ok(())

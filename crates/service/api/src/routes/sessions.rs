@@ -28,7 +28,9 @@ pub(super) fn session_routes() -> OpenApiRouter<App> {
 
 /// Returns the owner of the sessions that a request may see: the caller.
 pub(super) fn session_owner() -> Result<String> {
-    let acting = current_actor().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+    let acting = current_actor().ok_or_else(|| {
+        Problem::internal("the request has no user or key; sign in, or send a key")
+    })?;
     Ok(acting.principal.name.clone())
 }
 
@@ -86,10 +88,11 @@ async fn list(State(app): State<App>) -> Result<Json<Value>> {
 #[utoipa::path(
     get, path = "/v1/sessions/{id}", tag = "predictions", params(("id" = inline(Id), Path)),
     responses((status = 200, body = Object,
-        description = "`id`, `model`, `version`, `sha256`, `law`; the state under canonical names, \
-        `t_s`; `orders`; `draws`, and with them `band`: of each state `low` and `high`, between \
-        which 95 % of the draws are; `stopped` where the motion has left the physical range, with \
-        `reason`; `outside` where it is outside what the model's trials covered"))
+        description = "`id`, `model`, `version`, `sha256`, `law`; the state under canonical \
+                       names, `t_s`; `orders`; `draws`, and with them `band`: of each state `low` \
+                       and `high`, between which 95 % of the draws are; `stopped` with `reason` \
+                       if the motion has left the physical range; `outside` if it is outside the \
+                       range covered by the model's trials"))
 )]
 async fn show(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<Value>> {
     let handle = find_session(&app, &id).await?;
@@ -108,10 +111,11 @@ async fn show(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<
     post, path = "/v1/sessions/{id}/steps", tag = "predictions", params(("id" = inline(Id), Path)),
     request_body = StepsRequest,
     responses((status = 200, body = Object,
-        description = "`t_s` now; `trajectory` under canonical names, a sample a step; `band`: \
-        `low` and `high` likewise, how many were `drawn` and are `sailing` still; `stopped` where \
-        the motion has left the physical range, now or before: there is no sample after it; \
-        `outside`; `branch_share`"))
+        description = "`t_s`, the present time; `trajectory` under canonical names, one sample \
+                       per step; `band`: `low` and `high` likewise, the number `drawn` and the \
+                       number still `sailing` (within the physical range); `stopped` if the \
+                       motion has left the physical range, after which there are no samples; \
+                       `outside`; `branch_share`"))
 )]
 async fn steps(
     State(app): State<App>,

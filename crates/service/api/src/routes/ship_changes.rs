@@ -45,7 +45,7 @@ async fn parse_vessel(app: &App, payload: &DocumentBody) -> Result<Vessel> {
 #[utoipa::path(
     post, path = "/v1/ships", tag = "ships",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
-    description = "Repeat the request safely under this key")),
+    description = "Key that makes it safe to repeat the request")),
     request_body(content((VesselBody = "application/json"), (String = "application/yaml"))),
     responses((status = 201, body = ShipDetail, headers(("ETag" = String), ("Location" = String))))
 )]
@@ -79,7 +79,7 @@ async fn create_ship(app: &App, vessel: &Vessel) -> Result<StoredReply> {
 #[utoipa::path(
     put, path = "/v1/ships/{ship}", tag = "ships",
     params(("ship" = inline(Name), Path),
-    ("If-Match" = inline(EntityTags), Header, description = "The ETag of the ship as you last read it")),
+    ("If-Match" = inline(EntityTags), Header, description = "ETag of your last request")),
     request_body(content((VesselBody = "application/json"), (String = "application/yaml"))),
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
 )]
@@ -96,7 +96,10 @@ async fn replace(
     if vessel.name() != &*name {
         return Err(Problem::invalid(
             "name",
-            format!("is `{}`, but the path says `{name}`; a ship keeps its name", vessel.name()),
+            format!(
+                "is `{}`, but the path names `{name}`; the name of a ship cannot be changed",
+                vessel.name()
+            ),
         ));
     }
     let zoo = app.stored_laws().await?;
@@ -112,7 +115,7 @@ async fn replace(
 #[utoipa::path(
     delete, path = "/v1/ships/{ship}", tag = "ships",
     params(("ship" = inline(Name), Path),
-    ("If-Match" = inline(Option<EntityTags>), Header, description = "Only if it is still as you last read it")),
+    ("If-Match" = inline(Option<EntityTags>), Header, description = "ETag of your last request")),
     responses((status = 204, description = "Deleted"))
 )]
 async fn delete(

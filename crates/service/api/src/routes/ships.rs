@@ -115,10 +115,9 @@ async fn list(
 /// Get a ship; a change must present its ETag
 #[utoipa::path(
     get, path = "/v1/ships/{ship}", tag = "ships", params(("ship" = inline(Name), Path),
-        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you \
-            have")),
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "ETag of the copy that you have")),
     responses((status = 200, body = ShipDetail, headers(("ETag" = String))),
-    (status = 304, description = "As you have it"))
+    (status = 304, description = "Your copy is current"))
 )]
 async fn get(
     State(app): State<App>,

@@ -151,7 +151,7 @@ pub(super) fn check_trial_count(app: &App, count: usize) -> Result<()> {
         true => Ok(()),
         false => Err(Problem::invalid(
             "trials",
-            format!("more than {most} trials at a time; name those that matter"),
+            format!("at most {most} trials can be used at a time; list the trials to use"),
         )),
     }
 }

@@ -37,7 +37,7 @@ struct UploadResult {
 
 /// Parts of the form.
 #[derive(ToSchema)]
-#[allow(dead_code, reason = "it only describes the form")]
+#[allow(dead_code, reason = "describes the form only")]
 struct Form {
     /// Trial manifest, YAML (`models/schema/trials.json`).
     manifest: Option<String>,
@@ -56,7 +56,7 @@ struct Form {
 #[utoipa::path(
     post, path = "/v1/trials", tag = "trials",
     params(RawQuery,
-    ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Repeat the request safely under this key")),
+    ("Idempotency-Key" = inline(Option<RequestKey>), Header, description = "Key that makes it safe to repeat the request")),
     request_body(content((Form = "multipart/form-data"), (String = "text/csv"),
     (Binary = "application/vnd.apache.parquet"))),
     responses((status = 201, body = UploadResult, headers(("Location" = String))))

@@ -136,7 +136,9 @@ impl UserView {
 /// Get the caller and its roles
 #[utoipa::path(get, path = "/v1/me", tag = "access", responses((status = 200, body = Me)))]
 async fn me() -> Result<Json<Me>> {
-    let acting = current_actor().ok_or_else(|| Problem::internal("nobody is named who asks"))?;
+    let acting = current_actor().ok_or_else(|| {
+        Problem::internal("the request has no user or key; sign in, or send a key")
+    })?;
     let kind = match acting.principal.kind {
         AuthenticationKind::Local => "local",
         AuthenticationKind::ServerKey => "server-key",
@@ -167,7 +169,7 @@ async fn list(
 #[utoipa::path(
     post, path = "/v1/users", tag = "access",
     params(("Idempotency-Key" = inline(Option<RequestKey>), Header,
-    description = "Repeat the request safely under this key")),
+    description = "Key that makes it safe to repeat the request")),
     request_body = UserRequest,
     responses((status = 201, body = UserView, headers(("Location" = String))))
 )]

@@ -133,10 +133,9 @@ async fn get(
 #[utoipa::path(
     get, path = "/v1/models/{model}/versions/{number}/document", tag = "models",
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path),
-        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "The ETag of what you \
-            have")),
+        ("If-None-Match" = inline(Option<EntityTags>), Header, description = "ETag of the copy that you have")),
     responses((status = 200, body = Object, headers(("ETag" = String))),
-    (status = 304, description = "As you have it"))
+    (status = 304, description = "Your copy is current"))
 )]
 async fn bytes(
     State(app): State<App>,
@@ -158,8 +157,7 @@ async fn bytes(
 #[utoipa::path(
     post, path = "/v1/models/{model}/versions/{number}/verify", tag = "models",
     params(("model" = inline(Name), Path), ("number" = inline(Number), Path)),
-    responses((status = 200, body = Verification, description = "`identical` tells whether they \
-        are the same"))
+    responses((status = 200, body = Verification, description = "`identical`: true if they are the same"))
 )]
 async fn verify_again(
     State(app): State<App>,

@@ -61,7 +61,10 @@ pub(crate) async fn store_upload(
             other => return Ok(other?),
         }
     }
-    Err(Problem::internal("the samples of an upload kept disappearing from the object store"))
+    Err(Problem::internal(
+        "samples of an upload were removed from the object store while it was \
+                           stored; send it again",
+    ))
 }
 
 /// Returns the number of the ship's champion.
@@ -84,7 +87,10 @@ fn follow_up_job(ship: &str, number: i64, kept: &[StoredTrial]) -> Option<NewJob
 fn unknown_ship(ship: &str) -> Problem {
     Problem::invalid(
         "ship",
-        format!("there is no ship `{ship}`; create it with POST /v1/ships first, or mend the name"),
+        format!(
+            "there is no ship `{ship}`; create it with POST /v1/ships first, or correct the \
+                 name"
+        ),
     )
 }
 

@@ -76,7 +76,8 @@ fn finish_response(response: Response, id: Uuid, for_people: bool) -> Response {
 /// Answer to a request whose body did not come in time, whatever the handler has made of the half
 /// that did.
 fn too_slow() -> Response {
-    let why = "the body came too slowly, or not at all; send it at once, or over a faster link";
+    let why = "the body arrived too slowly or not at all; send it again, or over a faster \
+               connection";
     Problem::new(StatusCode::REQUEST_TIMEOUT, why).into_response()
 }
 
@@ -113,14 +114,14 @@ fn problem_response(response: Response, id: Uuid, for_people: bool) -> Response 
 fn status_advice(status: StatusCode) -> &'static str {
     match status {
         StatusCode::METHOD_NOT_ALLOWED => {
-            "this path does not know the method; the header `Allow` lists those it knows"
+            "this path does not support the method; the header `Allow` lists the supported ones"
         }
-        StatusCode::PAYLOAD_TOO_LARGE => "the body is larger than this endpoint reads",
+        StatusCode::PAYLOAD_TOO_LARGE => "the body is larger than this endpoint accepts",
         StatusCode::REQUEST_TIMEOUT | StatusCode::GATEWAY_TIMEOUT => {
             "the request took too long; send less at a time, or try again later"
         }
         StatusCode::INTERNAL_SERVER_ERROR => {
-            "the server failed to do this; its log tells why, under the id in `instance`"
+            "an internal error occurred; the server's log has the cause under the id in `instance`"
         }
         _ => "the request was refused",
     }
@@ -129,7 +130,7 @@ fn status_advice(status: StatusCode) -> &'static str {
 /// Answer to a path without a route.
 pub(crate) async fn no_route(request: Request) -> Problem {
     Problem::not_found(format!(
-        "there is no {}; /openapi.json lists what there is",
+        "there is no {}; /openapi.json lists all paths",
         request.uri().path()
     ))
 }

@@ -46,8 +46,8 @@ pub(crate) fn check_token(app: &App, presented: Option<&str>) -> Result<()> {
         true => Ok(()),
         false => Err(Problem::new(
             StatusCode::FORBIDDEN,
-            "the form is not one of this server, or is older than its last start or your sign-in; \
-             load the page again and send it from there",
+            "the form has expired (the server was restarted or you have signed in since); load \
+             the page again and send the form again",
         )),
     }
 }

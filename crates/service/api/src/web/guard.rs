@@ -32,7 +32,8 @@ pub(crate) async fn guard_request(
         request.extensions_mut().insert(ClientAddress(client));
     }
     if peer.as_ref().is_some_and(|peer| peer.crowded) {
-        let why = "all connections are at work, or those of your address; try again in a moment";
+        let why = "all connections, or all that one address may have, are in use; try again in a \
+                   moment";
         return retry_later(Problem::new(StatusCode::SERVICE_UNAVAILABLE, why), RETRY_AFTER_S);
     }
     match admit(&app, &mut request).await {

@@ -134,14 +134,14 @@ async fn with_ticket(
         loop {
             tokio::time::sleep(PROLONG_EVERY).await;
             if let Err(error) = store.idempotency().prolong_ticket(ticket).await {
-                tracing::warn!(%error, "a request could not say that it goes on");
+                tracing::warn!(%error, "a request could not renew its lease");
             }
         }
     };
     tokio::select! {
         done = work => done,
         // The loop never ends by itself; the arm satisfies the types.
-        () = prolonging => Err(Problem::internal("a loop without end has ended")),
+        () = prolonging => Err(Problem::internal("a background task has ended")),
     }
 }
 
@@ -158,7 +158,7 @@ async fn commit_reply(
 /// Gives up a ticket. If that fails, a later request takes it over once it has expired.
 async fn abandon_ticket(store: &Store, ticket: &RequestTicket) {
     if let Err(error) = store.idempotency().abandon_ticket(ticket).await {
-        tracing::warn!(%error, "a request that came to nothing could not be forgotten");
+        tracing::warn!(%error, "the record of a failed request could not be removed");
     }
 }
 
@@ -172,7 +172,7 @@ fn replay_reply(text: &str) -> Result<Response> {
 fn in_progress() -> Problem {
     Problem::new(
         StatusCode::CONFLICT,
-        "a request with this Idempotency-Key is being carried out; repeat it in a moment",
+        "a request with this Idempotency-Key is in progress; repeat it in a moment",
     )
 }
 

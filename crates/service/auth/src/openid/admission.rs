@@ -70,7 +70,7 @@ impl AdmissionRules {
             self.name_claim.as_deref().unwrap_or("preferred_username` or a verified `email");
         let Some(found) = found else {
             return Err(SignInFailure::Lacking(format!(
-                "the provider does not say `{claim}`, by which you would have a name here"
+                "the provider does not send `{claim}`, from which your user name here is derived"
             )));
         };
         // Providers may keep upper case; names here have none.
@@ -78,7 +78,7 @@ impl AdmissionRules {
         match check_name(&name) {
             Ok(()) => Ok(name),
             Err(why) => Err(SignInFailure::Lacking(format!(
-                "the provider calls you `{}`, and a name here {why}",
+                "the provider's name for you is `{}`, but a user name {why}",
                 name.chars().take(64).collect::<String>()
             ))),
         }

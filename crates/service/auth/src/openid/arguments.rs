@@ -173,9 +173,7 @@ impl OpenIdArguments {
         let Some(issuer) = self.issuer.clone() else {
             // Any other setting shows that the issuer was forgotten.
             if self != Self::default() {
-                faults.push(
-                    "oidc issuer: is missing, though other settings of oidc are there".into(),
-                );
+                faults.push("oidc issuer: is missing; other settings of oidc need it".into());
             }
             return None;
         };
@@ -183,13 +181,13 @@ impl OpenIdArguments {
         checked_url("issuer", &issuer, faults);
         let client_id = self.client_id.clone().unwrap_or_default();
         if client_id.is_empty() || !client_id.bytes().all(|byte| byte.is_ascii_graphic()) {
-            faults.push("oidc client_id: must be what the provider calls this server".into());
+            faults.push("oidc client_id: must be the id of this server at the provider".into());
         }
         let base_url = self.base_url(faults);
         let scopes = self.scopes.clone().unwrap_or_else(|| "openid profile email".to_owned());
         // Without the scope `openid` the provider sends no ID token.
         if !scopes.split_whitespace().any(|scope| scope == "openid") {
-            faults.push("oidc scopes: must have `openid` among them".into());
+            faults.push("oidc scopes: must include `openid`".into());
         }
         let title = self.title.clone().or(host).unwrap_or_default();
         let admission = self.admission_rules(faults);
@@ -207,7 +205,7 @@ impl OpenIdArguments {
     fn base_url(&self, faults: &mut Vec<String>) -> String {
         let Some(text) = &self.base_url else {
             faults.push(
-                "oidc base_url: is missing; it is where browsers find this server, such as \
+                "oidc base_url: is missing; give the address of this server for browsers, such as \
                  https://ships.example"
                     .into(),
             );
@@ -215,10 +213,7 @@ impl OpenIdArguments {
         };
         // The pages of the server are at the root of its address.
         if parse_url(text).is_some_and(|url| url.path() != "/") {
-            faults.push(
-                "oidc base_url: must end with the host and port: the pages stand at its root"
-                    .into(),
-            );
+            faults.push("oidc base_url: must end with the host and port, without a path".into());
         }
         checked_url("base_url", text, faults);
         text.trim_end_matches('/').to_owned()
@@ -239,8 +234,8 @@ impl OpenIdArguments {
             .flatten();
         if self.auto_create && self.default_role.is_none() && self.group_roles.is_empty() {
             faults.push(
-                "oidc auto_create: needs default_role or group_roles, or a new account \
-                could do nothing"
+                "oidc auto_create: needs default_role or group_roles, because a new account would \
+                 have no rights"
                     .into(),
             );
         }
@@ -263,13 +258,16 @@ fn group_role(rule: &str) -> Result<(String, Grant), String> {
 
 fn checked_url(name: &str, text: &str, faults: &mut Vec<String>) {
     match parse_url(text) {
-        Some(url) if url.query().is_some() => faults.push(format!("oidc {name}: must have no `?`")),
+        Some(url) if url.query().is_some() => {
+            faults.push(format!("oidc {name}: must not contain `?`"))
+        }
         // Plain http is allowed for addresses of this machine only.
         Some(url) if !is_safe(&url) => faults.push(format!(
-            "oidc {name}: must begin with https://; http:// is for addresses of this machine"
+            "oidc {name}: must begin with https://; http:// is allowed for addresses of this \
+             machine only"
         )),
         Some(_) => {}
-        None => faults.push(format!("oidc {name}: `{text}` is no address of the web")),
+        None => faults.push(format!("oidc {name}: `{text}` is not a URL")),
     }
 }
 

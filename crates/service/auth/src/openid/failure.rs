@@ -8,19 +8,19 @@ pub enum SignInFailure {
     #[error("the provider cannot be reached ({0}); try again later, or sign in with a password")]
     Unreachable(String),
     /// The provider violates the protocol.
-    #[error("the provider does not answer as it must: {0}; tell an admin of this server")]
+    #[error("the answer of the provider is not valid: {0}; tell an admin of this server")]
     Provider(String),
     /// The person, or the provider, has refused.
-    #[error("the provider says that you were not let through; sign in there, or with a password")]
+    #[error("the provider has denied access; sign in there, or with a password")]
     Denied,
     /// The provider reports another error.
     #[error("the provider refuses to sign you in: {0}; tell an admin of this server")]
     Refused(String),
     /// The sign-in began too long ago or in another browser, or has ended already.
-    #[error("this sign-in has expired, or was begun in another browser or window; begin again")]
+    #[error("this sign-in has expired or was started in another browser or window; start again")]
     Expired,
     /// The answer of the provider does not prove the identity of the person.
-    #[error("what the provider has sent does not show who you are: {0}; tell an admin")]
+    #[error("the provider's answer does not identify you: {0}; tell an admin")]
     Untrusted(String),
     /// The provider does not send a required claim.
     #[error("{0}; tell an admin of this server")]

@@ -34,7 +34,10 @@ pub(crate) async fn fetch_answer(request: RequestBuilder) -> Result<(StatusCode,
     let mut response = request.send().await.map_err(|error| describe_error(&error))?;
     let status = response.status();
     if status.is_server_error() {
-        return Err(SignInFailure::Unreachable(format!("it answers {}", status.as_u16())));
+        return Err(SignInFailure::Unreachable(format!(
+            "it answers with status {}",
+            status.as_u16()
+        )));
     }
     // Read in chunks, so that the bound applies before the whole answer is in memory.
     let mut body = Vec::new();
@@ -54,9 +57,10 @@ pub(crate) async fn fetch_answer(request: RequestBuilder) -> Result<(StatusCode,
 pub(crate) async fn fetch_document(request: RequestBuilder, what: &str) -> Result<Vec<u8>> {
     match fetch_answer(request).await? {
         (StatusCode::OK, body) => Ok(body),
-        (status, _) => {
-            Err(SignInFailure::Provider(format!("its {what} is answered {}", status.as_u16())))
-        }
+        (status, _) => Err(SignInFailure::Provider(format!(
+            "the request of its {what} gives {}",
+            status.as_u16()
+        ))),
     }
 }
 
@@ -66,7 +70,7 @@ pub(crate) async fn fetch_document(request: RequestBuilder, what: &str) -> Resul
 /// Returns an error if it does not have the expected form.
 pub(crate) fn parse_document<T: DeserializeOwned>(body: &[u8], what: &str) -> Result<T> {
     serde_json::from_slice(body).map_err(|_| {
-        SignInFailure::Provider(format!("its {what} is not what the standard asks for"))
+        SignInFailure::Provider(format!("its {what} does not conform to the standard"))
     })
 }
 
@@ -77,7 +81,7 @@ fn describe_error(error: &reqwest::Error) -> SignInFailure {
     } else if error.is_connect() {
         "no connection"
     } else {
-        "the request broke off"
+        "the connection was interrupted"
     };
     SignInFailure::Unreachable(kind.to_owned())
 }

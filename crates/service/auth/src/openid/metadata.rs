@@ -38,7 +38,7 @@ impl ProviderMetadata {
         // Compared as text, without normalisation (OpenID Connect Discovery 1.0).
         if self.issuer != issuer {
             let own: String = self.issuer.chars().take(200).collect();
-            let why = format!("it calls itself `{own}`, and the setting is `{issuer}`");
+            let why = format!("its issuer is `{own}`, but the setting is `{issuer}`");
             return Err(SignInFailure::Provider(why));
         }
         let places = [
@@ -50,7 +50,7 @@ impl ProviderMetadata {
         for (name, place) in places {
             let Some(place) = place else { continue };
             if !parse_url(place).is_some_and(|url| is_safe(&url)) {
-                return Err(SignInFailure::Provider(format!("its {name} is no https address")));
+                return Err(SignInFailure::Provider(format!("its {name} is not an https address")));
             }
         }
         Ok(self)

@@ -100,8 +100,9 @@ impl OpenIdProvider {
         // other's tickets.
         let seal = match &settings.client_secret {
             Some(known) => crate::sign_message(known, b"sistership tickets"),
-            None => random_secret()
-                .map_err(|_| SignInFailure::Provider("no random numbers".to_owned()))?,
+            None => random_secret().map_err(|_| {
+                SignInFailure::Provider("random numbers are not available".to_owned())
+            })?,
         };
         Ok(Self { settings, seal, known: Mutex::default() })
     }
@@ -121,7 +122,7 @@ impl OpenIdProvider {
         now_s: i64,
     ) -> Result<SignInStart> {
         let known = self.cached_metadata().await?;
-        let broken = || SignInFailure::Provider("a sign-in cannot be begun".to_owned());
+        let broken = || SignInFailure::Provider("a sign-in cannot be started".to_owned());
         let ticket = SignInTicket::new(purpose, next, now_s).ok_or_else(broken)?;
         let mut place = Url::parse(&known.metadata.authorization_endpoint).map_err(|_| broken())?;
         place
@@ -222,7 +223,7 @@ impl OpenIdProvider {
             None => form.push(("client_id", id)),
         }
         let body = serde_urlencoded::to_string(form)
-            .map_err(|_| SignInFailure::Provider("its code cannot be sent".to_owned()))?;
+            .map_err(|_| SignInFailure::Provider("its code cannot be exchanged".to_owned()))?;
         let request = request
             .header(header::CONTENT_TYPE, "application/x-www-form-urlencoded")
             .header(header::ACCEPT, "application/json")
@@ -284,7 +285,7 @@ impl OpenIdProvider {
         let claims: Map<String, Value> = fetch::parse_document(&body, "description of you")?;
         // The subject must be that of the ID token, otherwise the claims describe another person.
         if claims.get("sub").and_then(Value::as_str) != Some(&identity.subject) {
-            return Err(SignInFailure::Untrusted("it describes somebody else".to_owned()));
+            return Err(SignInFailure::Untrusted("the description is of another user".to_owned()));
         }
         for (claim, value) in claims {
             identity.claims.entry(claim).or_insert(value);
@@ -296,7 +297,7 @@ impl OpenIdProvider {
 async fn fetch_keys(client: &Client, metadata: &ProviderMetadata) -> Result<KeySet> {
     let body = fetch::fetch_document(client.get(&metadata.jwks_uri), "set of keys").await?;
     KeySet::read(&body)
-        .ok_or_else(|| SignInFailure::Provider("its set of keys does not read".to_owned()))
+        .ok_or_else(|| SignInFailure::Provider("its set of keys cannot be parsed".to_owned()))
 }
 
 fn as_in_form(text: &str) -> String {
@@ -308,7 +309,7 @@ fn as_in_form(text: &str) -> String {
 fn plain_error_code(text: &str) -> &str {
     let plain =
         text.len() <= 64 && text.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'_');
-    if plain { text } else { "for a reason that is no word of the standard" }
+    if plain { text } else { "with an error code that is not in the standard" }
 }
 
 /// Maps an error of the authorization endpoint (RFC 6749, 4.1.2.1; OpenID Connect, 3.1.2.6).
@@ -331,7 +332,9 @@ fn token_error(status: StatusCode, body: &[u8]) -> SignInFailure {
     match fetch::parse_document::<ErrorResponse>(body, "refusal") {
         Ok(refusal) if refusal.error == "invalid_grant" => SignInFailure::Expired,
         Ok(refusal) => SignInFailure::Refused(plain_error_code(&refusal.error).to_owned()),
-        Err(_) => SignInFailure::Provider(format!("its token is answered {}", status.as_u16())),
+        Err(_) => {
+            SignInFailure::Provider(format!("the exchange of its code gives {}", status.as_u16()))
+        }
     }
 }
 

@@ -31,14 +31,15 @@ fn untrusted_error(why: &str) -> SignInFailure {
 /// # Errors
 /// Returns an error if it is not a token, or is not signed by a private key of the provider.
 pub(crate) fn read_header(token: &str) -> Result<Header> {
-    let header = decode_header(token).map_err(|_| {
-        untrusted_error("its token is no signed token of a kind that is known here")
-    })?;
+    let header = decode_header(token)
+        .map_err(|_| untrusted_error("its token is not a signed token of a supported kind"))?;
     match (header.alg.family(), &header.crit) {
         (AlgorithmFamily::Hmac, _) => {
             Err(untrusted_error("its token is signed by a shared secret"))
         }
-        (_, Some(_)) => Err(untrusted_error("its token asks for what is not known here")),
+        (_, Some(_)) => {
+            Err(untrusted_error("its token requires an extension that is not supported"))
+        }
         (_, None) => Ok(header),
     }
 }
@@ -71,21 +72,21 @@ pub(crate) fn verify_token(
 fn check_claims(claims: &TokenClaims, expected: ExpectedClaims<'_>) -> Result<()> {
     let all = claims.aud.client_ids();
     if claims.iss != expected.issuer || !all.iter().any(|one| one == expected.client_id) {
-        return Err(untrusted_error("its token is another provider's, or for another server"));
+        return Err(untrusted_error("its token is from another provider or for another server"));
     }
     // `azp` must name this client if it is present, and must be present with several audiences.
     let party = claims.azp.as_deref();
     if party.is_some_and(|party| party != expected.client_id) || (all.len() > 1 && party.is_none())
     {
-        return Err(untrusted_error("its token was given to another server"));
+        return Err(untrusted_error("its token was issued to another server"));
     }
     let nonce = claims.nonce.as_deref().unwrap_or_default();
     if !constant_time_eq(nonce.as_bytes(), expected.nonce.as_bytes()) {
-        return Err(untrusted_error("its token was made for another sign-in"));
+        return Err(untrusted_error("its token was issued for another sign-in"));
     }
     let subject = &claims.sub;
     if subject.is_empty() || subject.len() > LONGEST_SUBJECT || subject.contains(char::is_control) {
-        return Err(untrusted_error("its token names nobody"));
+        return Err(untrusted_error("its token has no subject"));
     }
     Ok(())
 }
@@ -94,12 +95,14 @@ fn describe_error(kind: &ErrorKind) -> SignInFailure {
     untrusted_error(match kind {
         ErrorKind::InvalidSignature => "the signature of its token is wrong",
         ErrorKind::ExpiredSignature => "its token has expired",
-        ErrorKind::ImmatureSignature => "its token is not valid yet; a clock is wrong",
-        ErrorKind::InvalidIssuer => "its token is another provider's",
+        ErrorKind::ImmatureSignature => {
+            "its token is not valid yet; check the clocks of both servers"
+        }
+        ErrorKind::InvalidIssuer => "its token is from another provider",
         ErrorKind::InvalidAudience => "its token is for another server",
         ErrorKind::MissingRequiredClaim(_) | ErrorKind::InvalidClaimFormat(_) => {
-            "its token lacks what it must say"
+            "its token lacks a required claim"
         }
-        _ => "its token cannot be read",
+        _ => "its token cannot be parsed",
     })
 }

@@ -14,7 +14,7 @@ pub enum BundleError {
     #[error(transparent)]
     Document(#[from] DeriveError),
     /// A version was derived from a prior, which a bundle does not hold.
-    #[error("version {0} was refined with the prior of a family, which a bundle does not hold")]
+    #[error("version {0} was refined with the prior of a family, which a bundle cannot contain")]
     Prior(String),
     /// The file is no bundle, or was changed.
     #[error("{0}")]
@@ -23,6 +23,6 @@ pub enum BundleError {
     #[error("{0}")]
     Key(&'static str),
     /// Rows of the archive contradict the bundle; nothing was written.
-    #[error("nothing was taken:\n{}", .0.join("\n"))]
+    #[error("nothing was imported:\n{}", .0.join("\n"))]
     Conflicts(Vec<String>),
 }

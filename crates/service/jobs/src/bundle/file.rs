@@ -82,7 +82,7 @@ impl Bundle {
     /// manifest, or if the signature is not valid for the manifest.
     pub fn from_bytes(bytes: &[u8]) -> Result<(Self, Option<VerifyingKey>), BundleError> {
         let mut archive = ZipArchive::new(Cursor::new(bytes))
-            .map_err(|error| BundleError::File(format!("is no bundle: {error}")))?;
+            .map_err(|error| BundleError::File(format!("is not a bundle: {error}")))?;
         let mut left = MAX_UNPACKED_BYTES;
         let manifest = read_entry(&mut archive, MANIFEST, &mut left)?;
         // The signature is checked over the bytes of the manifest, before these are interpreted.
@@ -90,14 +90,16 @@ impl Bundle {
         let manifest: BundleManifest = serde_json::from_slice(&manifest).map_err(file_error)?;
         if manifest.format != FORMAT {
             let found = manifest.format;
-            return Err(BundleError::File(format!("is of the format `{found}`, not `{FORMAT}`")));
+            return Err(BundleError::File(format!(
+                "has the format `{found}` instead of `{FORMAT}`"
+            )));
         }
         let mut files = BTreeMap::new();
         // Files that the manifest does not name are never read.
         for (name, hash) in &manifest.files {
             let bytes = read_entry(&mut archive, name, &mut left)?;
             if sha256_hex(&bytes) != *hash {
-                return Err(BundleError::File(format!("{name} is not what the manifest says")));
+                return Err(BundleError::File(format!("{name} differs from the manifest")));
             }
             files.insert(name.clone(), Bytes::from(bytes));
         }
@@ -111,7 +113,7 @@ impl Bundle {
                 .map_err(file_error)?;
         for (line, number, version) in content.versions() {
             if sha256_hex(version.document.as_bytes()) != version.sha256 {
-                let message = format!("version {line}/{number} is not what its hash says");
+                let message = format!("version {line}/{number} does not have its hash");
                 return Err(BundleError::File(message));
             }
         }
@@ -167,9 +169,9 @@ fn verified_signer(
     }
     let (bytes, key) = (read_entry(archive, SIGNATURE, left)?, read_entry(archive, SIGNER, left)?);
     let key = VerifyingKey::from_der(&key)
-        .ok_or_else(|| BundleError::File(format!("{SIGNER} is no Ed25519 key")))?;
+        .ok_or_else(|| BundleError::File(format!("{SIGNER} is not an Ed25519 key")))?;
     let signer = ManifestSignature { key, bytes }.verify_manifest(manifest);
-    let forged = || BundleError::File(format!("{MANIFEST} is not what {SIGNATURE} has signed"));
+    let forged = || BundleError::File(format!("{SIGNATURE} does not match {MANIFEST}"));
     signer.ok_or_else(forged).map(Some)
 }
 
@@ -187,7 +189,7 @@ fn read_entry(
     // One byte more than allowed is read, so that a file above the limit is noticed.
     file.take(*left + 1).read_to_end(&mut bytes).map_err(file_error)?;
     *left = left.checked_sub(bytes.len() as u64).ok_or_else(|| {
-        BundleError::File(format!("takes more than {MAX_UNPACKED_BYTES} bytes unpacked"))
+        BundleError::File(format!("needs more than {MAX_UNPACKED_BYTES} bytes when unpacked"))
     })?;
     Ok(bytes)
 }

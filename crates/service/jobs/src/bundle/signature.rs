@@ -107,11 +107,11 @@ pub fn check_signer(
 ) -> Result<(), BundleError> {
     match signer {
         _ if keys.is_empty() => Ok(()),
-        None => Err(BundleError::File("is not signed, and a key is asked for".to_owned())),
+        None => Err(BundleError::File("is not signed, but a signature is required".to_owned())),
         Some(signer) if keys.contains(signer) => Ok(()),
-        Some(signer) => {
-            Err(BundleError::File(format!("is signed by {signer}, which is none of the keys")))
-        }
+        Some(signer) => Err(BundleError::File(format!(
+            "is signed by {signer}, which is not one of the given keys"
+        ))),
     }
 }
 

@@ -69,20 +69,20 @@ async fn find_conflicts(archive: &Archive, content: &BundleContent) -> Result<Ve
     for (name, text) in &content.laws {
         let known = optional(archive.store.laws().get(name).await)?;
         if known.is_some_and(|law| law.sha256 != sha256_hex(text.as_bytes())) {
-            all.push(format!("the law `{name}` is another one here"));
+            all.push(format!("the law `{name}` differs from that in this store"));
         }
     }
     for ship in &content.ships {
         let known = ship_revisions(archive, &ship.name).await?;
         // One history may be longer than the other; the common part must agree.
         if known.iter().zip(&ship.revisions).any(|(here, there)| here.document != there.document) {
-            all.push(format!("the ship `{}` has another history here", ship.name));
+            all.push(format!("the ship `{}` has a different history in this store", ship.name));
         }
     }
     for (line, number, version) in content.versions() {
         let known = optional(archive.store.versions().get(line, number).await)?;
         if known.is_some_and(|known| known.head.sha256 != version.sha256) {
-            all.push(format!("version {line}/{number} is another one here"));
+            all.push(format!("version {line}/{number} differs from that in this store"));
         }
     }
     Ok(all)
@@ -145,7 +145,7 @@ async fn import_versions(
         // A pass without progress: a parent is neither in the bundle nor in the archive.
         if later.len() == before {
             let (line, number, _) = later[0];
-            return Err(BundleError::File(format!("lacks what {line}/{number} was made from")));
+            return Err(BundleError::File(format!("lacks the inputs of {line}/{number}")));
         }
         open = later;
     }
@@ -190,7 +190,11 @@ async fn import_version(
     // The store assigns the number; a concurrent writer can have taken the expected one.
     let made = archive.store.versions().create(&new, &[follow]).await?;
     if (made.number, &made.sha256) != (number, &version.sha256) {
-        let message = format!("{line}/{number} became {line}/{}: others write to it", made.number);
+        let message = format!(
+            "{line}/{number} became {line}/{}: another process writes to this \
+                               ship; import again",
+            made.number
+        );
         return Err(BundleError::File(message));
     }
     for ReportRecord { kind, document, html } in version.reports.clone() {

@@ -125,8 +125,8 @@ async fn what_contradicts_is_named_and_nothing_is_taken() {
     let law = bundle.content.laws.keys().next().unwrap();
     other.store.laws().insert(law, "another law").await.unwrap();
     let refused = import_bundle(&other, &bundle).await.unwrap_err().to_string();
-    assert!(refused.contains(&format!("`{SHIP}` has another history")), "{refused}");
-    assert!(refused.contains(&format!("the law `{law}` is another one")), "{refused}");
+    assert!(refused.contains(&format!("`{SHIP}` has a different history")), "{refused}");
+    assert!(refused.contains(&format!("the law `{law}` differs")), "{refused}");
     assert!(other.store.versions().latest(SHIP).await.is_err(), "nothing was written");
 }
 
@@ -138,11 +138,11 @@ async fn a_damaged_file_is_refused() {
         Err(BundleError::File(message)) => message,
         other => panic!("{other:?}"),
     };
-    assert!(refused(b"no archive").contains("is no bundle"));
+    assert!(refused(b"no archive").contains("is not a bundle"));
     let mut changed = bundle.clone();
     changed.content.lines.get_mut(SHIP).unwrap()[0].document.push(' ');
     assert!(
-        refused(&changed.to_bytes(None).unwrap()).contains("demo-ship/1 is not what its hash says")
+        refused(&changed.to_bytes(None).unwrap()).contains("demo-ship/1 does not have its hash")
     );
     let mut lacking = bundle.clone();
     lacking.objects.clear();
@@ -183,14 +183,14 @@ async fn a_signed_file_is_its_signers() {
     assert_eq!((read, signer.as_ref()), (bundle.clone(), Some(&key.verifying_key())));
     check_signer(signer.as_ref(), &[other.verifying_key(), key.verifying_key()]).unwrap();
     let refused = |signer| check_signer(signer, &[other.verifying_key()]).unwrap_err().to_string();
-    assert!(refused(signer.as_ref()).contains("which is none of the keys"));
+    assert!(refused(signer.as_ref()).contains("which is not one of the given keys"));
     assert!(refused(None).contains("is not signed"));
-    let not_signed = "manifest.json is not what manifest.sig has signed";
+    let not_signed = "manifest.sig does not match manifest.json";
     for (name, bytes, says) in [
         ("manifest.json", &b"{}"[..], not_signed),
         ("manifest.sig", &[0; 64], not_signed),
         ("signer.der", other.verifying_key().as_der(), not_signed),
-        ("signer.der", &[0; 44], "signer.der is no Ed25519 key"),
+        ("signer.der", &[0; 44], "signer.der is not an Ed25519 key"),
     ] {
         let error = Bundle::from_bytes(&replaced(&file, name, bytes)).unwrap_err().to_string();
         assert!(error.contains(says), "{error}");

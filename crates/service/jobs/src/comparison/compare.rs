@@ -55,10 +55,10 @@ pub struct Comparison {
 #[derive(Debug, thiserror::Error)]
 pub enum ComparisonError {
     /// Too few or too many models.
-    #[error("two to five models are compared at once, not {0}")]
+    #[error("two to five models can be compared, not {0}")]
     Count(usize),
     /// A model is named twice.
-    #[error("`{0}` is named twice")]
+    #[error("`{0}` is listed twice")]
     Twice(String),
     /// A model cannot be simulated.
     #[error("{name}: {reason}")]

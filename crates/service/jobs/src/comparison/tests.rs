@@ -90,6 +90,6 @@ fn coefficients_and_figures_stand_side_by_side() {
 fn what_cannot_be_compared_is_refused() {
     let said = |names: &[&str]| check_names(names).unwrap_err().to_string();
     assert!(said(&["a"]).contains("two to five") && said(&["a"; 6]).contains("not 6"));
-    assert!(said(&["a", "b", "a"]).contains("`a` is named twice"));
+    assert!(said(&["a", "b", "a"]).contains("`a` is listed twice"));
     assert!(check_names(&["a", "b"]).is_ok());
 }

@@ -9,7 +9,7 @@ impl Condition {
                 "Unknown: its champion has not been diagnosed on a trial yet.".into()
             }
             ModelValidity::Holds => format!(
-                "Its model holds: on {} its residual is what the noise predicts.",
+                "Its model holds: on {} the residual agrees with the noise.",
                 count_trials(self.trials.len())
             ),
             ModelValidity::DoesNotHold => {
@@ -46,8 +46,8 @@ impl Condition {
         };
         let drift = self.drift.as_ref().filter(|drift| drift.is_above_limit()).map(|drift| {
             format!(
-                "it leaves {:.1} times as much of the force {} on new trials as on those it was \
-                 fitted on",
+                "the unexplained force on new trials is {:.1} times that on the fitted trials \
+                 (axis {})",
                 drift.ratio, drift.axis
             )
         });

@@ -24,9 +24,9 @@ pub fn with_uncertainty(
     let samples = refinement.settings.calibration_samples;
     match calibrate_model(&refinement.model, law, effects, &fitted, samples) {
         Ok(uncertainty) => refinement.model.uncertainty = Some(uncertainty),
-        Err(error) => refinement
-            .remarks
-            .push(format!("what these trials leave open could not be learned: {error}")),
+        Err(error) => {
+            refinement.remarks.push(format!("the noise model could not be estimated: {error}"))
+        }
     }
     refinement
 }
@@ -44,7 +44,7 @@ pub fn correction_with_uncertainty(
         Ok(uncertainty) => Model { uncertainty: Some(uncertainty), ..model },
         Err(error) => {
             let note = model.note.clone().unwrap_or_default();
-            let why = format!("what its trials leave open could not be learned: {error}");
+            let why = format!("the noise model could not be estimated: {error}");
             Model { note: Some(format!("{note}; {why}")), ..model }
         }
     }

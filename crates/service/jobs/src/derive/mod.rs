@@ -57,7 +57,7 @@ pub async fn derive(
             trained::derive_trained(inputs, ship, recipe, progress).await
         }
         DerivationRecipe::Registered(_) => Err(DeriveError::Lost(
-            "the model was made elsewhere: its own bytes are all there is of it".into(),
+            "the model was imported and has no recipe: it cannot be reproduced here".into(),
         )),
         DerivationRecipe::Diagnosis(recipe) => {
             let document = diagnosed::run_diagnosis_on(inputs, recipe.clone(), progress)
@@ -67,7 +67,7 @@ pub async fn derive(
             // made.
             let nothing = || {
                 DeriveError::Lost(
-                    "the diagnosis finds no effect now, so that no version comes of it".into(),
+                    "the repeated diagnosis finds no effect, so that it gives no version".into(),
                 )
             };
             Ok(DerivedVersion::from_document(document.ok_or_else(nothing)?))

@@ -38,7 +38,7 @@ pub(super) async fn load_inputs(
         ..
     } = recipe
     else {
-        return Err(DeriveError::Lost("the recipe is not that of a refinement".into()));
+        return Err(DeriveError::Lost("the recipe is not the recipe of a refinement".into()));
     };
     let settings: RefinementSettings = serde_json::from_value(recorded.clone())
         .map_err(|error| DeriveError::Lost(format!("the recipe's settings: {error}")))?;
@@ -81,7 +81,7 @@ async fn population_members(
 }
 
 fn missing_law() -> DeriveError {
-    DeriveError::Lost("the recipe names neither a source nor a law".into())
+    DeriveError::Lost("the recipe has neither a source nor a law".into())
 }
 
 /// Returns a model without coefficients, with the approach speed of the fitted trials.

@@ -135,15 +135,14 @@ async fn every_kind_of_version_reads_what_its_recipe_names() {
         assert_eq!(kinds(&recipe), BTreeSet::from_iter(named), "version {number}");
         let inputs = super::DerivationInputs::new(&archive);
         let unread = inputs.check_recipe(&recipe).unwrap_err().to_string();
-        let every = recipe
-            .all_inputs()
-            .iter()
-            .all(|input| unread.contains(&format!("the recipe names {input}, which was not read")));
+        let every = recipe.all_inputs().iter().all(|input| {
+            unread.contains(&format!("{input} is listed in the recipe, but was not read"))
+        });
         assert!(every, "{unread}");
         inputs.read_effects(library_sha256()).await.unwrap();
         let unnamed = inputs.check_recipe(&recipe).unwrap_err().to_string();
         assert_eq!(
-            unnamed.contains("was read, but the recipe does not name it"),
+            unnamed.contains("was read, but is not listed in the recipe"),
             number == 3,
             "{unnamed}"
         );

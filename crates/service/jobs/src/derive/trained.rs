@@ -28,7 +28,10 @@ pub(super) async fn derive_trained(
 ) -> Result<DerivedVersion, DeriveError> {
     let foundation = inputs.read_source(&recipe.foundation).await?;
     if foundation.branch.is_some() {
-        let message = format!("`{}` has a learned branch already", foundation.name);
+        let message = format!(
+            "`{}` has a learned correction already; choose its foundation",
+            foundation.name
+        );
         return Err(DeriveError::Lost(message));
     }
     // All inputs are loaded here; the blocking thread below does no I/O.
@@ -54,11 +57,11 @@ fn train_and_judge(
         if on { Ok(()) } else { Err(DeriveError::Refine(RefineError::Cancelled)) }
     };
     // The fractions of progress are rough shares of the time.
-    go_on(0.1, "training the branch")?;
+    go_on(0.1, "training the learned correction")?;
     let (branch, weights) = train_correction(foundation, law, &trials, &recipe.settings)?;
-    go_on(0.3, "judging it on trials left out")?;
+    go_on(0.3, "cross-validating it")?;
     let judgement = evaluate_training(foundation, law, &trials, &recipe.settings)?;
-    go_on(0.8, "learning what the trials leave open")?;
+    go_on(0.8, "estimating the noise model")?;
     let weights = weights.to_bytes().map_err(sistership_learned::TrainError::from)?;
     let mut model = with_branch(foundation, branch);
     // The calibration simulates the model, so the weights must be attached before it.

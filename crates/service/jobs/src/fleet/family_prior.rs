@@ -82,7 +82,7 @@ async fn member_statistics(
     let framed = match frames.for_member(ship, Start::Champion).await {
         Ok(framed) => framed,
         Err(DeriveError::Lost(reason)) => {
-            tracing::info!(ship, reason, "not learned from");
+            tracing::info!(ship, reason, "not used for the prior");
             return Ok(None);
         }
         Err(error) => return Err(error),

@@ -86,8 +86,8 @@ impl StartingModels<'_> {
         {
             let (own, family) = (&model.name, &self.model.name);
             let message = format!(
-                "`{own}` does not have the law and coefficients of the foundation `{family}`; \
-                 start at the foundation"
+                "`{own}` does not have the law and coefficients of the foundation of `{family}`; \
+                 start from the foundation"
             );
             return Err(DeriveError::Lost(message));
         }

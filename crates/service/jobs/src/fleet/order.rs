@@ -123,7 +123,7 @@ impl LoadedOrder {
     pub fn describe_prior(&self) -> String {
         match &self.order.prior {
             Some(name) => format!(
-                "{}, held by the family {} at revision {}",
+                "{}, prior from the family {} at revision {}",
                 self.foundation.name, name.family, name.revision
             ),
             None => self.foundation.name.clone(),

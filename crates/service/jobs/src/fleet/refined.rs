@@ -75,7 +75,7 @@ pub fn refine_member(
 fn check_finite(report: &Value) -> Result<(), DeriveError> {
     let bad = |key: &str| {
         DeriveError::Refine(RefineError::Data(format!(
-            "`{key}` is not a finite number: the trials do not excite it"
+            "`{key}` is not a finite number: the trials do not determine it"
         )))
     };
     let lists = ["axes", "coefficients"]

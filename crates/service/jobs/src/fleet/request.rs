@@ -130,12 +130,11 @@ async fn latest_prior(store: &Store, family: &str) -> Result<PriorName> {
         }
         // The family exists, as it was read above; only its prior is missing.
         Err(StoreError::NotFound { .. }) => {
-            let how =
-                format!("POST /v1/families/{family}/prior learns it; `foundation` needs none");
-            Err(invalid_setting(
-                "prior",
-                format!("the family `{family}` has taught nothing yet; {how}"),
-            ))
+            let how = format!(
+                "POST /v1/families/{family}/prior estimates it; the prior `foundation` \
+                         needs none"
+            );
+            Err(invalid_setting("prior", format!("the family `{family}` has no prior yet; {how}")))
         }
         Err(error) => Err(error.into()),
     }

@@ -17,12 +17,10 @@ pub enum PredictionError {
     #[error(transparent)]
     Memory(#[from] MemoryShortage),
     /// The caller has no session with this id, or it has ended.
-    #[error("there is no session `{0}` of yours; one that is not asked for ten minutes ends")]
+    #[error("you have no session `{0}`; a session ends after ten minutes without a request")]
     NoSession(String),
     /// The limit of sessions is reached.
-    #[error(
-        "{whose} {most} sessions, and may not have more; end one, or wait until an idle one ends"
-    )]
+    #[error("{whose} {most} sessions, which is the limit; end one, or wait until an idle one ends")]
     ManySessions {
         /// Owner of the sessions.
         whose: &'static str,
@@ -30,7 +28,7 @@ pub enum PredictionError {
         most: usize,
     },
     /// Another request uses the session.
-    #[error("another request sails this session at the moment; wait for its answer")]
+    #[error("another request uses this session at the moment; wait for its answer")]
     SessionBusy,
     /// The answer cannot be written.
     #[error(transparent)]

@@ -95,7 +95,7 @@ impl HorizonRequest {
     /// Checks that the orders are in order of time, and returns the number of steps.
     fn count_steps(&self) -> Result<usize> {
         if let Some(at) = self.orders.windows(2).position(|pair| pair[1].t_s <= pair[0].t_s) {
-            let message = "must be later than that of the orders before";
+            let message = "must be later than that of the previous orders";
             return Err(PredictionError::invalid_field(
                 &format!("horizon.orders[{}].t_s", at + 1),
                 message,
@@ -107,7 +107,8 @@ impl HorizonRequest {
             false => Err(PredictionError::invalid_field(
                 "horizon.duration_s",
                 format!(
-                    "would take {steps:.0} samples, at most {MAX_SAMPLES} are made: a longer `dt_s`"
+                    "needs {steps:.0} samples, but at most {MAX_SAMPLES} are possible; give a \
+                     longer `dt_s`"
                 ),
             )),
         }

@@ -106,7 +106,7 @@ impl InputsRequest {
             if values.len() != count {
                 return Err(PredictionError::invalid_field(
                     field,
-                    format!("has {} values, `t_s` has {count}", values.len()),
+                    format!("has {} values, but `t_s` has {count}", values.len()),
                 ));
             }
         }

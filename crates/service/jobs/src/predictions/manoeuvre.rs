@@ -70,7 +70,7 @@ impl ManoeuvreRequest {
         if self.bands.is_some() && !self.all {
             return Err(PredictionError::invalid_field(
                 "manoeuvre.bands",
-                "are those of all standard manoeuvres: give `all`",
+                "are available for all standard manoeuvres only: give `all`",
             ));
         }
         match (self.turn_deg, &self.zigzag, self.all) {
@@ -149,7 +149,7 @@ impl BandsRequest {
         let seed = self.seed.unwrap_or(default.seed);
         let sampling = Sampling { samples, seed };
         let none = || {
-            let why = "only a refined one whose coefficients are those that were estimated has one";
+            let why = "only a refined model with unchanged coefficients has one";
             PredictionError::invalid_field(
                 "manoeuvre.bands",
                 format!("the model has no posterior to draw from; {why}"),
@@ -166,7 +166,7 @@ fn divergence_error(stopped: SimulationStop) -> PredictionError {
     PredictionError::invalid_field(
         "manoeuvre",
         format!(
-            "the simulation left the physical range, {stopped}; the model does not hold for this \
+            "the simulation left the physical range, {stopped}; the model is not valid for this \
              manoeuvre"
         ),
     )

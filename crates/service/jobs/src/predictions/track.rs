@@ -14,7 +14,9 @@ pub(super) const STEP_S: f64 = 0.1;
 pub(super) fn check_positive(field: &str, value: f64) -> Result<f64> {
     match value > 0.0 && value.is_finite() {
         true => Ok(value),
-        false => Err(PredictionError::invalid_field(field, format!("must be above 0, is {value}"))),
+        false => {
+            Err(PredictionError::invalid_field(field, format!("must be above 0, not {value}")))
+        }
     }
 }
 
@@ -29,8 +31,8 @@ pub(super) fn reserve_steps(field: &str, steps: f64, most: usize) -> Result<()> 
         false => Err(PredictionError::invalid_field(
             field,
             format!(
-                "would take {steps:.0} steps, at most {most} are made: give a higher speed or a \
-                 shorter time"
+                "needs {steps:.0} steps, but at most {most} are possible: give a higher speed or \
+                 a shorter time"
             ),
         )),
     }

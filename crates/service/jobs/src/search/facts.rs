@@ -74,8 +74,8 @@ async fn read_content(
     let vessel = match parse_vessel(&ship.name, &ship.document) {
         Ok(vessel) => vessel,
         Err(error) => {
-            tracing::error!(ship = %ship.name, %error, "a ship does not read and is found by name \
-                and category only");
+            tracing::error!(ship = %ship.name, %error, "a ship cannot be parsed and can be found \
+                                                        by name and category only");
             return Ok(nothing(waiting, ship.category));
         }
     };
@@ -111,7 +111,7 @@ async fn publish_missing(
 ) -> Result<(), StoreError> {
     if let Err(error) = publish_models(&archive.store, laws, vessel, &ship.document).await {
         tracing::error!(ship = %ship.name, %error, "the published models of a ship could not be \
-            made versions");
+                                                    stored as versions");
     }
     Ok(())
 }

@@ -63,13 +63,13 @@ pub fn range_pattern(names: impl Iterator<Item = &'static str>) -> String {
 fn parse_range(text: &str, kind: &str, known: &[&str]) -> Result<FactRange, RangeFault> {
     let form = || {
         format!(
-            "write {}:MIN..MAX, with either end left out where it is open, not `{text}`",
+            "write {}:MIN..MAX instead of `{text}`; either end may be omitted",
             known.first().unwrap_or(&"")
         )
     };
     let (name, ends) = text.split_once(':').ok_or_else(form)?;
     if !known.contains(&name) {
-        return Err(format!("there is no {kind} `{name}`; there are {}", known.join(", ")));
+        return Err(format!("there is no {kind} `{name}`; choose one of {}", known.join(", ")));
     }
     let (min, max) = ends
         .split_once("..")
@@ -84,7 +84,7 @@ fn parse_range(text: &str, kind: &str, known: &[&str]) -> Result<FactRange, Rang
     let (min, max) = (end(min, f64::MIN)?, end(max, f64::MAX)?);
     match min <= max {
         true => Ok(FactRange { fact: fact_name(kind, name), min, max }),
-        false => Err(format!("`{text}` holds nothing: {min} is above {max}")),
+        false => Err(format!("`{text}` is empty: {min} is above {max}")),
     }
 }
 
@@ -107,7 +107,7 @@ mod tests {
         assert!(
             particular("length_m:1..2")
                 .unwrap_err()
-                .contains("there is no particular `length_m`; there are lpp_m, ")
+                .contains("there is no particular `length_m`; choose one of lpp_m, ")
         );
         assert!(metric("lpp_m:1..2").unwrap_err().contains("turn_35.advance_m"));
         assert!(particular("lpp_m:2..1").unwrap_err().contains("2 is above 1"));

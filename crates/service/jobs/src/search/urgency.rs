@@ -114,8 +114,10 @@ pub(super) async fn urgency_facts(
 async fn newest_residuals(archive: &Archive, champion: &VersionDocument) -> Vec<f64> {
     let left = residuals_of_newest(archive, champion, MAX_RESIDUAL_TRIALS).await;
     left.unwrap_or_else(|error| {
-        tracing::error!(ship = %champion.ship, %error, "what a champion leaves of trials is not \
-            known");
+        tracing::error!(
+            ship = %champion.ship, %error,
+            "the unexplained force of a champion cannot be read"
+        );
         Vec::new()
     })
 }

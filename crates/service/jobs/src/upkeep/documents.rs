@@ -89,7 +89,7 @@ async fn check_recipe(
         findings.add_fault(
             "version-document",
             place.to_owned(),
-            format!("its document is about `{}`", document.ship),
+            format!("its document names `{}`", document.ship),
         );
     }
     record_failure(
@@ -157,9 +157,9 @@ async fn check_weights(
     let mut add =
         |message: String| findings.add_fault("version-weights", place.to_owned(), message);
     if !object_exists(&archive.objects, key).await? {
-        add(format!("the weights {key} of its learned branch are missing"));
+        add(format!("the weights {key} of its learned correction are missing"));
     } else if !archive.store.unreferenced_keys(std::slice::from_ref(key)).await?.is_empty() {
-        add(format!("its row does not refer to the weights {key} of its learned branch"));
+        add(format!("its row does not refer to the weights {key} of its learned correction"));
     }
     Ok(())
 }
@@ -183,7 +183,7 @@ async fn check_job(archive: &Archive, job: &Job, findings: &mut Findings) -> Res
     let Some(result) = &job.result else { return Ok(()) };
     let place = format!("job {}", job.id);
     let Ok(result) = serde_json::from_str::<Value>(result) else {
-        findings.add_fault("job-result", place, "its result is no JSON document");
+        findings.add_fault("job-result", place, "its result is not a JSON document");
         return Ok(());
     };
     if let (Some(model), Some(number)) = (result["model"].as_str(), result["version"].as_i64()) {
@@ -224,9 +224,11 @@ pub(super) async fn check_diagnoses(archive: &Archive, findings: &mut Findings) 
             let place = format!("diagnosis {}", diagnosis.id);
             match serde_json::from_str::<Vec<String>>(&diagnosis.trials) {
                 Ok(trials) => check_diagnosed_trials(archive, &trials, &place, findings).await?,
-                Err(_) => {
-                    findings.add_fault("diagnosis-trials", place, "its trials are no list of ids")
-                }
+                Err(_) => findings.add_fault(
+                    "diagnosis-trials",
+                    place,
+                    "its trials are not a list of ids",
+                ),
             }
         }
         let Some(next) = diagnoses.next else { return Ok(()) };
@@ -266,7 +268,7 @@ fn check_hash(
         findings.add_fault(
             check,
             place,
-            format!("its document has the hash {actual}, not {recorded} as recorded"),
+            format!("its document has the hash {actual}, but {recorded} is recorded"),
         );
     }
 }

@@ -43,7 +43,7 @@ async fn check_object(
             findings.add_fault(
                 "object-name",
                 format!("object {path}"),
-                "is not named by a hash: the store has not put it there",
+                "its name is not a hash: it was not written by the store",
             );
             Ok(None)
         }

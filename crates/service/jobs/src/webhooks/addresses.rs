@@ -11,17 +11,19 @@ use reqwest::Url;
 /// # Errors
 /// Returns a message that says what is wrong with it.
 pub fn check_url(text: &str, private: bool) -> Result<Url, String> {
-    let url = Url::parse(text).map_err(|error| format!("is no address of the web: {error}"))?;
+    let url = Url::parse(text).map_err(|error| format!("is not a URL: {error}"))?;
     // Plain http is for receivers in the same network only.
     let schemes: &[&str] = if private { &["https", "http"] } else { &["https"] };
     if !schemes.contains(&url.scheme()) {
         return Err(format!("must begin with {}://", schemes.join(":// or ")));
     }
     if !url.username().is_empty() || url.password().is_some() {
-        return Err("must not hold a name and password: deliveries are signed".to_owned());
+        return Err(
+            "must not contain a user name or password: deliveries are signed instead".to_owned()
+        );
     }
     if url.host_str().is_none_or(str::is_empty) {
-        return Err("names no host".to_owned());
+        return Err("has no host".to_owned());
     }
     // A host name is checked later, by the addresses that it resolves to at each delivery.
     match host_address(&url) {

@@ -74,7 +74,7 @@ fn describe_error(error: &reqwest::Error) -> String {
     } else if error.is_connect() {
         "no connection"
     } else {
-        "the request broke off"
+        "the connection was interrupted"
     };
     kind.to_owned()
 }

@@ -45,7 +45,7 @@ pub async fn run_deliveries(store: Store, telling: DeliverySettings) {
             Ok(BATCH_SIZE) => continue,
             Ok(_) => {}
             Err(error) => {
-                tracing::error!(%error, "webhooks could not be told");
+                tracing::error!(%error, "webhooks could not be delivered");
                 pause = pause.max(FAILURE_DELAY);
             }
         }

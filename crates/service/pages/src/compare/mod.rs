@@ -73,7 +73,7 @@ pub async fn gather_inputs(
     let many = asked.len() > MOST_VERSIONS;
     // Names beyond the limit are dropped with a message.
     let wrong =
-        wrong.or_else(|| many.then(|| format!("at most {MOST_VERSIONS} are compared at once")));
+        wrong.or_else(|| many.then(|| format!("at most {MOST_VERSIONS} versions can be compared")));
     Ok(ComparisonInputs { shell: shell.at_place("/compare"), versions, wrong, asked })
 }
 

@@ -28,7 +28,7 @@ impl VersionManoeuvres {
                 figures: None,
                 turn: None,
                 zigzag: None,
-                notes: vec![format!("{label} does not sail: {error}")],
+                notes: vec![format!("{label} cannot be simulated: {error}")],
             },
         }
     }

@@ -138,7 +138,7 @@ fn condition_reason(condition: &Condition) -> String {
 pub(crate) fn class_label(class: UrgencyClass) -> &'static str {
     match class {
         UrgencyClass::DoesNotHold => "does not hold",
-        UrgencyClass::Unknown => "cannot tell",
+        UrgencyClass::Unknown => "not diagnosed",
         UrgencyClass::NoModel => "no model",
         UrgencyClass::Holds => "holds",
     }

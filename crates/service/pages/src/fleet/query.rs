@@ -50,7 +50,7 @@ impl FleetQuery {
             (None, Some("name")) => SortOrder::Name,
             (None, Some("value")) => SortOrder::Value,
             (None, Some(other)) => {
-                let message = format!("there are worst, name and value, not `{other}`");
+                let message = format!("choose one of worst, name and value, not `{other}`");
                 return Err(PageError::invalid_field("sort", message));
             }
         };
@@ -87,12 +87,12 @@ impl FleetQuery {
         match (self.sort, ranges.is_empty()) {
             (SortOrder::Name, false) => Err(PageError::invalid_field(
                 "sort",
-                "by name only where neither condition, particular nor metric is chosen; sort by \
-                 these, or the worst first",
+                "order by name is possible only without condition, particular and metric; order \
+                 by value or worst first",
             )),
             (SortOrder::Value, true) => Err(PageError::invalid_field(
                 "sort",
-                "by value needs a particular or a metric with a range",
+                "order by value needs a range of a particular or metric",
             )),
             _ => Ok(self.with_ranges(ranges)),
         }

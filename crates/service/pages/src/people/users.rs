@@ -95,7 +95,7 @@ impl KeyRowView {
         let ends = match (revoked_us, expires_us) {
             (Some(revoked), _) => format!("revoked {}", format_date(revoked)),
             (None, Some(ends)) => format_date(ends),
-            (None, None) => "when it is revoked".to_owned(),
+            (None, None) => "when revoked".to_owned(),
         };
         let used = last_used_us.map_or_else(|| "never".to_owned(), format_date);
         let (user, created) = (user_name.unwrap_or_default(), format_date(created_us));

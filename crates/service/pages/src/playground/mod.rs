@@ -156,7 +156,7 @@ fn run_playground(
     match (around.depth_m, knows_depth) {
         (Some(depth), true) => ship.set_depth(depth),
         (Some(_), false) => notes.push(format!(
-            "The law {} does not know the water depth: it is sailed in deep water.",
+            "The law {} does not depend on water depth: deep water is simulated.",
             version.law.name
         )),
         (None, _) => {}
@@ -183,8 +183,9 @@ impl Surroundings {
         let named = [("current", self.current_vector()), ("wind", self.wind_vector())];
         let some = named.into_iter().filter_map(|(name, of)| Some((name, of?)));
         some.map(|(name, (north, east))| {
-            let missing =
-                || PageError::invalid_field(name, "the library has no constant form of it");
+            let missing = || {
+                PageError::invalid_field(name, "the library of effects has no constant form of it")
+            };
             steady_effect(name, [north, east], "playground").ok_or_else(missing)
         })
         .collect()

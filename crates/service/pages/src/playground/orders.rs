@@ -71,7 +71,7 @@ impl ManoeuvreOrders {
             Some("zigzag") => ManoeuvreKind::Zigzag,
             Some("script") => ManoeuvreKind::Script,
             Some(other) => {
-                let message = format!("there are turn, zigzag and script, not `{other}`");
+                let message = format!("choose one of turn, zigzag and script, not `{other}`");
                 return Err(PageError::invalid_field("kind", message));
             }
         };
@@ -109,7 +109,7 @@ impl ManoeuvreOrders {
             written.map(|(at, text)| parse_line(at + 1, text)).collect::<Result<Vec<_>>>()?;
         let wrong = |message: String| Err(PageError::invalid_field("script", message));
         match lines.as_slice() {
-            [] | [_] => wrong("needs two lines at least, such as `0 0` and `60 20`".to_owned()),
+            [] | [_] => wrong("needs at least two lines, such as `0 0` and `60 20`".to_owned()),
             many if many.len() > MOST_LINES => wrong(format!("has more than {MOST_LINES} lines")),
             all if all.windows(2).any(|pair| pair[1].0 <= pair[0].0) => {
                 wrong("times must increase from line to line".to_owned())
@@ -138,7 +138,7 @@ fn parse_line(number: usize, text: &str) -> Result<ScriptLine> {
             "script",
             format!(
                 "line {number}, `{text}`: write time in s, rudder in deg (at most {HARD_OVER} to \
-                 either side) and, if you like, revolutions in 1/min"
+                 either side) and optionally revolutions in 1/min"
             ),
         )),
     }

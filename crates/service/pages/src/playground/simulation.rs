@@ -42,8 +42,8 @@ pub(super) fn simulate_orders(
     let mut notes = Vec::new();
     if let Some(outside) = ship.find_excursion(&track) {
         notes.push(format!(
-            "{:.0} % of this run lies outside what the model's trials covered, first after {:.0} \
-             s, by {}.",
+            "{:.0} % of this simulation is outside the range covered by the model's trials, first \
+             after {:.0} s, in {}.",
             100.0 * outside.share,
             outside.first_s,
             outside.along
@@ -80,7 +80,7 @@ fn simulate_standard(
         PageError::invalid_field(
             "rudder",
             format!(
-                "the simulation left the physical range, {stopped}; the model does not hold there"
+                "the simulation left the physical range, {stopped}; the model is not valid there"
             ),
         )
     };
@@ -108,7 +108,7 @@ fn check_step_count(steps: f64, most: usize, remedy: StepRemedy) -> Result<()> {
         true => Ok(()),
         false => Err(PageError::invalid_field(
             remedy.field,
-            format!("would take {steps:.0} steps, at most {most} are made: {}", remedy.says),
+            format!("needs {steps:.0} steps, but at most {most} are possible: {}", remedy.says),
         )),
     }
 }
@@ -153,7 +153,7 @@ fn simulate_script(
     let settings = ReplaySettings::default();
     let trial = script_trial(ship, &lines, orders, speed);
     let steps = trial.duration_s() / settings.step_s + trial.len() as f64;
-    let remedy = StepRemedy { field: "script", says: "give a script of a shorter time" };
+    let remedy = StepRemedy { field: "script", says: "shorten the script" };
     check_step_count(steps, most, remedy)?;
     let run = replay_trial(ship, &trial, &settings)
         .map_err(|error| PageError::invalid_field("script", error.to_string()))?;

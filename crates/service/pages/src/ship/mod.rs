@@ -97,7 +97,7 @@ impl EvidenceRow {
             1 => "1 trial".to_owned(),
             count => format!("{count} trials"),
         };
-        let what = if diagnosis.whole { format!("the whole: {trials}") } else { trials };
+        let what = if diagnosis.whole { format!("all trials: {trials}") } else { trials };
         let (made, report) = (format_date(diagnosis.by.at_us), diagnosis.by.report.clone());
         Self { made, what, verdict: diagnosis.verdict.clone(), report }
     }
@@ -118,11 +118,11 @@ struct SimilarRow {
 
 /// Methods of a refinement, by their names in requests.
 const METHODS: [(&str, &str); 5] = [
-    ("", "try all and take the best"),
-    ("weak", "weak: rows integrated over windows"),
-    ("trajectory", "trajectory: simulated segments"),
+    ("", "compare all and select the best"),
+    ("weak", "weak: equations integrated over windows"),
+    ("trajectory", "trajectory: least squares on simulated segments"),
     ("published", "published: one-step differences"),
-    ("cma-es", "cma-es: search among simulations"),
+    ("cma-es", "cma-es: evolutionary search on simulations"),
 ];
 
 /// Reads the inputs of the page.

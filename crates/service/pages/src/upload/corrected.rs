@@ -27,7 +27,10 @@ pub fn correct_manifest(of: &UploadProposal, fields: &FormFields) -> Result<Mani
                 // The sign of the rudder is a field of its own.
                 mapping.reversed = guess.reversed && !channel.starts_with("delta");
                 if let Some(first) = columns.insert(channel.clone(), mapping) {
-                    let message = format!("`{}` is taken for {channel} already", first.column);
+                    let message = format!(
+                        "`{}` is read as {channel} already; choose one column",
+                        first.column
+                    );
                     return Err(PageError::invalid_field(&format!("channel.{key}"), message));
                 }
             }
@@ -61,7 +64,10 @@ fn column_mapping(
     let field = format!("channel.{key}");
     let Some(channel) = fields.get_text(&field) else { return Ok(None) };
     if !TARGETS.contains(&channel) {
-        return Err(PageError::invalid_field(&field, format!("there is no channel `{channel}`")));
+        return Err(PageError::invalid_field(
+            &field,
+            format!("`{channel}` is not a channel; choose one of the list"),
+        ));
     }
     let unit = fields.required_text(&format!("unit.{key}"))?.to_owned();
     Ok(Some((channel.to_owned(), ColumnMapping::new(column, unit))))
@@ -71,9 +77,7 @@ fn apply_conventions(manifest: &mut ManifestFile, fields: &FormFields) -> Result
     let one_of = |name: &str, words: [&str; 2]| match fields.get_text(name) {
         Some(text) if text == words[0] => Ok(true),
         Some(text) if text == words[1] => Ok(false),
-        _ => {
-            Err(PageError::invalid_field(name, format!("is one of {} and {}", words[0], words[1])))
-        }
+        _ => Err(PageError::invalid_field(name, format!("must be {} or {}", words[0], words[1]))),
     };
     let conventions = &mut manifest.manifest.conventions;
     conventions.rudder_positive = match one_of("rudder_positive", ["starboard_turn", "port_turn"])?
@@ -89,7 +93,7 @@ fn apply_conventions(manifest: &mut ManifestFile, fields: &FormFields) -> Result
         Some("bridge") => MissingValues::Bridge,
         Some("drop") => MissingValues::Drop,
         Some("refuse") => MissingValues::Refuse,
-        _ => return Err(PageError::invalid_field("missing", "is one of bridge, drop and refuse")),
+        _ => return Err(PageError::invalid_field("missing", "must be bridge, drop or refuse")),
     };
     let wanted = DERIVED
         .into_iter()
@@ -171,7 +175,7 @@ mod tests {
         let twice = [("channel.0", "t"), ("unit.0", "s"), ("channel.1", "t"), ("unit.1", "s")];
         assert!(wrong(&twice).starts_with("channel.1: "));
         assert!(wrong(&[("channel.0", "t")]).starts_with("unit.0: "));
-        assert!(wrong(&[("channel.0", "<b>"), ("unit.0", "s")]).contains("there is no channel"));
+        assert!(wrong(&[("channel.0", "<b>"), ("unit.0", "s")]).contains("is not a channel"));
         assert!(wrong(&[("depth.0", "-1")]).starts_with("depth.0: "));
     }
 }

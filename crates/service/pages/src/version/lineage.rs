@@ -90,7 +90,7 @@ impl VersionLineage {
         SvgPlot {
             width,
             height: 20.0 + rows as f64 * step + 8.0,
-            label: format!("Lineage of {}; the list below says the same", self.own.label),
+            label: format!("Lineage of {}; the list below has the same content", self.own.label),
             shapes,
         }
     }

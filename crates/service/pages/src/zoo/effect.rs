@@ -60,8 +60,8 @@ pub fn effect_page(shell: PageShell, name: &str) -> Result<String> {
 fn acts_on_text(acts_on: ActsOn) -> &'static str {
     match acts_on {
         ActsOn::Force => "adds forces",
-        ActsOn::Inflow => "changes what hull, propeller or rudder see",
-        ActsOn::Measurement => "changes what the instruments say",
+        ActsOn::Inflow => "changes the inflow of hull, propeller or rudder",
+        ActsOn::Measurement => "changes the readings of instruments",
     }
 }
 
@@ -72,15 +72,14 @@ fn form_rows(form: &FormFile) -> FormRows {
     });
     let values = form.values.iter().map(|(name, formula)| (format!("{name} ="), formula));
     let sees =
-        form.sees.iter().map(|(name, formula)| (format!("sees in place of {name}"), formula));
+        form.sees.iter().map(|(name, formula)| (format!("inflow in place of {name}"), formula));
     let forces = form.forces.iter().map(|(axis, formula)| (format!("adds to {axis}"), formula));
     let accelerates =
         form.accelerates.iter().map(|(axis, formula)| (format!("accelerates {axis} by"), formula));
     let coefficients =
         form.coefficients.iter().map(|(name, formula)| (format!("{name} becomes"), formula));
-    let lags = form.lags.iter().map(|(name, formula)| (format!("{name} lags by"), formula));
-    let bands =
-        form.bands.iter().map(|(name, formula)| (format!("{name} is left for within"), formula));
+    let lags = form.lags.iter().map(|(name, formula)| (format!("lag of {name}"), formula));
+    let bands = form.bands.iter().map(|(name, formula)| (format!("dead band of {name}"), formula));
     let measures =
         form.measures.iter().map(|(channel, formula)| (format!("{channel} is read as"), formula));
     let all = values.chain(sees).chain(forces).chain(accelerates).chain(coefficients);

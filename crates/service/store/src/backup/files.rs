@@ -21,7 +21,7 @@ pub(crate) fn create_empty(folder: &Path) -> Result<()> {
     folders::create_durably(folder).map_err(file_error(folder))?;
     let first = fs::read_dir(folder).map_err(file_error(folder))?.next();
     match first {
-        Some(_) => Err(not_a_backup(folder, "is not empty; a backup needs a folder of its own")),
+        Some(_) => Err(not_a_backup(folder, "is not empty; choose an empty folder for the backup")),
         None => Ok(()),
     }
 }

@@ -76,16 +76,15 @@ impl BackupManifest {
     pub fn read(folder: &Path) -> Result<Self> {
         let path = folder.join(FILE);
         let text = std::fs::read(&path).map_err(|error| match error.kind() {
-            std::io::ErrorKind::NotFound => not_a_backup(
-                folder,
-                format!("is no backup, or an unfinished one: it has no {FILE}"),
-            ),
+            std::io::ErrorKind::NotFound => {
+                not_a_backup(folder, format!("is not a complete backup: {FILE} is missing"))
+            }
             // Only a missing manifest means that it is not a backup; other errors are reported as
             // such.
             _ => file_error(&path)(error),
         })?;
         serde_json::from_slice(&text)
-            .map_err(|error| not_a_backup(folder, format!("{FILE} does not read: {error}")))
+            .map_err(|error| not_a_backup(folder, format!("{FILE} cannot be parsed: {error}")))
     }
 
     /// Checks that this program can restore the backup to `url`, and that its files are unchanged.
@@ -93,7 +92,7 @@ impl BackupManifest {
         // A newer schema may have columns that this program does not know.
         if self.format != FORMAT || self.schema > migrate::newest_version() {
             let message = format!(
-                "was made by a newer program ({}, schema {}); restore it with that",
+                "was made by a newer version ({}, schema {}); restore it with that version",
                 self.format, self.schema
             );
             return Err(not_a_backup(folder, message));
@@ -102,7 +101,9 @@ impl BackupManifest {
             let kind = self.database.url_scheme();
             return Err(StoreError::invalid(
                 "database_url",
-                format!("the backup is of another kind of database; must begin with {kind}"),
+                format!(
+                    "the backup is of another kind of database; the URL must begin with {kind}"
+                ),
             ));
         }
         // Every file is read once before anything is restored.

@@ -69,7 +69,7 @@ pub(crate) async fn must_be_empty(objects: &ObjectStorage) -> Result<()> {
         Some(_) => Err(StoreError::conflict(
             "object store",
             "objects",
-            "is not empty; a backup is restored into an empty place",
+            "is not empty; restore the backup to an empty place",
         )),
         None => Ok(()),
     }
@@ -94,7 +94,7 @@ pub(crate) async fn restore_objects(
         true => Ok(()),
         false => Err(not_a_backup(
             folder,
-            format!("has {count} objects, not {expected} as when it was made"),
+            format!("has {count} objects, but had {expected} when it was made"),
         )),
     }
 }

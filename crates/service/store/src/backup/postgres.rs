@@ -108,7 +108,7 @@ pub(crate) async fn must_be_empty(url: &str) -> Result<()> {
         _ => Err(StoreError::conflict(
             "database",
             "postgres",
-            "has tables already; a backup is restored into an empty database",
+            "has tables already; restore the backup to an empty database",
         )),
     }
 }
@@ -126,10 +126,7 @@ pub(crate) async fn restore_database(
     for table in &manifest.tables {
         // The name becomes a part of the statement below; only known names are let in.
         if !TABLES.contains(&table.name.as_str()) {
-            return Err(not_a_backup(
-                folder,
-                format!("has a table `{}` that no schema of ours has", table.name),
-            ));
+            return Err(not_a_backup(folder, format!("has the unknown table `{}`", table.name)));
         }
         let path = folder.join(file_of(table));
         let file = File::open(&path).await.map_err(file_error(&path))?;

@@ -65,7 +65,7 @@ pub(crate) fn must_be_absent(url: &str) -> Result<()> {
         true => Err(StoreError::conflict(
             "database",
             file.display().to_string(),
-            "is there already; a backup is restored into an empty place",
+            "exists already; restore the backup to an empty place",
         )),
         false => Ok(()),
     }

@@ -124,7 +124,7 @@ async fn a_backup_that_is_damaged_is_refused(on: &TestStore) {
     std::fs::remove_file(backup.join("objects").join(&key[..2]).join(&key[2..])).unwrap();
     assert_conflict(
         Store::restore(&backup, &there.url, &ObjectStorage::in_memory()).await,
-        "has 0 objects, not 1",
+        "has 0 objects, but had 1",
     );
     std::fs::remove_file(backup.join("backup.json")).unwrap();
     assert_conflict(
@@ -150,7 +150,7 @@ async fn a_backup_of_another_kind_or_a_newer_program_is_refused(on: &TestStore) 
     std::fs::write(backup.join("backup.json"), serde_json::to_vec(&newer).unwrap()).unwrap();
     assert_conflict(
         Store::restore(&backup, &empty(on).await.url, &ObjectStorage::in_memory()).await,
-        "newer program",
+        "newer version",
     );
 }
 

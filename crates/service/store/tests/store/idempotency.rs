@@ -60,7 +60,7 @@ async fn a_dead_request_is_taken_over(on: &TestStore) {
     assert_eq!(begin(on, "{}").await, RequestClaim::InProgress);
     on.clock.advance(Duration::from_secs(1));
     let alive = ticket(on).await;
-    assert_conflict(finish(on, &dead, 500, "").await, "taken over");
+    assert_conflict(finish(on, &dead, 500, "").await, "handled by another connection");
     on.store.idempotency().abandon_ticket(&dead).await.unwrap();
     finish(on, &alive, 201, "made").await.unwrap();
     assert_eq!(begin(on, "{}").await, RequestClaim::Replay { status: 201, body: "made".into() });
@@ -75,7 +75,10 @@ async fn a_live_request_is_not_taken_over(on: &TestStore) {
     }
     on.clock.advance(TAKE_OVER_AFTER);
     let next = ticket(on).await;
-    assert_conflict(on.store.idempotency().prolong_ticket(&alive).await, "taken over");
+    assert_conflict(
+        on.store.idempotency().prolong_ticket(&alive).await,
+        "handled by another connection",
+    );
     finish(on, &next, 201, "made").await.unwrap();
 }
 
@@ -87,7 +90,7 @@ async fn work_is_kept_with_its_answer(on: &TestStore) {
     let late = on.store.begin_unit();
     late.store().ships().create(&ship("kcs")).await.unwrap();
     assert_eq!(late.store().ships().get("kcs").await.unwrap().revision, 1);
-    assert_conflict(late.commit(Some((&dead, 201, "late"))).await, "taken over");
+    assert_conflict(late.commit(Some((&dead, 201, "late"))).await, "handled by another connection");
     assert_not_found(on.store.ships().get("kcs").await, "ship");
     let work = on.store.begin_unit();
     work.store().ships().create(&ship("kcs")).await.unwrap();

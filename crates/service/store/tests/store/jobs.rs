@@ -101,7 +101,11 @@ async fn a_job_that_ends_its_process_twice_is_set_aside(on: &TestStore) {
     let failed = jobs.get(&poison).await.unwrap();
     assert_eq!((failed.state, failed.attempt, failed.lost_workers), (JobState::Failed, 2, 2));
     let error = failed.error.unwrap();
-    assert!(error.contains("ended its process twice") && error.contains("set aside"), "{error}");
+    assert!(
+        error.contains("the process of the job ended twice")
+            && error.contains("not restarted automatically"),
+        "{error}"
+    );
     assert!(failed.finished_us.is_some());
     let again = jobs.retry(&poison).await.unwrap();
     assert_eq!((again.state, again.lost_workers), (JobState::Queued, 0));

@@ -7,7 +7,7 @@ async fn a_law_never_changes(on: &TestStore) {
     let law = laws.insert("abkowitz", "X: {}\n").await.unwrap();
     assert_eq!(law.sha256, sha256_hex(b"X: {}\n"));
     assert_eq!(laws.insert("abkowitz", "X: {}\n").await.unwrap(), law);
-    assert_conflict(laws.insert("abkowitz", "Y: {}\n").await, "never changes");
+    assert_conflict(laws.insert("abkowitz", "Y: {}\n").await, "cannot be changed");
     assert_eq!(laws.get("abkowitz").await.unwrap().document, "X: {}\n");
     assert_not_found(laws.get("mmg").await, "law");
 }

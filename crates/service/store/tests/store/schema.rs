@@ -107,10 +107,10 @@ async fn many_open_a_new_postgres_database_at_once() {
 
 async fn a_store_with_migrations_of_another_version_is_refused(on: &TestStore) {
     let changes = [
-        ("UPDATE _sqlx_migrations SET version = 99", "has migration 99, unknown here"),
+        ("UPDATE _sqlx_migrations SET version = 99", "has the unknown migration 99"),
         (
             "UPDATE _sqlx_migrations SET version = 1, checksum = substr(checksum, 2)",
-            "has another migration 1",
+            "has a different migration 1",
         ),
     ];
     for (change, reason) in changes {

@@ -37,14 +37,10 @@ impl ArchiveMetrics {
         registry.register("jobs", "Jobs by kind and state", job_gauges(&counts));
         let age = Gauge::<f64, std::sync::atomic::AtomicU64>::default();
         age.set(queue_age_s(&counts, archive.store.now_us()));
-        registry.register(
-            "queue_age_seconds",
-            "How long the oldest job that no worker has taken up has waited",
-            age,
-        );
+        registry.register("queue_age_seconds", "Waiting time of the oldest queued job", age);
         for (name, help, value) in [
-            ("object_store_objects", "Objects in the object store, at most a minute ago", objects),
-            ("object_store_bytes", "Bytes in the object store, at most a minute ago", bytes),
+            ("object_store_objects", "Objects in the object store, updated every minute", objects),
+            ("object_store_bytes", "Bytes in the object store, updated every minute", bytes),
         ] {
             let gauge = Gauge::<i64>::default();
             gauge.set(value);

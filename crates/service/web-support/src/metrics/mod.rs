@@ -56,7 +56,7 @@ impl Default for ServerMetrics {
         let seconds = Family::new_with_constructor(duration_histogram as fn() -> Histogram);
         registry.register(
             "http_request_duration_seconds",
-            "Time until a request was answered",
+            "Duration of requests until the response",
             seconds.clone(),
         );
         Self { registry, requests, seconds, measured: ArchiveMetrics::default() }

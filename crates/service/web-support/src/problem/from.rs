@@ -28,7 +28,7 @@ impl From<StoreError> for Problem {
             StoreError::Forbidden { .. } => Self::new(StatusCode::FORBIDDEN, text),
             StoreError::PreconditionFailed { .. } => Self::new(
                 StatusCode::PRECONDITION_FAILED,
-                format!("{text}; read it again and decide anew"),
+                format!("{text}; read it again and repeat the change if it still applies"),
             ),
             StoreError::Invalid { field, message } => Self::invalid(field, message),
             // The reason is logged only: it may contain statements or addresses.
@@ -36,14 +36,14 @@ impl From<StoreError> for Problem {
                 tracing::error!(reason = %text, "the database failed");
                 Self::new(
                     StatusCode::SERVICE_UNAVAILABLE,
-                    "the database did not carry this out; try again in a moment",
+                    "the database did not complete the request; try again in a moment",
                 )
             }
             StoreError::Objects(error) if error.is_passing() => {
                 tracing::error!(reason = %text, "the object store failed");
                 Self::new(
                     StatusCode::SERVICE_UNAVAILABLE,
-                    "the object store did not carry this out; try again in a moment",
+                    "the object store did not complete the request; try again in a moment",
                 )
             }
             StoreError::Objects(_) | StoreError::File { .. } => Self::internal(text),
@@ -69,8 +69,8 @@ impl From<Vec<Refusal>> for Problem {
     fn from(refusals: Vec<Refusal>) -> Self {
         let names: Vec<&str> = refusals.iter().map(|refusal| refusal.file.as_str()).collect();
         let detail = format!(
-            "nothing was kept, because of {}: see `errors`, mend the files and upload all of them \
-             again",
+            "nothing was stored because of {}: see `errors`, correct the files and upload all of \
+             them again",
             names.join(", ")
         );
         let errors = refusals.iter().flat_map(|refusal| {
@@ -182,17 +182,14 @@ impl From<PathRejection> for Problem {
     fn from(rejection: PathRejection) -> Self {
         // A path that does not match the types of a route names nothing: 404, not 400.
         let PathRejection::FailedToDeserializePathParams(failed) = &rejection else {
-            return Self::not_found(format!(
-                "there is nothing under this path: {}",
-                rejection.body_text()
-            ));
+            return Self::not_found(format!("this path does not exist: {}", rejection.body_text()));
         };
         match failed.kind() {
             ErrorKind::DeserializeError { key, value, message } => {
                 Self::not_found(format!("{key}: there is no `{value}`: it {message}"))
                     .with_fault(Fault::at_field(key, message))
             }
-            other => Self::not_found(format!("there is nothing under this path: {other}")),
+            other => Self::not_found(format!("this path does not exist: {other}")),
         }
     }
 }
@@ -202,7 +199,7 @@ impl From<MultipartError> for Problem {
         match error.status() {
             StatusCode::PAYLOAD_TOO_LARGE => Self::new(
                 StatusCode::PAYLOAD_TOO_LARGE,
-                "the upload is larger than this server takes; send several uploads",
+                "the upload is larger than this server accepts; send several uploads",
             ),
             _ => Self::bad_request(format!("the form cannot be read: {}", error.body_text())),
         }
@@ -214,7 +211,7 @@ impl From<BytesRejection> for Problem {
         match rejection.status() {
             StatusCode::PAYLOAD_TOO_LARGE => Self::new(
                 StatusCode::PAYLOAD_TOO_LARGE,
-                "the body is larger than this endpoint reads; trials go to /v1/trials",
+                "the body is larger than this endpoint accepts; send trials to /v1/trials",
             ),
             status => Self::new(status, rejection.body_text()),
         }
@@ -266,7 +263,7 @@ mod tests {
     fn a_full_disk_is_no_failure_of_the_server() {
         let problem = Problem::from(StoreError::out_of_space());
         assert_eq!((problem.status, problem.kind), (507, "urn:sistership:problem:no-room"));
-        assert!(problem.detail.contains("no room"), "{}", problem.detail);
+        assert!(problem.detail.contains("no free space"), "{}", problem.detail);
     }
 
     /// Failures of each part, and the problems that they become.

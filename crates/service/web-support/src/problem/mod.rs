@@ -52,28 +52,28 @@ pub struct Fault {
 /// Status, URI and title of each kind of problem.
 const KINDS: [(u16, &str, &str); 19] = [
     (400, "urn:sistership:problem:bad-request", "The request cannot be read"),
-    (401, "urn:sistership:problem:unauthorized", "A key, or a sign-in, is needed"),
+    (401, "urn:sistership:problem:unauthorized", "A key or a sign-in is needed"),
     (403, "urn:sistership:problem:forbidden", "The request is not allowed"),
-    (404, "urn:sistership:problem:not-found", "There is no such thing"),
-    (405, "urn:sistership:problem:method-not-allowed", "The method is not possible here"),
-    (406, "urn:sistership:problem:not-acceptable", "None of the accepted forms is available"),
+    (404, "urn:sistership:problem:not-found", "Not found"),
+    (405, "urn:sistership:problem:method-not-allowed", "The method is not supported here"),
+    (406, "urn:sistership:problem:not-acceptable", "None of the accepted formats is available"),
     (408, "urn:sistership:problem:request-timeout", "The request took too long to arrive"),
-    (409, "urn:sistership:problem:conflict", "The request contradicts what is there"),
-    (412, "urn:sistership:problem:stale", "It has changed since it was read"),
+    (409, "urn:sistership:problem:conflict", "The request conflicts with stored data"),
+    (412, "urn:sistership:problem:stale", "The resource has changed since it was read"),
     (413, "urn:sistership:problem:too-large", "The request is too large"),
     (
         415,
         "urn:sistership:problem:unsupported-media-type",
-        "The content type is not one that is read here",
+        "The content type is not supported here",
     ),
     (422, "urn:sistership:problem:invalid", "The content is not valid"),
-    (428, "urn:sistership:problem:precondition-required", "A precondition is needed"),
-    (429, "urn:sistership:problem:too-many-requests", "Too much is asked at a time"),
+    (428, "urn:sistership:problem:precondition-required", "A precondition header is needed"),
+    (429, "urn:sistership:problem:too-many-requests", "Too many requests"),
     (431, "urn:sistership:problem:headers-too-large", "The headers are too large"),
-    (500, "urn:sistership:problem:internal", "The server failed"),
-    (503, "urn:sistership:problem:unavailable", "The server cannot answer at the moment"),
+    (500, "urn:sistership:problem:internal", "Internal error"),
+    (503, "urn:sistership:problem:unavailable", "The server is temporarily unavailable"),
     (504, "urn:sistership:problem:timeout", "The request took too long"),
-    (507, "urn:sistership:problem:no-room", "There is no room to keep it"),
+    (507, "urn:sistership:problem:no-room", "There is no free space"),
 ];
 
 impl Problem {
@@ -127,15 +127,15 @@ impl Problem {
         tracing::error!(%reason, "internal error");
         Self::new(
             StatusCode::INTERNAL_SERVER_ERROR,
-            "the server failed to do this; its log tells why, under the id in `instance`",
+            "an internal error occurred; the server's log has the cause under the id in `instance`",
         )
     }
 
     /// Creates the problem of a full disk; the reason is logged, not answered.
     pub fn no_room(reason: impl std::fmt::Display) -> Self {
         tracing::error!(%reason, "no room");
-        let detail = "there is no room left where the server keeps this; nothing was kept. Reading \
-            goes on; make room and send it again";
+        let detail = "the server has no free space; nothing was stored. Reading is still \
+                      possible; free some space and send the request again";
         Self::new(StatusCode::INSUFFICIENT_STORAGE, detail)
     }
 

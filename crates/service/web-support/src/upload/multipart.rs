@@ -42,14 +42,14 @@ pub(super) async fn receive_form(request: Request, place: &UploadPlace) -> Resul
         (Some(manifest), None) => {
             let manifest = parse_manifest(&manifest).await?;
             if manifest.manifest.ship.is_empty() {
-                let message = "the manifest names no ship; add `ship:`";
+                let message = "the manifest has no ship; add `ship:`";
                 return Err(Problem::invalid("manifest", message));
             }
             parts.match_manifest(manifest)
         }
         (None, Some(ship)) => parts.into_canonical(ship),
         (Some(_), Some(_)) => {
-            Err(Problem::invalid("ship", "the manifest names the ship; leave the part `ship` out"))
+            Err(Problem::invalid("ship", "the manifest has the ship already; omit the part `ship`"))
         }
         (None, None) => Err(Problem::invalid(
             "manifest",
@@ -89,7 +89,7 @@ impl FormParts {
             (_, Some(file_name)) => self.take_file(name, file_name, field, place).await,
             (other, None) => Err(Problem::invalid(
                 other,
-                "is not known here: parts are `manifest`, `ship`, and files with a filename",
+                "is not a part of this form: send `manifest`, `ship`, and files with a filename",
             )),
         }
     }
@@ -136,7 +136,7 @@ impl FormParts {
         match self.files.first() {
             Some(extra) => Err(Problem::invalid(
                 &extra.name,
-                "is not listed under `trials` of the manifest; list it or leave it out",
+                "is not listed under `trials` of the manifest; list it or do not send it",
             )),
             None => Ok(TrialUpload { manifest, diagnose: true, files, places }),
         }
@@ -159,9 +159,9 @@ impl FormParts {
     fn missing_file(&self, field: String, path: &str) -> Problem {
         let sent: Vec<&str> = self.files.iter().map(|part| part.name.as_str()).collect();
         let sent = if sent.is_empty() {
-            "none is left".to_owned()
+            "no unlisted file was sent".to_owned()
         } else {
-            format!("left are {}", sent.join(", "))
+            format!("unlisted files are {}", sent.join(", "))
         };
         let message = format!("the manifest lists `{path}`, but no part has that filename; {sent}");
         Problem::new(StatusCode::UNPROCESSABLE_ENTITY, message.clone())
@@ -184,7 +184,7 @@ impl FormParts {
 
 fn set_once(place: &mut Option<String>, name: &str, text: String) -> Result<()> {
     match place.replace(text) {
-        Some(_) => Err(Problem::invalid(name, "is sent twice")),
+        Some(_) => Err(Problem::invalid(name, "was sent twice; send it once")),
         None => Ok(()),
     }
 }
@@ -197,7 +197,10 @@ async fn read_text(mut field: Field<'_>, place: &UploadPlace) -> Result<String> 
         budget::reserve_for_request(2 * chunk.len() as u64).await?;
         bytes.extend_from_slice(&chunk);
         if bytes.len() > place.yaml_bytes {
-            return Err(Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "the manifest is too large"));
+            return Err(Problem::new(
+                StatusCode::PAYLOAD_TOO_LARGE,
+                "the manifest is too large; send several uploads",
+            ));
         }
     }
     String::from_utf8(bytes)

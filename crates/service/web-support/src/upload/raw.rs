@@ -59,8 +59,8 @@ fn body_problem(error: axum::Error) -> Problem {
     match text.contains("length limit") {
         true => Problem::new(
             StatusCode::PAYLOAD_TOO_LARGE,
-            "the file is larger than this server takes; send it as Parquet, or in parts",
+            "the file is larger than this server accepts; send it as Parquet, or in parts",
         ),
-        false => Problem::bad_request(format!("the body broke off: {text}")),
+        false => Problem::bad_request(format!("the body is incomplete: {text}")),
     }
 }

@@ -74,10 +74,7 @@ pub(super) fn canonical_manifest(ship: String, trials: Vec<ManifestTrial>) -> Re
             ));
         }
         if trial.depth_m.is_some_and(|depth| !(depth > 0.0 && depth.is_finite())) {
-            return Err(Problem::invalid(
-                "depth_m",
-                "must be positive; leave it out for deep water",
-            ));
+            return Err(Problem::invalid("depth_m", "must be positive; omit it for deep water"));
         }
     }
     let (kind, conventions) = (TrialsKind::Trials, TrialConventions::default());

@@ -52,7 +52,7 @@ pub(super) fn blank_with_envelope(
     // Approach and steering gear are properties of the ship, whatever the law.
     (model.speed_m_s, model.revolutions_rps) = (carried.speed_m_s, carried.revolutions_rps);
     model.steering = carried.steering;
-    model.note = Some(format!("regressed on what {} says", source.name));
+    model.note = Some(format!("regressed on the accelerations of {}", source.name));
     Ok((model, envelope))
 }
 

@@ -91,8 +91,8 @@ impl PlaneSource {
     ) -> Option<String> {
         let upright = SourceRegression::new_upright(&self.upright, blocks, model).ok()?;
         Some(format!(
-            "{}; that is of a ship that stays upright, and terms of the heel are held at \
-             zero by their size in the manoeuvres that the prior sails",
+            "{}; the source has no roll: terms with roll have a prior of zero, scaled by their \
+             size in simulated manoeuvres",
             upright.describe_source(blocks, &law.name)
         ))
     }

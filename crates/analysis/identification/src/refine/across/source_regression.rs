@@ -171,14 +171,14 @@ impl<'a> SourceRegression<'a> {
             .join(", ");
         let (source, own) = (&self.envelope.source, &self.envelope.law);
         let at = if self.envelope.at_own_revolutions {
-            ", at its own revolutions, for the trials record none,"
+            ", at its own revolutions because the trials have none,"
         } else {
             ""
         };
         let words = format!(
-            "the source `{source}` is of law `{own}`: what it says in {samples} states of the \
-             trials and of its standard manoeuvres{at} is the prior; law `{law}` leaves {left} of \
-             the mean square of those accelerations unsaid"
+            "the source `{source}` has the law `{own}`: its accelerations in {samples} states of \
+             the trials and of its standard manoeuvres{at} are the prior; law `{law}` does not \
+             represent {left} of their mean square"
         );
         [words].into_iter().chain(self.envelope.mixed.clone()).collect::<Vec<_>>().join("; ")
     }

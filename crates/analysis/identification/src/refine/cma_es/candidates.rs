@@ -121,7 +121,9 @@ impl<'a> VariantSearch<'a> {
         )?;
         if segments.is_empty() {
             return Err(RefineError::Data(
-                "no trial is as long as a third of a subsequence".into(),
+                "all trials are shorter than a third of a subsequence; give longer trials or a \
+                 shorter subsequence"
+                    .into(),
             ));
         }
         // The ship is needed for its physical range only.
@@ -178,7 +180,7 @@ impl<'a> VariantSearch<'a> {
         for fold in 0..self.problem.fold_count() {
             told(
                 0.7 + 0.3 * fold as f64 / self.problem.fold_count() as f64,
-                "the search without the trials of each fold",
+                "searching without the trials of each fold",
             )?;
             let again = self.search_fold(fold, &outcome, budget, told)?;
             fold_evaluations += again.spent.evaluations;
@@ -222,7 +224,7 @@ impl<'a> VariantSearch<'a> {
             search.seed,
         );
         let mut tell =
-            |_: &SearchState<'_>| told(0.7, "the search without the trials of each fold").is_ok();
+            |_: &SearchState<'_>| told(0.7, "searching without the trials of each fold").is_ok();
         search
             .search_from(first, &cost, &mut tell)
             .map_err(|SearchCancelled| RefineError::Cancelled)
@@ -331,9 +333,10 @@ fn comparison_plan(
         let missing = [Channel::U, Channel::V, Channel::R]
             .into_iter()
             .find(|channel| !problem.deviations.contains_key(channel));
-        let message = missing.map_or("a velocity never changes".to_owned(), |channel| {
-            format!("no trial has `{channel}`")
-        });
+        let message = missing
+            .map_or("a velocity is constant in all trials".to_owned(), |channel| {
+                format!("no trial has `{channel}`")
+            });
         return Err(RefineError::Data(message));
     }
     let stride = (cutting.residual_s / cutting.step_s).round().max(1.0) as usize;

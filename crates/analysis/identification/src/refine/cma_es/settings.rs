@@ -73,7 +73,7 @@ impl Default for CmaEs {
 /// The error type for settings of the search that are refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(in super::super) enum CmaEsError {
-    #[error("population must be from 4 to 100000, largest_population not less")]
+    #[error("population must be from 4 to 100000, and largest_population at least as large")]
     Population,
     #[error("evaluations, wall_s and cpu_s must be above 0")]
     Budget,

@@ -63,7 +63,7 @@ fn a_search_recovers_what_is_known_and_is_the_same_again() {
         "{report:?}"
     );
     let taken = first.options.iter().find(|option| option.chosen).unwrap();
-    assert_eq!(taken.step, "cma-es, own terms");
+    assert_eq!(taken.step, "cma-es, all terms of the law");
     for (name, factor) in CHANGED {
         let change = first.coefficients.iter().find(|change| change.name == name).unwrap();
         let wanted = change.source * factor;

@@ -57,7 +57,7 @@ fn by_range(
     let ranges = &problem.settings.ranges;
     let allowed = if problem.training.len() == 1 { 1 } else { ranges.len() };
     for (index, range) in ranges.iter().take(allowed).enumerate() {
-        let what = format!("lambda from {:.0e}: simulating manoeuvres left out", range.lambda_min);
+        let what = format!("lambda from {:.0e}: simulating held-out manoeuvres", range.lambda_min);
         told(index as f64 / allowed as f64, &what)?;
         let choices = tune_choices(folds, range, problem.settings.lambda_count)?;
         let name = ((index + 1).to_string(), range.lambda_min);

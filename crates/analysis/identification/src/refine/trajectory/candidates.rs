@@ -60,7 +60,7 @@ pub(super) fn add_from_weak_form(
     let Some((index, choices)) = start.solution.ridge_choices() else { return Ok(()) };
     let (index, choices, error) = (index, choices.clone(), start.option.error);
     let variant = &variants[index];
-    report_progress(progress, 0.6, "trajectories from the weak form")?;
+    report_progress(progress, 0.6, "fitting trajectories, starting from the weak form")?;
     let cutting = segment_lengths(problem);
     let model = variant.model_at(&weak_form(variant, &choices, &|_| true)?.1);
     let system = SensitiveSystem::new(&model, problem.law)?;
@@ -111,8 +111,9 @@ fn weak_form(
     choices: &RidgeChoices,
     keep: &dyn Fn(usize) -> bool,
 ) -> Result<(Vec<RegressionMoments>, BTreeMap<String, f64>), RefineError> {
-    let moments = merge_trials(&variant.moments, keep)
-        .ok_or_else(|| RefineError::Data("a fold has no sample".into()))?;
+    let moments = merge_trials(&variant.moments, keep).ok_or_else(|| {
+        RefineError::Data("a fold has no samples; give more or longer trials".into())
+    })?;
     let solved = RegressionFold::new(&variant.blocks, &variant.model, &moments, &[]).solve(choices);
     Ok((moments, solved.into_iter().map(|(name, fitted)| (name, fitted.value)).collect()))
 }
@@ -141,7 +142,7 @@ impl TrajectoryDescent<'_> {
             let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
             report_progress(progress, 0.7, &label)?;
             reached = self.descend(&prior, pull, reached)?;
-            report_progress(progress, 0.7, &format!("{label}: simulating manoeuvres left out"))?;
+            report_progress(progress, 0.7, &format!("{label}: simulating held-out manoeuvres"))?;
             let models: Vec<Model> = priors
                 .par_iter()
                 .enumerate()

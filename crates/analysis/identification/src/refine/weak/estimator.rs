@@ -81,7 +81,7 @@ fn by_strength(
     let roll = problem.settings.roll_strength.unwrap_or(1.0);
     for (k, &lambda) in strengths.iter().take(allowed).enumerate() {
         let name = format!("{}, lambda {lambda:.0e}", at.1.family.name());
-        told(k as f64 / allowed as f64, &format!("{name}: simulating manoeuvres left out"))?;
+        told(k as f64 / allowed as f64, &format!("{name}: simulating held-out manoeuvres"))?;
         let choices = at.1.common_choices(lambda, roll)?;
         candidates.push(ridge_candidate(problem, (name, lambda), at, choices, folds)?);
     }

@@ -77,7 +77,7 @@ fn pull_out_rows(one: &PullOutMetrics) -> Vec<TableRow> {
     vec![
         TableRow::heading_row(&title),
         figure_row("yaw rate in the turn", "deg/s", Some(one.turning_rate_deg_s)),
-        figure_row("yaw rate left amidships", "deg/s", one.residual_rate_deg_s),
+        figure_row("residual yaw rate amidships", "deg/s", one.residual_rate_deg_s),
     ]
 }
 
@@ -86,12 +86,12 @@ fn spiral_rows(one: &SpiralMetrics) -> Vec<TableRow> {
     vec![
         TableRow::heading_row("spirals"),
         limited_row(
-            "width of the loop",
+            "loop width",
             "deg of rudder",
             Some(width),
             one.width_limit_deg,
             Some(width <= one.width_limit_deg),
         ),
-        figure_row("height of the loop", "deg/s", Some(one.loop_height_deg_s)),
+        figure_row("loop height", "deg/s", Some(one.loop_height_deg_s)),
     ]
 }

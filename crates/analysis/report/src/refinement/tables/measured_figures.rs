@@ -12,8 +12,8 @@ pub(crate) fn measured_table(figures: &[MeasuredFigure]) -> ReportTable {
         TableColumn::number_column("measured", ""),
         TableColumn::number_column("source", ""),
         TableColumn::number_column("refined", ""),
-        TableColumn::number_column("source off by", "%"),
-        TableColumn::number_column("refined off by", "%"),
+        TableColumn::number_column("error of source", "%"),
+        TableColumn::number_column("error of refined", "%"),
     ];
     let mut rows = Vec::new();
     let mut last = "";

@@ -56,26 +56,27 @@ fn quantity_row(stated: &StatedQuantity<'_>, remarked: bool) -> TableRow {
 /// these.
 const MEANINGS: [(&str, &str); 13] = [
     ("method", "the estimator"),
-    ("ranges", "tuning ranges, from the source outwards"),
-    ("lambda_count", "values of λ tried in a range"),
-    ("difference_s", "time over which accelerations are differenced, s"),
+    ("ranges", "tuning ranges, by increasing distance from the source"),
+    ("lambda_count", "values of λ compared in a range"),
+    ("difference_s", "interval of the finite differences for accelerations, s"),
     (
         "restart_s",
-        "simulations of manoeuvres left out start anew from the measured state every so often, s",
+        "interval after which simulations of held-out manoeuvres restart from the measured state, \
+         s",
     ),
     (
         "longer_restarts_s",
-        "longer such intervals, s: errors are the geometric mean over all of them",
+        "further, longer intervals of this kind, s: errors are the geometric mean over all of them",
     ),
     (
         "smoothing_s",
-        "motions with which these simulations are compared are smoothed over so long, s",
+        "smoothing interval of the measured motions with which these simulations are compared, s",
     ),
-    ("part_s", "where manoeuvres are left out part by part, how long a part is, s"),
-    ("folds", "most groups of manoeuvres that are left out in turn"),
-    ("hold_out_parts", "manoeuvres are left out part by part"),
-    ("roll_strength", "how much stronger than the likeliest the prior of roll is"),
-    ("held_out", "trials kept out of fit and choice altogether"),
+    ("part_s", "length of a part, if parts of manoeuvres are held out, s"),
+    ("folds", "largest number of folds of the cross-validation"),
+    ("hold_out_parts", "parts of manoeuvres, not whole ones, are held out"),
+    ("roll_strength", "factor on the most probable strength of the prior of roll"),
+    ("held_out", "trials held out of fit and selection"),
     ("algorithm_revision", "revision of the algorithm"),
 ];
 
@@ -111,5 +112,10 @@ fn ranges_text(ranges: &[TuningRange]) -> String {
     let least = |range: Option<&TuningRange>| {
         format_known(range.map(|range| range.lambda_min), |value| numbers::format_stated(value, 2))
     };
-    format!("{}, least λ from {} to {}", ranges.len(), least(ranges.first()), least(ranges.last()))
+    format!(
+        "{}, smallest λ from {} to {}",
+        ranges.len(),
+        least(ranges.first()),
+        least(ranges.last())
+    )
 }

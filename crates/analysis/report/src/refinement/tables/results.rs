@@ -52,7 +52,7 @@ pub(crate) fn option_table(options: &StepOptions<'_>) -> ReportTable {
     ];
     columns.extend(each("λ").into_iter().chain(each("α")));
     columns.extend([
-        TableColumn::number_column("error", "left out"),
+        TableColumn::number_column("error", "held-out"),
         TableColumn::prose_column("outcome"),
     ]);
     let width = options.accelerations.len();
@@ -64,7 +64,7 @@ pub(crate) fn option_table(options: &StepOptions<'_>) -> ReportTable {
 
 fn option_row(step: &StepOption, width: usize) -> TableRow {
     let name = if step.step == "source" {
-        "source as it is".to_owned()
+        "source unchanged".to_owned()
     } else {
         format!("range {}", step.step)
     };
@@ -84,7 +84,7 @@ fn option_row(step: &StepOption, width: usize) -> TableRow {
     cells.push(match (&step.reason, step.chosen) {
         (_, true) => TableCell::new("").with_mark("✓ chosen", "chosen"),
         (Some(reason), _) => TableCell::new(reason).with_mark("✗ refused", "bad"),
-        (None, _) => TableCell::new("not taken"),
+        (None, _) => TableCell::new("not selected"),
     });
     TableRow::from_cells(cells).with_highlight(step.chosen)
 }
@@ -187,7 +187,7 @@ pub(crate) fn criteria_table(comparison: &ManoeuvreComparison<'_>) -> ReportTabl
         TableColumn::number_column("refined", ""),
         TableColumn::text_column("", ""),
         TableColumn::number_column("95 % band", ""),
-        TableColumn::number_column("met by", "% of draws"),
+        TableColumn::number_column("met in", "% of draws"),
     ];
     ReportTable { columns, rows: comparison.imo.iter().map(imo_row).collect() }
 }

@@ -57,7 +57,7 @@ fn an_effect_that_is_not_there_is_named() {
     let fault = |uses: &str| {
         vectwin(1, &format!("effects: [{uses}]\n")).count_unknowns(&zoo).unwrap_err().1
     };
-    assert!(fault("{ effect: wnd, form: measured }").contains("there are current"));
+    assert!(fault("{ effect: wnd, form: measured }").contains("choose one of current"));
     assert!(
         fault("{ effect: wind, form: guessed }").contains("it has measured, unrecorded, constant")
     );

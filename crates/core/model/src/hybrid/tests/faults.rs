@@ -26,18 +26,18 @@ fn the_fault_is_named_with_its_place() {
         (
             "n: { kind: propeller }",
             "u: { kind: propeller }",
-            "bad.yaml:6: actuators.u: `u` means something else",
+            "bad.yaml:6: actuators.u: `u` has another meaning",
         ),
         (
             "n: { kind: propeller }",
             "draught_m: { kind: propeller }",
-            "means something else in formulas",
+            "has another meaning in formulas",
         ),
         ("n: { kind: propeller }", "2n: { kind: propeller }", "letters, digits and underscores"),
         (
             "n: { kind: propeller }",
             "n: { kind: sail }",
-            "actuators.n.kind: is `sail`; there are `propeller`",
+            "actuators.n.kind: is `sail`, but should be one of `propeller`",
         ),
         (
             "n: { kind: propeller }",
@@ -47,23 +47,23 @@ fn the_fault_is_named_with_its_place() {
         (
             "n: { kind: propeller }",
             "n: { kind: propeller, stall_deg: 30 }",
-            "actuators.n.stall_deg: only rudders stall",
+            "actuators.n.stall_deg: only rudders can stall",
         ),
         (
             "stall_deg: 35",
             "stall_deg: 200",
             "actuators.delta.stall_deg: must be above 0 and below 180 deg",
         ),
-        (", stall_deg: 35", "", "submodels: this scheme tells rudders by their stall"),
+        (", stall_deg: 35", "", "submodels: this scheme distinguishes rudders by their stall"),
         ("couples: none", "pair: true", "actuators.bow.pair"),
-        ("axes: [Y, N]", "axes: [K]", "actuators.bow.axes: give some of X, Y and N"),
+        ("axes: [Y, N]", "axes: [K]", "actuators.bow.axes: give at least one of X, Y and N"),
         ("axes: [Y, N]", "axes: []", "actuators.bow.axes"),
         ("symmetry: parity", "symmetry: mirror, zeroth_powers: true", "rules.zeroth_powers"),
         ("symmetry: parity", "symmetry: mirror, squares: as_printed", "rules.squares"),
         (
             "symmetry: parity",
             "trigonometric_exceptions: [{ factor: cosgamma, axes: [Y] }]",
-            "there are sindelta, cosdelta",
+            "choose one of sindelta, cosdelta",
         ),
         (
             "ahead_stalled_astern",

@@ -15,8 +15,8 @@ use values::{fitting, unfit};
 const RULES: [&str; 7] = [
     "there is no",
     "has no trials",
-    "nothing yet",
-    "keeps its name",
+    "has no prior yet",
+    "the name of a ship cannot be changed",
     "give either",
     "is beyond the rudder's limit",
     "has no posterior to draw from",

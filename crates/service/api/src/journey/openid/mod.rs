@@ -26,7 +26,7 @@ async fn who_is_linked_gets_in(database: TestDatabase) {
         "{page}"
     );
     let refused = browser.signs_in(&on, &hostile).await;
-    assert!(refused.text.contains("no account here is yours yet"), "{}", refused.text);
+    assert!(refused.text.contains("no account here is linked with it"), "{}", refused.text);
     assert_eq!(browser.looks(&on, "/v1/me").await.status, StatusCode::UNAUTHORIZED);
     let (action, actor, after) = on.audited(1).await.remove(0);
     assert_eq!((action.as_str(), actor.as_str()), ("session.refuse", "openid"));
@@ -89,7 +89,7 @@ async fn accounts_are_created_where_that_is_set(database: TestDatabase) {
     on.user("ann", "admin").await;
     let mut browser = Browser::default();
     let taken = browser.signs_in(&on, &hostile).await;
-    assert!(taken.text.contains("already that is not linked"), "{}", taken.text);
+    assert!(taken.text.contains("exists but is not linked"), "{}", taken.text);
     claims(&hostile, json!({ "preferred_username": "Bob.Yard", "name": "Bob of the yard" }));
     let done = browser.signs_in(&on, &hostile).await;
     assert_eq!(done.status, StatusCode::SEE_OTHER, "{}", done.text);
@@ -104,7 +104,7 @@ async fn accounts_are_created_where_that_is_set(database: TestDatabase) {
     // The same name for another subject is not linked yet.
     claims(&hostile, json!({ "sub": "1-of-9", "preferred_username": "bob.yard" }));
     let other = Browser::default().signs_in(&on, &hostile).await;
-    assert!(other.text.contains("already that is not linked"), "{}", other.text);
+    assert!(other.text.contains("exists but is not linked"), "{}", other.text);
     claims(&hostile, json!({ "sub": "2-of-9", "preferred_username": "A <b>bold</b> name" }));
     let unnamed = Browser::default().signs_in(&on, &hostile).await;
     assert!(
@@ -227,7 +227,7 @@ async fn failures_are_told_and_local_accounts_go_on(database: TestDatabase) {
     let (_, rest) = back.split_once('&').unwrap();
     let denied =
         browser.looks(&on, &format!("/sign-in/oidc/callback?error=access_denied&{rest}")).await;
-    assert!(denied.text.contains("not let through"), "{}", denied.text);
+    assert!(denied.text.contains("has denied access"), "{}", denied.text);
     let expired = browser.looks(&on, &back).await;
     assert!(expired.text.contains("has expired") && expired.text.contains("Sign in with The yard"));
     let twice = browser.looks(&on, "/sign-in/oidc/callback?state=a&state=b").await;

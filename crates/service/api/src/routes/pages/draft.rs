@@ -52,7 +52,7 @@ pub(super) async fn receive_files(
         let name = plain_name(field.file_name().unwrap_or_default())?;
         if files.len() >= app.limits().upload_files || files.iter().any(|(known, _)| *known == name)
         {
-            return Err(Problem::invalid(&name, "is there twice, or one file too many"));
+            return Err(Problem::invalid(&name, "is listed twice, or there are too many files"));
         }
         let SpooledFile { path, sha256 } = spool_stream(app.spool(), field).await?;
         path.persist(folder.path().join(&name)).map_err(|error| write_problem(error.error))?;
@@ -70,7 +70,7 @@ fn plain_name(path: &str) -> Result<String> {
     let plain = !name.is_empty() && name.len() <= 200 && !name.starts_with('.');
     match plain && !name.chars().any(char::is_control) {
         true => Ok(name.to_owned()),
-        false => Err(Problem::invalid("file", "choose files with a name of 1 to 200 bytes")),
+        false => Err(Problem::invalid("file", "choose files with names of 1 to 200 bytes")),
     }
 }
 
@@ -85,7 +85,7 @@ async fn propose_draft(
     let look =
         move || propose_manifest(&owner, &paths.iter().map(AsRef::as_ref).collect::<Vec<&Path>>());
     let proposal = app.run_blocking(look).await?.map_err(|errors| {
-        let why = "a file cannot be read; see below";
+        let why = "a file cannot be read; see its errors below";
         let problem = Problem::new(axum::http::StatusCode::UNPROCESSABLE_ENTITY, why);
         errors.into_iter().fold(problem, |problem, error| {
             let name = error.file.rsplit('/').next().unwrap_or_default().to_owned();
@@ -119,7 +119,7 @@ fn draft_upload(draft: &UploadDraft, app: &App) -> Result<TrialUpload> {
 
 fn find_draft(app: &App, ship: &str, id: &str) -> Result<Arc<UploadDraft>> {
     app.drafts().get(ship, id).ok_or_else(|| {
-        Problem::not_found("the upload has waited too long, or was kept; choose the files again")
+        Problem::not_found("this upload has expired or was stored already; choose the files again")
     })
 }
 

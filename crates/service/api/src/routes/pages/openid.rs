@@ -60,7 +60,10 @@ pub(super) async fn link_account(
 ) -> Result<Response> {
     let RequestActor { principal, .. } = current_caller()?;
     if !matches!(principal.kind, AuthenticationKind::Session { .. }) {
-        return Err(Problem::invalid("identity", "only who has signed in has an account to link"));
+        return Err(Problem::invalid(
+            "identity",
+            "sign in first, so that there is an account to link",
+        ));
     }
     let purpose = SignInPurpose::Link(principal.name.clone());
     let begun = app.accounts().begin_at_provider(purpose, "/account").await?;

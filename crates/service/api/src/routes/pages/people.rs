@@ -39,7 +39,7 @@ pub(super) async fn sign_in_form(
 pub(super) async fn sign_in_user(State(app): State<App>, request: Request) -> Result<Response> {
     let addressed = host::request_authority(&request)?;
     if !host::is_same_origin(request.headers(), addressed.as_ref())? {
-        let why = "sign in on the page of this server; the browser says that another site asks";
+        let why = "sign in on the page of this server; the request comes from another web site";
         return Err(Problem::new(StatusCode::FORBIDDEN, why));
     }
     let from = origin_of(request.extensions());
@@ -90,7 +90,8 @@ pub(super) async fn sign_out(State(app): State<App>, PageForm(_): PageForm) -> R
 }
 
 pub(super) fn current_caller() -> Result<RequestActor> {
-    current_actor().ok_or_else(|| Problem::internal("nobody is named who asks"))
+    current_actor()
+        .ok_or_else(|| Problem::internal("the request has no user or key; sign in, or send a key"))
 }
 
 pub(super) async fn account_page(
@@ -100,7 +101,7 @@ pub(super) async fn account_page(
     let principal = Arc::clone(&current_caller()?.principal);
     let roles = principal.rights.grants().iter().map(ToString::to_string).collect();
     let notice = match FormFields::from(query).get_text("done") {
-        Some("password") => Some("The password is changed; sign in again wherever else you were."),
+        Some("password") => Some("The password is changed; sign in again on your other devices."),
         Some("link") => Some("Your account is linked."),
         _ => None,
     };
@@ -124,13 +125,16 @@ pub(super) async fn change_password(
 ) -> Result<Response> {
     let RequestActor { principal, origin } = current_caller()?;
     if !matches!(principal.kind, AuthenticationKind::Session { .. }) {
-        return Err(Problem::invalid("old", "only who has signed in has a password"));
+        return Err(Problem::invalid(
+            "old",
+            "sign in first; a key or this machine has no password",
+        ));
     }
     let (old, new) = (form.required_text("old")?, form.required_text("new")?);
     // A session alone must not be enough to change the password.
     app.accounts().verify_password_of(&principal.name, old, &origin).await.map_err(|problem| {
         match problem.status() {
-            StatusCode::UNAUTHORIZED => Problem::invalid("old", "is not your password"),
+            StatusCode::UNAUTHORIZED => Problem::invalid("old", "is not your present password"),
             _ => problem,
         }
     })?;

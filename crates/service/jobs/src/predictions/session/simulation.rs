@@ -144,8 +144,8 @@ fn unknown_input(name: &str, known: &[&str]) -> PredictionError {
     let others: Vec<&str> =
         known.iter().copied().filter(|name| !SEPARATE_INPUTS.contains(name)).collect();
     let message = match others.as_slice() {
-        [] => "is no input of the law, which takes rudder and revolutions alone".to_owned(),
-        others => format!("is no input of the law; others than those are {}", others.join(", ")),
+        [] => "is not an input of the law, whose only inputs are rudder and revolutions".to_owned(),
+        others => format!("is not an input of the law; its other inputs are {}", others.join(", ")),
     };
     PredictionError::invalid_field(&format!("orders.inputs.{name}"), message)
 }

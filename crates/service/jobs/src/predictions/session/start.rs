@@ -27,8 +27,12 @@ impl PredictionSession {
         ];
         for (name, parts) in named {
             let Some(parts) = parts else { continue };
-            let none =
-                || PredictionError::invalid_field(name, "the library has no steady form of it");
+            let none = || {
+                PredictionError::invalid_field(
+                    name,
+                    "the library of effects has no steady form of it",
+                )
+            };
             model.effects.push(steady_effect(name, parts, "session").ok_or_else(none)?);
         }
         let ship = Ship::new(&model, law).map_err(model_error)?;
@@ -79,8 +83,8 @@ impl SessionRequest {
         let none = || {
             PredictionError::invalid_field(
                 "draws",
-                "the model has no posterior to draw from; only a refined one whose coefficients \
-                 are those that were estimated has one",
+                "the model has no posterior to draw from; only a refined model with unchanged \
+                 coefficients has one",
             )
         };
         let drawn = draw_from_posterior(model, Sampling { samples, seed });
