@@ -160,7 +160,10 @@ async fn what_is_left_is_cancelled_and_goes_on(on: &TestStore) {
     );
     let word = champion(ExpectedRevision::Any);
     on.store.bulks().promote_candidate(&id, "b", 1, &word).await.unwrap();
-    assert_conflict(on.store.bulks().promote_candidate(&id, "b", 1, &word).await, "not a candidate");
+    assert_conflict(
+        on.store.bulks().promote_candidate(&id, "b", 1, &word).await,
+        "not a candidate",
+    );
     let counts = on.store.bulks().count_outcomes(&id).await.unwrap();
     assert_eq!(
         counts.into_iter().map(|c| (c.outcome, c.ships)).collect::<Vec<_>>(),
