@@ -112,6 +112,9 @@ mod tests {
         let filled = one.values.iter().map(|values| values[1]).fold(0.0, f64::max);
         assert!((filled - 6.2 - 0.5 * (std::f64::consts::TAU - 6.1)).abs() < 1e-12, "{filled}");
         let text = finding_messages(findings);
-        assert!(text.contains("1 gaps of at most 4 s") && text.contains("12 rows lie"), "{text}");
+        assert!(
+            text.contains("1 gaps of at most 4 s") && text.contains("12 rows are in longer gaps"),
+            "{text}"
+        );
     }
 }

@@ -128,7 +128,7 @@ fn a_page_says_what_a_reader_asks() {
     let places: Vec<usize> =
         ids.iter().map(|id| html.find(&format!("<section id=\"{id}\"")).unwrap()).collect();
     assert!(places.is_sorted());
-    assert!(html.contains(&"ab".repeat(32)) && html.contains("carried over from mariner/abkowitz"));
+    assert!(html.contains(&"ab".repeat(32)) && html.contains("transferred from mariner/abkowitz"));
     assert_eq!(html.matches("class=\"plot\"").count(), 2 * 2 + 3);
     assert_eq!(json["headline"]["version"]["number"], 7);
     assert_eq!(json["coefficients"]["axes"][0]["axis"], "X");

@@ -169,7 +169,7 @@ mod tests {
             refused("kind: hybrid", "kind: law")
                 .contains("is of `kind: law`; a declaration is of `kind: hybrid`")
         );
-        assert!(refused("kind: hybrid\n", "").contains("is no declaration"));
+        assert!(refused("kind: hybrid\n", "").contains("is not a declaration"));
         assert!(!folder.path().join("law.yaml").exists());
     }
 }

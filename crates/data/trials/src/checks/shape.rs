@@ -90,7 +90,7 @@ mod tests {
         let text = check_messages(&turn, check_shape);
         assert!(
             text.contains("Some(\"n_rps\") constant at 2.0000 rps")
-                && text.contains("57 deg of heading"),
+                && text.contains("heading changes by 57 deg"),
             "{text}"
         );
         assert!(!text.contains("depth"));

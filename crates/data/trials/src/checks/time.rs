@@ -63,8 +63,8 @@ mod tests {
         let text = check_messages(&at(&[0.0, 1.0, 1.0, 0.5]), |recording, findings| {
             assert!(!in_order(recording, findings))
         });
-        assert!(text.contains("error Some(4) Some(\"t_s\") time 1 s stands twice"), "{text}");
-        assert!(text.contains("error Some(5)") && text.contains("back from 1 s to 0.5 s"));
+        assert!(text.contains("error Some(4) Some(\"t_s\") time 1 s appears twice"), "{text}");
+        assert!(text.contains("error Some(5)") && text.contains("decreases from 1 s to 0.5 s"));
     }
 
     #[test]

@@ -48,5 +48,5 @@ fn a_drift_is_a_remark() {
     let mut channels = zigzag_channels();
     channels[0].1.iter_mut().enumerate().for_each(|(k, x)| *x += 0.3 * k as f64);
     let text = check_messages(&test_recording(&channels), check_track);
-    assert!(text.starts_with("warning") && text.contains("drift 0.60"), "{text}");
+    assert!(text.starts_with("warning") && text.contains("drift by 0.60"), "{text}");
 }

@@ -80,7 +80,7 @@ fn the_fault_is_named_with_its_place() {
             "{ port: { when: [v < 0], meaning: drifting } }",
             "submodels.port: breaks the port/starboard",
         ),
-        ("actuators:", "actors:", "actors: is no field"),
+        ("actuators:", "actors:", "actors: is not a field"),
     ];
     for (from, to, message) in cases {
         let error = refused(from, to);
