@@ -56,6 +56,7 @@ pub const MODEL: &[ModelCommand] = &[
 /// Commands that take no model file, and where they are run instead or what they take.
 pub const ELSEWHERE: &[(&str, &str)] = &[
     ("similar", "takes a ship"),
+    ("init", "takes particulars"),
     ("check", "takes trials"),
     ("import", "takes trials, or a bundle: `served`"),
     ("derive", "takes actuators"),

@@ -6,8 +6,8 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{backup, family, fsck, gc, keys, serve, ships, users, verify, work, zoo};
 use crate::commands::{
-    branch, check, compare, derive, diagnose, estimate, export, import, manoeuvre, plan, predict,
-    refine, similar, simulate, validate,
+    branch, check, compare, derive, diagnose, estimate, export, import, init, manoeuvre, plan,
+    predict, refine, similar, simulate, validate,
 };
 use crate::demo::DemoArguments;
 
@@ -18,6 +18,7 @@ psi_rad, u_m_s, v_m_s, r_rad_s, delta_rad, n_rps, ...; other unit suffixes such 
 are converted).
 
 Examples:
+  sistership init my-ship --category dry-cargo lpp_m=80 beam_m=13 draught_m=5
   sistership import log/*.csv --ship my-ship
   sistership similar kvlcc2
   sistership check trials.yaml
@@ -52,6 +53,8 @@ pub struct Arguments {
 pub enum Command {
     /// Rank the ships of the zoo by similarity to a ship.
     Similar(similar::SimilarArguments),
+    /// Write the file of a ship with its particulars.
+    Init(init::InitArguments),
     /// Check trial files: units, signs, gaps, jumps, time.
     Check(check::CheckArguments),
     /// Identify the columns of trial files and write a manifest that reads them.

@@ -50,6 +50,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
     let zoo = || zoo::load_zoo(&arguments.zoo);
     match &arguments.command {
         Command::Similar(similar) => commands::similar::run(&zoo()?, similar),
+        Command::Init(init) => commands::init::run(init),
         Command::Check(check) => commands::check::run(check),
         Command::Import(import) => commands::import::run(&zoo()?, import),
         Command::Refine(refine) => commands::refine::run(&zoo()?, refine),

@@ -21,6 +21,7 @@ mod import_bundle;
 mod import_log;
 mod import_outcome;
 mod import_text;
+pub mod init;
 pub mod keys;
 mod log;
 mod log_format;
