@@ -11,7 +11,7 @@ use sistership_model::{FileError, Model, Vessel, Zoo};
 
 use crate::similarity::{
     CharacteristicVector, EligibilityLimits, ModelHead, RankedSource, SourceCandidate,
-    VectorDefinition, rank_candidates,
+    VectorDefinition, component_particular, rank_candidates,
 };
 use crate::transfer::{transfer_model, trial_approach};
 use crate::trend::{TrendError, trend_correlation};
@@ -33,6 +33,14 @@ pub struct SimilarityRanking {
 }
 
 impl SimilarityRanking {
+    /// Returns the particulars that give components which the target's vector lacks.
+    pub fn missing_particulars(&self) -> Vec<&'static str> {
+        let vector =
+            CharacteristicVector { definition: self.definition, values: self.vector.clone() };
+        let missing = vector.missing_components();
+        missing.into_iter().filter_map(component_particular).collect()
+    }
+
     /// Ships that pass every step, most similar first.
     pub fn eligible_sources(&self) -> impl Iterator<Item = &RankedSource> {
         self.ranking.iter().filter(|ranked| ranked.eligible)
@@ -205,6 +213,18 @@ fn unknown_category(category: &str) -> String {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+
+    #[test]
+    fn a_ship_of_few_particulars_has_no_correlation_and_is_told_which_to_add() {
+        let text = "kind: vessel\nname: few\ntitle: Few\ncategory: dry-cargo\nsources: { a: { \
+                    citation: A } }\nparticulars: { source: a, values: { lpp_m: 80, beam_m: 13, \
+                    draught_m: 5 } }\n";
+        let vessel = Vessel::parse("few.yaml", text).unwrap();
+        let ranking = rank_similar(&Zoo::load_embedded().unwrap(), &vessel, None, &[]);
+        assert!(ranking.ranking.iter().all(|ship| ship.correlation.is_none()));
+        let added = "block_coefficient, displacement_m3, rudder_area_m2, propeller_diameter_m";
+        assert_eq!(ranking.missing_particulars().join(", "), added);
+    }
 
     #[test]
     fn revolutions_that_no_trial_records_are_the_source_s_own() {

@@ -161,6 +161,19 @@ impl NormalisedComponents {
     }
 }
 
+/// Returns the particular that gives a component, besides length and draught.
+pub fn component_particular(component: &str) -> Option<&'static str> {
+    match component {
+        "C_b" => Some("block_coefficient"),
+        "L/B" | "B/T" => Some("beam_m"),
+        "L/V0" => Some("service_speed_m_s"),
+        "L/volume^(1/3)" => Some("displacement_m3"),
+        "Ar/(LT)" => Some("rudder_area_m2"),
+        "Dp/T" => Some("propeller_diameter_m"),
+        _ => None,
+    }
+}
+
 fn vector_component(vessel: &Vessel, name: &str) -> Option<f64> {
     let of = |name: &str| vessel.particular(name);
     let (l, b, t) = (of("lpp_m"), of("beam_m"), of("draught_m"));

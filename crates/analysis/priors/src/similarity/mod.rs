@@ -3,7 +3,9 @@
 mod characteristic;
 mod eligibility;
 
-pub use characteristic::{CharacteristicVector, NormalisedComponents, VectorDefinition};
+pub use characteristic::{
+    CharacteristicVector, NormalisedComponents, VectorDefinition, component_particular,
+};
 pub use eligibility::{
     Eligibility, EligibilityLimits, ModelHead, RankedSource, SourceCandidate, TrendMeasure,
     rank_candidates,

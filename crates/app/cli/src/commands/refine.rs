@@ -222,7 +222,8 @@ pub fn run(zoo: &Zoo, arguments: &RefineArguments) -> Result<(), Failure> {
     };
     output::print_result(arguments.json, &document, || {
         let tried = ladder.map_or(String::new(), refine_text::format_selection_report);
-        let text = refine_text::format_refinement(&refinement, &source, ranking, &files);
+        let text =
+            refine_text::format_refinement(&refinement, &source, similarity.as_ref(), &files);
         let branch = weights.map_or(String::new(), refine_text::format_weights_file);
         refine_text::wide_band_warning(&refinement) + &tried + &text + &branch
     })

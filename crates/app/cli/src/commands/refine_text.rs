@@ -8,7 +8,7 @@ use sistership_identification::refine::{
 };
 use sistership_model::Model;
 use sistership_model_selection::{SelectionReport, SelectionStage};
-use sistership_priors::similarity::RankedSource;
+use sistership_priors::source::SimilarityRanking;
 use sistership_simulation::manoeuvre::NamedFigure;
 
 use super::channels::TABLE_CHANNELS;
@@ -16,16 +16,36 @@ use super::written_files::WrittenFiles;
 use super::{describe_status, similar};
 use crate::table::{TextTable, format_number, format_optional};
 
+/// Number of ships of the ranking that are listed.
+const LISTED_SHIPS: usize = 6;
+
+/// Formats the most similar ships, and the number of the others.
+fn format_ranking(similarity: &SimilarityRanking) -> String {
+    let missing = similarity.missing_particulars();
+    if !missing.is_empty() && similarity.ranking.iter().all(|ship| ship.correlation.is_none()) {
+        return format!(
+            "Similar ships: unknown, as the ship's file states too few particulars for a \
+             correlation; add {}\n\n",
+            missing.join(", ")
+        );
+    }
+    let ranking = &similarity.ranking;
+    let listed = &ranking[..ranking.len().min(LISTED_SHIPS)];
+    let others = match ranking.len() - listed.len() {
+        0 => String::new(),
+        others => format!("  and {others} more: `sistership similar` lists all\n"),
+    };
+    format!("Similar ships\n{}{others}\n", similar::ranking_table(listed))
+}
+
 /// Formats a refinement as text.
 pub fn format_refinement(
     refinement: &Refinement,
     source: &Model,
-    ranking: Option<&[RankedSource]>,
+    similarity: Option<&SimilarityRanking>,
     files: &WrittenFiles<'_>,
 ) -> String {
-    let ranked = ranking.map_or(String::new(), |ranking| {
-        format!("Similar ships\n{}\n", similar::ranking_table(ranking))
-    });
+    let ranked = similarity.map_or(String::new(), format_ranking);
     // Another name than the source's: there is no single status to show.
     let from = match refinement.source == source.name {
         true => format!("{} ({})", source.name, describe_status(source.status)),
