@@ -32,6 +32,7 @@ pub struct ReadTrial {
 /// Returns an error with all refusals, by row and column.
 pub fn read_trials(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
     let (mut read, mut refused) = (Vec::new(), Vec::new());
+    let mut recordings: Vec<PathBuf> = Vec::new();
     for path in paths {
         let loaded = match load_path(path) {
             Ok(loaded) => loaded,
@@ -42,6 +43,7 @@ pub fn read_trials(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
         };
         // Every file is read, so that all faults are reported in one run.
         let files = files_of(path, &loaded);
+        let is_recording = loaded.manifest.is_none();
         let named = |ship: &String| !ship.is_empty();
         let ship = loaded.manifest.map(|manifest| manifest.ship).filter(named);
         for (result, (file, path, is_stretch)) in loaded.trials.into_iter().zip(files) {
@@ -49,16 +51,30 @@ pub fn read_trials(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
                 Ok(trial) => {
                     read.push(ReadTrial { trial, file, path, is_stretch, ship: ship.clone() });
                 }
-                Err(refusal) => refused.push(refusal.to_string()),
+                Err(refusal) => {
+                    refused.push(refusal.to_string());
+                    recordings.extend(Some(path).filter(|_| is_recording));
+                }
             }
         }
     }
     if !refused.is_empty() {
+        refused.extend(import_hint(&recordings));
         return Err(Failure::Refused(refused.join("\n")));
     }
     print_warnings(&read);
     make_names_unique(&mut read)?;
     Ok(read)
+}
+
+/// Advice on recordings that are read without a manifest; `None` if there is none.
+fn import_hint(recordings: &[PathBuf]) -> Option<String> {
+    let first = recordings.first()?.display();
+    let more = if recordings.len() > 1 { " ..." } else { "" };
+    Some(format!(
+        "`sistership import {first}{more}` identifies the columns and units of a recording and \
+         writes a manifest, which this command reads in place of it"
+    ))
 }
 
 fn files_of(path: &Path, loaded: &LoadedTrials) -> Vec<(String, PathBuf, bool)> {
@@ -204,5 +220,6 @@ mod tests {
             message.contains("a.csv is refused") && message.contains("b.csv is refused"),
             "{message}"
         );
+        assert!(message.lines().last().is_some_and(|line| line.contains("sistership import")));
     }
 }
