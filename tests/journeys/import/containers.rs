@@ -1,4 +1,4 @@
-//! Trials in files that are no text, in logs of sentences, and in a file for each sensor.
+//! Trials in files that are no text, in logs of sentences and of frames, and in a file for each sensor.
 
 use std::io::{Cursor, Write};
 
@@ -122,6 +122,36 @@ pub fn nmea(trial: &Trial, k: usize) -> Files {
         }
     }
     one(k, "nmea", log.into_bytes())
+}
+
+/// Frames of NMEA 2000 as `candump -L` writes them, all values at once.
+pub fn nmea2000(trial: &Trial, k: usize) -> Files {
+    let mut log = String::new();
+    for (at, t) in trial.t_s.iter().enumerate() {
+        let value = |channel| trial.channel(channel).expect("a channel")[at];
+        let (u, v, psi) = (value(Channel::U), value(Channel::V), value(Channel::Psi));
+        let turn = std::f64::consts::TAU;
+        let degrees = |first: f64, metres: f64, each: f64| {
+            (((first + metres / each) * 1e7).round() as i32).to_le_bytes()
+        };
+        let word = |number: f64| (number.round() as i64 as u16).to_le_bytes();
+        let angle = |radians: f64| word(1e4 * radians.rem_euclid(turn));
+        let mut frame = |identifier: u32, parts: &[&[u8]]| {
+            let data: String = parts.concat().iter().map(|byte| format!("{byte:02X}")).collect();
+            log += &format!("({:.6}) can0 {identifier:08X}#{data}\n", 1_714_554_000.0 + t);
+        };
+        let (north, east) = (value(Channel::X), value(Channel::Y));
+        frame(0x09F8_0123, &[&degrees(51.0, north, 111_253.0), &degrees(3.0, east, 70_250.0)]);
+        frame(0x09F1_1223, &[&[0], &angle(psi), &[0xff, 0x7f, 0xff, 0x7f, 0xfc]]);
+        let rate = ((value(Channel::R) / 3.125e-8).round() as i32).to_le_bytes();
+        frame(0x09F1_1323, &[&[0], &rate, &[0xff; 3]]);
+        let rudder = word(1e4 * value(Channel::Delta));
+        frame(0x09F1_0D23, &[&[0, 0xff, 0xff, 0x7f], &rudder, &[0xff; 2]]);
+        frame(0x09F2_0023, &[&[0], &word(240.0 * value(Channel::N)), &[0xff; 5]]);
+        let course = angle(psi + v.atan2(u));
+        frame(0x09F8_0223, &[&[0, 0xfc], &course, &word(100.0 * u.hypot(v)), &[0xff; 2]]);
+    }
+    one(k, "log", log.into_bytes())
 }
 
 /// Velocities and position in one file, heading and rudder in another at half the rate.

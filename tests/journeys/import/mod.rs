@@ -2,9 +2,11 @@
 
 mod broken;
 mod containers;
+mod formats;
 mod forms;
 mod long_log;
 mod table;
+mod templates;
 
 use std::path::{Path, PathBuf};
 

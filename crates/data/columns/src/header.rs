@@ -88,8 +88,7 @@ impl HeaderEvidence {
 }
 
 fn unit_is(kind: QuantityKind, unit: &str) -> bool {
-    let percent = unit == "%" && matches!(kind, QuantityKind::Revolutions | QuantityKind::Angle);
-    percent || kind.known_units().iter().any(|known| known.name == unit)
+    kind.percent_unit().iter().chain(kind.known_units()).any(|known| known.name == unit)
 }
 
 /// Returns the unit that a text denotes, by its name in manifests.
@@ -312,7 +311,9 @@ fn split_units(header: &str) -> (String, Vec<String>) {
 
 /// Returns true if a unit at the end of a header cannot be the letter of a side or an axis.
 fn is_clear(unit: &str) -> bool {
-    unit.trim().chars().count() > 1 || is_ideographic(unit)
+    let unit = unit.trim();
+    // `%` and `°` are signs, no letters.
+    unit.chars().count() > 1 || is_ideographic(unit) || !unit.chars().any(char::is_alphabetic)
 }
 
 /// Returns the units formed by the last one or two words, such as `deg`, `deg_s`, `m_s`, with the
@@ -416,6 +417,9 @@ mod tests {
         assert_eq!(of("rpm_port").unit_of_kind(QuantityKind::Revolutions), Some("rpm"));
         assert_eq!(of("Drehzahl 1/min").unit_of_kind(QuantityKind::Revolutions), Some("rpm"));
         assert_eq!(of("rpm_port").side, Some(Side::Port));
+        let percent = of("rudder port %");
+        assert_eq!(percent.unit_of_kind(QuantityKind::Angle), Some("%"));
+        assert_eq!(percent.side, Some(Side::Port));
         assert!(of("Rudder (port positive)").is_port_positive);
         assert_eq!(
             HeaderEvidence::new("speed", Some("knots")).unit_of_kind(QuantityKind::Speed),

@@ -19,9 +19,18 @@ impl Hypothesis {
 
     /// Returns the hypotheses of every unit and sign of a role.
     pub(crate) fn for_role(role: Role) -> impl Iterator<Item = Self> {
+        Self::in_units(role, role.kind().known_units().iter().copied())
+    }
+
+    /// Returns the hypotheses of a role in per cent of a full scale; none for a role that is not
+    /// recorded so.
+    pub(crate) fn in_percent(role: Role) -> impl Iterator<Item = Self> {
+        Self::in_units(role, role.kind().percent_unit().into_iter())
+    }
+
+    fn in_units(role: Role, units: impl Iterator<Item = Unit>) -> impl Iterator<Item = Self> {
         let signs: &[bool] = if role.is_signed() { &[false, true] } else { &[false] };
-        let units = role.kind().known_units().iter();
-        units.flat_map(move |&unit| {
+        units.flat_map(move |unit| {
             signs.iter().map(move |&is_reversed| Self { role, unit, is_reversed })
         })
     }

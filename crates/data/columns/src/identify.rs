@@ -118,7 +118,9 @@ fn settled_columns(recording: &RecordingSample, given: &[GivenColumn]) -> Vec<Se
         };
         // The first hypothesis that the user's unit and sign allow; units are ordered most usual
         // first.
-        let what = role.and_then(|role| Hypothesis::for_role(role).find(fits));
+        let what = role.and_then(|role| {
+            Hypothesis::for_role(role).chain(Hypothesis::in_percent(role)).find(fits)
+        });
         (one.role != Some(Role::Time)).then_some(SettledColumn { column, what })
     };
     given.iter().filter_map(of).collect()

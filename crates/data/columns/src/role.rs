@@ -220,6 +220,11 @@ const fn unit(name: &'static str, to_si: f64) -> Unit {
 const DEG: f64 = std::f64::consts::PI / 180.0;
 
 impl QuantityKind {
+    /// Returns per cent of a full scale, which the manifest declares, for a kind that is recorded so.
+    pub fn percent_unit(self) -> Option<Unit> {
+        matches!(self, Self::Angle | Self::Revolutions).then_some(unit("%", 0.01))
+    }
+
     /// Returns the units in which columns of this kind are recorded, most usual first.
     pub fn known_units(self) -> &'static [Unit] {
         const TIME: [Unit; 6] = [

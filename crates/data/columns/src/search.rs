@@ -4,7 +4,7 @@ use crate::cooccurrence;
 use crate::hypothesis::{Assignment, Hypothesis};
 use crate::own_evidence::OwnEvidence;
 use crate::physics::PhysicalEvidence;
-use crate::role::{QuantityKind, Role, Unit};
+use crate::role::{QuantityKind, Role};
 
 /// Log odds of a column alone below which a hypothesis is not considered.
 const HOPELESS: f64 = -9.0;
@@ -237,14 +237,10 @@ impl<'a> AssignmentSearch<'a> {
 fn possible_hypotheses(own: &OwnEvidence) -> Vec<Hypothesis> {
     let percent = |kind: QuantityKind| own.header.unit_of_kind(kind) == Some("%");
     let roles = Role::channels().filter(|role| *role != Role::Time);
-    let each = roles.flat_map(|role| {
-        // Percent is a unit of angles and revolutions whose full scale the manifest declares.
-        let of_percent = percent(role.kind()).then_some(Unit { name: "%", to_si: 0.01 });
-        let all: Vec<Hypothesis> = Hypothesis::for_role(role).collect();
-        let first = all.first().copied();
-        match (of_percent, first) {
-            (Some(unit), Some(first)) => vec![Hypothesis { unit, ..first }],
-            _ => all,
+    let each = roles.flat_map(|role| -> Vec<Hypothesis> {
+        match percent(role.kind()) {
+            true => Hypothesis::in_percent(role).collect(),
+            false => Hypothesis::for_role(role).collect(),
         }
     });
     each.filter(|what| own.hypothesis_odds(what) > HOPELESS).collect()

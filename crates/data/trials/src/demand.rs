@@ -4,12 +4,12 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
+use crate::column_reader::ColumnFile;
 use crate::containers::archive;
 
 use crate::csv_file;
 use crate::declarations::SensorFile;
 use crate::mapping::Mapping;
-use crate::mat_file;
 use crate::nmea_file;
 use crate::parquet_file;
 use crate::samples::GROUP_ROWS;
@@ -70,7 +70,7 @@ pub fn memory_demand(path: &Path, mapping: &Mapping) -> io::Result<MemoryDemand>
             let claimed = archive::claimed_bytes(&mut input).unwrap_or(0);
             (None, UNPACKED * claimed.min(mapping.limits.unpacked_bytes as u64))
         }
-        InputContent::Matlab(input) => (mat_file::measure_mat(input, mapping), 0),
+        InputContent::Columns(file) => column_demand(file, mapping),
         InputContent::Nmea(input) => (nmea_file::measure_nmea(input, mapping), 0),
         InputContent::Other(_) => (None, 0),
     };
@@ -115,6 +115,13 @@ fn derivation_bytes(mapping: &Mapping) -> u64 {
         0 => 0,
         channels => 8 * (12 + 3 * 4 + 2 + 2 * channels),
     }
+}
+
+/// Returns rows and columns of a file of columns, and the memory that its reader holds: whole files
+/// are in memory, and those of messages on their own clocks first.
+fn column_demand(mut file: ColumnFile, mapping: &Mapping) -> (Option<(usize, usize)>, u64) {
+    let holding = file.holding_bytes(mapping.limits);
+    (file.measure_table(mapping), holding)
 }
 
 fn parquet_demand<R: parquet::file::reader::ChunkReader + 'static>(

@@ -1,5 +1,6 @@
-//! Reader of trial files: CSV, Parquet, Excel, MATLAB 5 and NMEA 0183. Units and signs are
-//! converted once, on input; the data are checked and optionally smoothed.
+//! Reader of trial files: CSV, Parquet, Excel, MATLAB, HDF5, NetCDF, GPX, NMEA 0183 and 2000, and
+//! MCAP. Units and signs are converted once, on input; the data are checked and optionally
+//! smoothed.
 //!
 //! [`read_trial`] converts a [`TrialFile`] to a [`Trial`](sistership_model::trial::Trial) in
 //! canonical units, or refuses it with findings that name row and column. [`read_in_full`] also
@@ -15,7 +16,10 @@ mod calendar;
 mod cells;
 mod checks;
 mod clock;
+mod column_formats;
+mod column_reader;
 mod column_set;
+mod column_source;
 pub mod containers;
 mod convert;
 mod csv_file;
@@ -38,7 +42,6 @@ mod magic;
 mod manifest;
 mod manifest_file;
 mod mapping;
-mod mat_file;
 mod metered;
 mod names;
 mod needs;

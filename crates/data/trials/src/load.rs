@@ -26,7 +26,7 @@ pub struct LoadedTrials {
     pub trials: Vec<Result<Trial, Refusal>>,
 }
 
-/// Reads a manifest (`.yaml`, `.yml`) with all its files, or a CSV or Parquet file with canonical
+/// Reads a manifest (`.yaml`, `.yml`, `.json`) with all its files, or a CSV or Parquet file with canonical
 /// column names.
 ///
 /// # Errors
@@ -202,10 +202,12 @@ fn list_files(path: &Path) -> Result<(Option<Manifest>, Vec<ListedFile>), FileEr
     Ok((Some(written.manifest), listed))
 }
 
+/// Returns true for the endings of YAML, and of JSON, which is YAML as well.
 fn is_manifest(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| {
-        extension.eq_ignore_ascii_case("yaml") || extension.eq_ignore_ascii_case("yml")
-    })
+    let is_ending = |ending: &std::ffi::OsStr| {
+        ["yaml", "yml", "json"].iter().any(|known| ending.eq_ignore_ascii_case(known))
+    };
+    path.extension().is_some_and(is_ending)
 }
 
 fn unreadable_file(file: &str, error: &io::Error) -> FileError {
@@ -251,6 +253,18 @@ mod tests {
             outcomes.iter().map(CheckOutcome::is_accepted).collect::<Vec<_>>(),
             [true, false]
         );
+    }
+
+    #[test]
+    fn a_manifest_in_json_is_a_manifest() {
+        let folder = tempfile::tempdir().unwrap();
+        let manifest = folder.path().join("m.json");
+        let text = r#"{"kind": "trials", "ship": "a", "trials": [{"file": "a.csv"}]}"#;
+        std::fs::write(&manifest, text).unwrap();
+        std::fs::write(folder.path().join("a.csv"), "t_s,u_m_s\n0,1\n1,2\n2,3\n").unwrap();
+        let loaded = load_path(&manifest).unwrap();
+        assert_eq!(loaded.manifest.unwrap().ship, "a");
+        assert_eq!(loaded.trials[0].as_ref().unwrap().len(), 3);
     }
 
     #[test]

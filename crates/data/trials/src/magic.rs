@@ -1,12 +1,14 @@
 //! Detection of the format of a file by its first bytes, independent of its name.
 
+use crate::column_formats::{ColumnFormat, is_log_line};
+
 /// Format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FormatKind {
     Csv,
     Parquet,
     Workbook,
-    Matlab,
+    Columns(ColumnFormat),
     Nmea,
     /// A format that is not read here: its name, and advice.
     Other(&'static str),
@@ -15,11 +17,18 @@ pub(crate) enum FormatKind {
 /// Number of bytes that are examined.
 pub(crate) const LOOKED_AT: usize = 4096;
 
-const OTHERS: [(&[u8], &str); 18] = [
-    (b"\x89HDF\r\n\x1a\n", "HDF5; write the table as CSV, Parquet or Excel"),
+const COLUMNS: [(&[u8], ColumnFormat); 7] = [
+    (b"MATLAB 5.0", ColumnFormat::Matlab),
+    (b"MATLAB 7.3", ColumnFormat::Hdf5),
+    (b"\x89HDF\r\n\x1a\n", ColumnFormat::Hdf5),
+    (b"CDF\x01", ColumnFormat::NetCdf),
+    (b"CDF\x02", ColumnFormat::NetCdf),
+    (b"CDF\x05", ColumnFormat::NetCdf),
+    (b"\x89MCAP0", ColumnFormat::Mcap),
+];
+
+const OTHERS: [(&[u8], &str); 14] = [
     (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "an Excel 97-2003 workbook (.xls); save it as .xlsx"),
-    (b"CDF\x01", "NetCDF; write the table as CSV, Parquet or Excel"),
-    (b"CDF\x02", "NetCDF; write the table as CSV, Parquet or Excel"),
     (b"%PDF", "a PDF; export its numbers as CSV"),
     (b"\x89PNG", "a picture (PNG); export its numbers as CSV"),
     (b"\xff\xd8\xff", "a picture (JPEG); export its numbers as CSV"),
@@ -29,9 +38,12 @@ const OTHERS: [(&[u8], &str); 18] = [
     (b"\xfd7zXZ\x00", "packed by xz; unpack it"),
     (b"7z\xbc\xaf\x27\x1c", "a 7-Zip archive; unpack it"),
     (b"\x28\xb5\x2f\xfd", "packed by zstd; unpack it"),
-    (b"SQLite format 3\0", "an SQLite database; export the table as CSV"),
-    (b"#ROSBAG V", "a ROS bag; export its topics as CSV"),
-    (b"\x89MCAP0", "an MCAP log; export its topics as CSV"),
+    (
+        b"SQLite format 3\0",
+        "an SQLite database; write a ROS 2 bag as MCAP (`ros2 bag convert`), export other tables as \
+         CSV",
+    ),
+    (b"#ROSBAG V", "a bag of ROS 1; convert it to MCAP (`mcap convert`)"),
     (b"MDF     ", "an ASAM MDF measurement; export it as CSV or Parquet"),
     (b"TDSm", "a LabVIEW TDMS file; export it as CSV or Parquet"),
 ];
@@ -44,13 +56,8 @@ pub(crate) fn detect_format(start: &[u8]) -> FormatKind {
     if start.starts_with(b"PK\x03\x04") {
         return FormatKind::Workbook;
     }
-    if start.starts_with(b"MATLAB 5.0") {
-        return FormatKind::Matlab;
-    }
-    if start.starts_with(b"MATLAB 7.3") {
-        return FormatKind::Other(
-            "a MATLAB 7.3 file, which is HDF5; save it by `save(..., '-v7')`",
-        );
+    if let Some((_, format)) = COLUMNS.iter().find(|(magic, _)| start.starts_with(magic)) {
+        return FormatKind::Columns(*format);
     }
     if let Some((_, what)) = OTHERS.iter().find(|(magic, _)| start.starts_with(magic)) {
         return FormatKind::Other(what);
@@ -59,7 +66,33 @@ pub(crate) fn detect_format(start: &[u8]) -> FormatKind {
     if is_binary(start) {
         return FormatKind::Other("binary, of an unknown kind; export it as CSV or Parquet");
     }
-    if is_nmea(start) { FormatKind::Nmea } else { FormatKind::Csv }
+    if is_nmea(start) {
+        return FormatKind::Nmea;
+    }
+    if is_gpx(start) {
+        return FormatKind::Columns(ColumnFormat::Gpx);
+    }
+    if is_nmea2000(start) {
+        return FormatKind::Columns(ColumnFormat::Nmea2000);
+    }
+    FormatKind::Csv
+}
+
+/// Returns true for XML whose outer element is `gpx`.
+fn is_gpx(start: &[u8]) -> bool {
+    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
+    text.starts_with(b"<") && text.windows(4).any(|window| window == b"<gpx")
+}
+
+/// Returns true if most of the first complete lines are frames or messages of NMEA 2000.
+fn is_nmea2000(start: &[u8]) -> bool {
+    let mut lines = start.split(|&byte| byte == b'\n');
+    // The last line may be cut off.
+    let cut = if start.len() == LOOKED_AT { lines.next_back() } else { None };
+    let lines = lines.filter(|line| Some(*line) != cut && !line.trim_ascii().is_empty()).take(20);
+    let is_frame = |line: &[u8]| std::str::from_utf8(line).is_ok_and(is_log_line);
+    let (all, frames) = (lines.clone().count(), lines.filter(|line| is_frame(line)).count());
+    frames > 0 && 2 * frames > all
 }
 
 /// Returns true if more than one byte in sixteen is zero; text in UTF-16, which has more, begins
@@ -93,7 +126,13 @@ mod tests {
         for (start, wanted) in [
             (&b"PAR1"[..], FormatKind::Parquet),
             (b"PK\x03\x04", FormatKind::Workbook),
-            (b"MATLAB 5.0 MAT-file, Platform: GLNXA64", FormatKind::Matlab),
+            (b"MATLAB 5.0 MAT-file, Platform: GLNXA64", FormatKind::Columns(ColumnFormat::Matlab)),
+            (b"\x89HDF\r\n\x1a\n...", FormatKind::Columns(ColumnFormat::Hdf5)),
+            (b"<?xml version=\"1.0\"?>\n<gpx>", FormatKind::Columns(ColumnFormat::Gpx)),
+            (
+                b"(1.0) can0 09F11223#FF1027FF7FFF7FFD\n",
+                FormatKind::Columns(ColumnFormat::Nmea2000),
+            ),
             (b"$GPHDT,274.1,T*33\r\n", FormatKind::Nmea),
             (b"12:00:01 $GPHDT,274.1,T*33\n", FormatKind::Nmea),
             (b"t_s,u_m_s\n0,1\n", FormatKind::Csv),
@@ -103,9 +142,6 @@ mod tests {
         ] {
             assert_eq!(detect_format(start), wanted, "{start:?}");
         }
-        assert!(
-            matches!(detect_format(b"\x89HDF\r\n\x1a\n..."), FormatKind::Other(what) if what.contains("HDF5"))
-        );
         assert!(
             matches!(detect_format(b"\x01\0\0\0abc"), FormatKind::Other(what) if what.contains("binary"))
         );

@@ -8,7 +8,6 @@ use csv::{ByteRecord, ReaderBuilder};
 use crate::blanks::TabbedReader;
 use crate::layout;
 use crate::limits::FileLimits;
-use crate::mat_file;
 use crate::nmea_file;
 use crate::parquet_footer;
 use crate::table::ColumnTarget;
@@ -54,10 +53,10 @@ pub(crate) fn preview_file(name: &str, path: &Path) -> io::Result<FilePreview> {
             let (sheet, preview) = best.ok_or_else(|| io::Error::other("it has no sheet"))?;
             Ok(FilePreview { sheet: several.then_some(sheet), ..preview })
         }
-        InputContent::Matlab(input) => Ok(FilePreview {
-            names: mat_file::column_names(input, limits)?,
-            ..FilePreview::default()
-        }),
+        InputContent::Columns(file) => {
+            let (names, units) = file.read_header(limits)?;
+            Ok(FilePreview { names, units, ..FilePreview::default() })
+        }
         InputContent::ParquetFile(file) => {
             // Segments are read of a long log, so that it may have any number of rows.
             let opened = parquet_footer::open_file(file, FileLimits { rows: usize::MAX, ..limits });

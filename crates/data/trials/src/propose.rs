@@ -16,6 +16,9 @@ use crate::manifest_file::ManifestFile;
 use crate::preview::preview_file;
 use crate::sampling::{FileSample, sample_file};
 
+/// Range of seconds since 1970, in the years 2001 to 2065.
+const UNIX_S: std::ops::Range<f64> = 1.0e9..3.0e9;
+
 /// Proposed manifest and its evidence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ManifestProposal {
@@ -154,7 +157,8 @@ impl FileSet {
             let ends = (values.clone().next(), values.clone().next_back());
             if let (Some(first), Some(last)) = ends {
                 let (from_s, to_s) = (from + first * factor, from + last * factor);
-                file.span = Some(ClockSpan { from_s, to_s, is_dated: start.is_some() });
+                let is_dated = start.is_some() || UNIX_S.contains(&from_s);
+                file.span = Some(ClockSpan { from_s, to_s, is_dated });
             }
         }
     }

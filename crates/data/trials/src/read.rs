@@ -21,9 +21,7 @@ use crate::smoothing::smooth_recording;
 use crate::stream::TableRows;
 use crate::table::Table;
 use crate::trial_file::{InputContent, SensorInput, TrialFile};
-use crate::{
-    csv_file, derived, ground, mat_file, nmea_file, parquet_file, position, water, workbook,
-};
+use crate::{csv_file, derived, ground, nmea_file, parquet_file, position, water, workbook};
 
 /// Reads, converts and checks a trial, and smooths it if the conventions require it.
 ///
@@ -228,7 +226,7 @@ fn read_content(
         InputContent::ParquetBytes(bytes) => parquet_file::read_parquet(bytes, mapping, findings),
         InputContent::ParquetFile(file) => parquet_file::read_parquet(file, mapping, findings),
         InputContent::Workbook(input) => workbook::read_workbook(input, mapping, findings),
-        InputContent::Matlab(input) => mat_file::read_mat(input, mapping, findings),
+        InputContent::Columns(file) => file.read_table(mapping, findings),
         InputContent::Nmea(input) => nmea_file::read_nmea(input, mapping, findings),
         InputContent::Other(what) => {
             findings.error(None, None, format!("the file is {what}"));

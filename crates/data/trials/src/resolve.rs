@@ -256,7 +256,10 @@ impl ColumnResolver<'_> {
             let named =
                 (0..self.headers.len()).find(|&k| free(k) && names::is_time(&self.headers[k]));
             if let Some(index) = named {
-                self.add_column(index, ColumnTarget::Time, "auto");
+                // A unit in the row below the header, or that the format states.
+                let known = |unit: &&String| UnitKind::Time.unit_to_si(unit).is_ok();
+                let unit = self.units.get(index).filter(known).cloned();
+                self.add_column(index, ColumnTarget::Time, unit.as_deref().unwrap_or("auto"));
             }
         }
     }

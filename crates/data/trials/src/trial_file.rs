@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use bytes::Bytes;
 
+use crate::column_reader::ColumnFile;
 use crate::declarations::SensorFile;
 use crate::magic::{self, FormatKind, LOOKED_AT};
 use crate::mapping::Mapping;
@@ -32,7 +33,7 @@ pub(crate) enum InputContent<'a> {
     ParquetFile(File),
     Workbook(Box<dyn ReadSeek + 'a>),
     Nmea(Box<dyn ReadSeek + 'a>),
-    Matlab(Box<dyn ReadSeek + 'a>),
+    Columns(ColumnFile<'a>),
     /// A format that is not read: its name, and advice.
     Other(&'static str),
 }
@@ -61,7 +62,7 @@ impl<'a> TrialFile<'a> {
         let input = Box::new(input);
         let content = match kind {
             FormatKind::Workbook => InputContent::Workbook(input),
-            FormatKind::Matlab => InputContent::Matlab(input),
+            FormatKind::Columns(format) => InputContent::Columns(ColumnFile { format, input }),
             FormatKind::Nmea => InputContent::Nmea(input),
             FormatKind::Other(what) => InputContent::Other(what),
             _ => InputContent::Csv(input),

@@ -6,13 +6,14 @@ use clap::Args;
 use sistership_model::trial::Trial;
 use sistership_model::{FileError, Zoo};
 use sistership_trials::{
-    Exclusion, GivenColumn, LoadedTrials, ManifestFile, ProposalRequest, Role, find_faults,
-    load_path, missing_channels, propose_files,
+    ColumnGuess, Exclusion, GivenColumn, LoadedTrials, ManifestFile, ProposalRequest, Role,
+    find_faults, load_path, missing_channels, propose_files,
 };
 
 use super::import_bundle;
 use super::import_log::segment_logs;
 use super::import_outcome::{GuessRow, ImportDocument, LawNeeds};
+use super::import_template::{ImportTemplate, TemplateFolder, template_name};
 use super::import_text;
 use super::store::StoreArguments;
 use crate::failure::{Failure, about_file};
@@ -26,6 +27,8 @@ Examples:
   sistership import log/*.csv
   sistership import voyage.nmea --ship my-ship --out trials.yaml
   sistership import runs/*/*.csv --column 'Azi=delta:deg:reversed' --explain
+  sistership import yard/*.xlsx --column 'Kurs=psi:deg' --save-template yard-x
+  sistership import yard/next.xlsx --template yard-x
   sistership import --bundle my-ship.bundle --data-dir sistership-data
 
 Columns are identified by their names (in nine languages), their values and the relations between
@@ -42,7 +45,8 @@ Exit status 1 when a file cannot be read, or is refused by the manifest that was
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ImportArguments {
-    /// Files: CSV and similar text, Parquet, Excel, MATLAB 5, NMEA 0183.
+    /// Files: CSV and similar text, Parquet, Excel, MATLAB, HDF5, NetCDF, GPX, NMEA 0183 and NMEA
+    /// 2000 logs, MCAP.
     #[arg(required_unless_present = "bundle")]
     files: Vec<PathBuf>,
     /// Ship of the trials; `refine --ship` may name it instead.
@@ -56,6 +60,13 @@ pub struct ImportArguments {
     /// of a file without a header.
     #[arg(long = "column", value_name = "COLUMN", value_parser = given_column)]
     columns: Vec<GivenColumn>,
+    /// Read the columns as a template says, which `--save-template` kept; `--column` goes before it.
+    /// Templates are YAML files in SISTERSHIP_TEMPLATES, or else in the user's folder of settings.
+    #[arg(long, value_name = "NAME", value_parser = template_name)]
+    template: Option<String>,
+    /// Keep how the columns are read as a template, in place of one of the same name.
+    #[arg(long, value_name = "NAME", value_parser = template_name)]
+    save_template: Option<String>,
     /// List every column of every file with the reason for its reading.
     #[arg(long)]
     explain: bool,
@@ -92,7 +103,9 @@ fn given_column(text: &str) -> Result<GivenColumn, String> {
     // An empty unit leaves the unit to the identification.
     let unit = parts.next().map(|unit| unit.trim().to_owned()).filter(|unit| !unit.is_empty());
     if let (Some(role), Some(unit)) = (role, &unit) {
-        let known: Vec<&str> = role.kind().known_units().iter().map(|unit| unit.name).collect();
+        let known = role.kind().known_units().iter().map(|unit| unit.name);
+        let known: Vec<&str> =
+            known.chain(role.kind().percent_unit().map(|unit| unit.name)).collect();
         if !known.contains(&unit.as_str()) {
             return Err(format!("`{unit}` does not fit {name}; use one of {}", known.join(", ")));
         }
@@ -127,11 +140,12 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     let promised = OutputFile::new(&out, &arguments.files)?;
     let files: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
     let folder = out.parent().unwrap_or(Path::new(""));
+    let given = given_columns(arguments)?;
     let request = ProposalRequest {
         ship: &arguments.ship,
         files: &files,
         folder: Some(folder),
-        given: &arguments.columns,
+        given: &given,
     };
     let mut proposal = propose_files(&request).map_err(join_errors)?;
     // Segmentation first: faults are then searched only in the segments that become trials.
@@ -139,13 +153,42 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     let excluded = exclude_faults(&mut proposal.manifest, folder)?;
     let text = proposal.manifest.to_yaml().map_err(|error| about_file(&out, error))?;
     promised.write(text.as_bytes())?;
-    let (guesses, notes) = (proposal.guesses, proposal.notes);
+    let (guesses, mut notes) = (proposal.guesses, proposal.notes);
+    notes.extend(template_notes(arguments, &guesses)?);
     let guesses = guesses.into_iter().map(GuessRow::from).collect();
     let explain = arguments.explain;
     let import =
         ImportDocument { logs, notes, guesses, excluded, explain, ..check_manifest(zoo, out)? };
     output::print_result(arguments.json, &import, || import_text::format_import(&import))?;
     if import.errors.is_empty() { Ok(()) } else { Err(Failure::Told) }
+}
+
+/// Returns the columns that the user gives, before those of a template.
+fn given_columns(arguments: &ImportArguments) -> Result<Vec<GivenColumn>, Failure> {
+    let mut given = arguments.columns.clone();
+    if let Some(name) = &arguments.template {
+        let kept = TemplateFolder::of_user()?.read_template(name)?.given_columns()?;
+        let is_open = |one: &GivenColumn| given.iter().all(|other| other.header != one.header);
+        let open: Vec<GivenColumn> = kept.into_iter().filter(is_open).collect();
+        given.extend(open);
+    }
+    Ok(given)
+}
+
+/// Keeps a template, if one is to be kept, and returns notes on it, or on templates that have the
+/// columns of a file.
+fn template_notes(
+    arguments: &ImportArguments,
+    guesses: &[ColumnGuess],
+) -> Result<Vec<String>, Failure> {
+    if let Some(name) = &arguments.save_template {
+        let template = ImportTemplate::from_guesses(name, guesses);
+        let file = TemplateFolder::of_user()?.write_template(&template)?;
+        return Ok(vec![format!("template `{name}` is kept in {}", file.display())]);
+    }
+    // Without a folder there are no templates.
+    let folder = TemplateFolder::of_user().ok().filter(|_| arguments.template.is_none());
+    Ok(folder.map_or_else(Vec::new, |folder| folder.matching_notes(guesses)))
 }
 
 /// Finds faults of the files and excludes them in the manifest. A temporary manifest in the same

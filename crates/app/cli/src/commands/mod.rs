@@ -20,6 +20,7 @@ pub mod import;
 mod import_bundle;
 mod import_log;
 mod import_outcome;
+mod import_template;
 mod import_text;
 pub mod init;
 pub mod keys;

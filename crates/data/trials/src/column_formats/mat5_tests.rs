@@ -4,7 +4,11 @@ use std::io::{Cursor, Write};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
-use super::*;
+use crate::column_formats::ColumnFormat;
+use crate::column_reader::ColumnFile;
+use crate::findings::Findings;
+use crate::mapping::Mapping;
+use crate::table::Table;
 use crate::testing::finding_messages;
 
 fn element(kind: u32, data: &[u8]) -> Vec<u8> {
@@ -37,7 +41,7 @@ fn packed(element: &[u8]) -> Vec<u8> {
     bytes
 }
 
-fn file(elements: &[Vec<u8>]) -> Vec<u8> {
+fn mat_file(elements: &[Vec<u8>]) -> Vec<u8> {
     let mut bytes = format!("{:<124}", "MATLAB 5.0 MAT-file").into_bytes();
     bytes.extend([0, 1, b'I', b'M']);
     bytes.extend(elements.concat());
@@ -54,7 +58,7 @@ fn example() -> Vec<u8> {
     fields.extend(element(1, &names));
     fields.extend(matrix("", 6, 1, 3, &doubles(&[0.1, 0.2, 0.3])));
     fields.extend(matrix("", 4, 1, 1, &element(4, &[65, 0])));
-    file(&[
+    mat_file(&[
         matrix("t_s", 6, 3, 1, &doubles(&[0.0, 1.0, 2.0])),
         matrix("u_kn", 10, 3, 1, &element(3, &shorts)),
         packed(&matrix("track", 6, 3, 2, &doubles(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]))),
@@ -71,9 +75,13 @@ fn mapping() -> Mapping {
     mapping
 }
 
+fn file_of(bytes: Vec<u8>) -> ColumnFile<'static> {
+    ColumnFile { format: ColumnFormat::Matlab, input: Box::new(Cursor::new(bytes)) }
+}
+
 fn run(bytes: Vec<u8>, mapping: &Mapping) -> (Option<Table>, String) {
     let mut findings = Findings::default();
-    let table = read_mat(Box::new(Cursor::new(bytes)), mapping, &mut findings);
+    let table = file_of(bytes).read_table(mapping, &mut findings);
     (table, finding_messages(findings))
 }
 
@@ -90,7 +98,7 @@ fn vectors_matrices_and_fields_are_columns() {
     assert_eq!(of("log.psi"), &[0.1, 0.2, 0.3]);
     assert!((of("u_kn")[1] + 11.0 * 0.514_444).abs() < 1e-4);
     assert!(text.contains("columns not read: track(:,1)"), "{text}");
-    let measured = measure_mat(Box::new(Cursor::new(example())), &mapping()).unwrap();
+    let measured = file_of(example()).measure_table(&mapping()).unwrap();
     assert_eq!(measured, (3, 8));
 }
 
@@ -102,7 +110,7 @@ fn columns_on_different_time_bases_and_bombs_are_refused() {
     let mut bomb = mapping();
     bomb.limits.unpacked_bytes = 1000;
     let zeros = packed(&matrix("zeros", 6, 1000, 1, &doubles(&[0.0; 1000])));
-    assert!(run(file(&[zeros]), &bomb).1.contains("too many bytes"));
+    assert!(run(mat_file(&[zeros]), &bomb).1.contains("too many bytes"));
     bomb = mapping();
     bomb.limits.rows = 2;
     assert!(run(example(), &bomb).1.contains("3 values are more than the limit of 2"));
