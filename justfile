@@ -39,6 +39,10 @@ accuracy:
 deny:
     cargo deny check
 
+# Wheels, Debian package and container image in dist/, checked in clean roots.
+release:
+    tools/release
+
 # The documentation of the code.
 doc:
     cargo doc --workspace --no-deps --open

@@ -1,4 +1,4 @@
-"""Writes `src/sistership_client/core.py` from `api/openapi.json`: types, and a method for each
+"""Writes `src/sistership/core.py` from `api/openapi.json`: types, and a method for each
 operation. `python generate.py --check` tells whether it is as it should be."""
 
 import json
@@ -8,7 +8,7 @@ import re
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-TARGET = HERE / "src" / "sistership_client" / "core.py"
+TARGET = HERE / "src" / "sistership" / "core.py"
 PLAIN = {"string": "str", "integer": "int", "number": "float", "boolean": "bool", "null": "None"}
 
 HEAD = '''"""Types and operations of the REST interface, written by `generate.py`: not to be edited."""

@@ -25,7 +25,7 @@ mod pages;
 mod possible_sources;
 mod predictions;
 mod python_client;
-mod python_wheel;
+mod python_package;
 mod rights;
 mod sea_trials;
 mod sisters;

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use sistership_tests::binary;
 use sistership_tests::server::TestServer;
 
 use super::sea_trials::{csv, ship, trials};
@@ -30,6 +31,7 @@ async fn python_client() {
         .current_dir(&client)
         .env("PYTHONPATH", client.join("src"))
         .env("SISTERSHIP_URL", server.url())
+        .env("SISTERSHIP_PROGRAM", binary::path())
         .env("SISTERSHIP_SHIP", folder.path().join("ship.yaml"))
         .env("SISTERSHIP_TRIALS", folder.path());
     let output = tokio::task::spawn_blocking(move || tests.output()).await.expect("an end");

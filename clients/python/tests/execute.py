@@ -23,6 +23,9 @@ print(json.dumps({
     "criteria": criteria.join(bands[["low", "high"]])[["value", "low", "high"]].to_dict("index"),
     "samples": [trial.about["rows"] for trial in ship.trials()],
     "library": [name for name in zipfile.ZipFile(path).namelist() if name.endswith(".so")],
+    "local": local_errors[["source", "refined"]].to_dict(),
+    "local_diameter": float(local_diameter),
+    "page": report._repr_html_()[:7],
     "rates": [low.tolist(), rate.tolist(), high.tolist()],
 }))
 """
@@ -58,6 +61,10 @@ def judge(notebook, figures):
     assert refined < 0.2 * source, turned
     before, after = figures["errors"]["kvlcc2/1"], figures["errors"]["tour-tanker/1"]
     assert all(after[channel] < before[channel] for channel in before), figures["errors"]
+    assert abs(figures["local_diameter"] - turned["the ship"]) < 0.5 * source
+    for channel, of_source in figures["local"]["source"].items():
+        assert figures["local"]["refined"][channel] < of_source, channel
+    assert figures["page"] == "<iframe", figures["page"]
     for name, found in figures["criteria"].items():
         assert found["low"] < found["value"] < found["high"], name
     assert len(figures["library"]) == 1

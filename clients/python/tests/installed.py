@@ -1,10 +1,12 @@
-"""The client as people get it: a wheel in an environment that holds nothing else runs the README's
-lines, and with the extras the tour. Run in a folder with `my-ship.yaml` and `zigzag.csv` against
-the server that `SISTERSHIP_URL` names:
+"""The package as people get it: in an environment that holds nothing else it runs the README's
+lines, and with the extras the tour. Run in a folder with `my-ship.yaml` and `zigzag.csv`:
 
-    python installed.py lines | tour
+    python installed.py served | local | tour
 
-`python installed.py ready`, which needs neither, says why the tour would be left out.
+`served` and `tour` need the server that `SISTERSHIP_URL` names, `local` and `tour` the program.
+`SISTERSHIP_WHEEL` names the wheel to install; without it the sources are copied, and the program is
+that of `SISTERSHIP_PROGRAM`. `python installed.py ready`, which needs neither, says why the tour
+would be left out.
 
 The tour's packages (70 MB) come from an index only where `SISTERSHIP_REQUIRE_PIP=1` asks for it;
 without it, what is not there is told and left out."""
@@ -21,17 +23,17 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent.parent
 REQUIRED = os.environ.get("SISTERSHIP_REQUIRE_PIP") == "1"
+WHEEL = os.environ.get("SISTERSHIP_WHEEL")
 PIP = [sys.executable, "-m", "pip"]
-INDEX = [*PIP, "download", "-q", "--no-deps", "--retries", "0", "--timeout", "5"]
-# What setuptools needs for a wheel without an index: itself, and before its version 70.1 `wheel`.
-BUILDS = ("import setuptools, importlib.util as u; "
-          "assert u.find_spec('setuptools.command.bdist_wheel') or u.find_spec('wheel')")
+EXTRAS = ["pandas>=1.5", "matplotlib>=3.6"]
 TOUR = ["pandas", "matplotlib", "nbclient", "ipykernel"]
-HELD = "import importlib.metadata as m; print(*(d.metadata['Name'] for d in m.distributions()))"
 # What `pip --python` needs.
 SINCE = "import pip; assert tuple(map(int, pip.__version__.split('.')[:2])) >= (22, 3)"
-TAIL = "\nprint(track['t_s'][-1], track['psi_rad'][-1])\n" \
-       "import sistership_client; print(sistership_client.__file__)\n"
+SITE = "import sysconfig; print(sysconfig.get_path('purelib'))"
+WHERE = "\nimport sistership; print(sistership.__file__)\n"
+SERVED = "\nprint(track['t_s'][-1], track['psi_rad'][-1])" + WHERE
+LOCAL = "\nprint(track['t_s'][-1], track['psi_rad'][-1])\n" \
+        "print(report.held_out['source']['r'], len(report._repr_html_()) > 10000)" + WHERE
 
 
 class Skipped(Exception):
@@ -55,45 +57,65 @@ def need(there, what):
         raise Skipped(what)
 
 
-def wheel(folder):
-    """A wheel of the client, from a copy: building leaves files beside the sources."""
-    copy = shutil.copytree(HERE, folder / "client",
-                           ignore=shutil.ignore_patterns("build", "*.egg-info", "__pycache__"))
-    offline = runs([sys.executable, "-c", BUILDS])
-    need(offline or REQUIRED or runs([*INDEX, "-d", str(folder), "setuptools>=68"]),
-         "no package index is reachable, and without one a wheel needs setuptools and wheel here "
-         "(Debian: apt-get install python3-setuptools python3-wheel)")
-    further = ["--no-index", "--no-build-isolation"] if offline else []
-    run([*PIP, "wheel", "-q", "--no-deps", *further, "-w", folder, copy])
-    found = list(folder.glob("sistership_client-*-py3-none-any.whl"))
-    assert len(found) == 1, found
-    return found[0]
+def need_pip():
+    need(runs([sys.executable, "-c", SINCE]),
+         "python3 has no pip of version 22.3 or later (Debian: apt-get install python3-pip)")
 
 
 def environment(folder):
-    """An empty environment, without even pip: the one outside installs into it."""
+    """An environment that holds the package alone, without even pip."""
     run([sys.executable, "-m", "venv", "--without-pip", folder])
-    return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    if WHEEL:
+        need_pip()
+        run([*PIP, "--python", python, "install", "-q", "--no-index", WHEEL])
+    else:
+        site = pathlib.Path(run([python, "-I", "-c", SITE]).strip())
+        shutil.copytree(HERE / "src" / "sistership", site / "sistership",
+                        ignore=shutil.ignore_patterns("__pycache__"))
+    return python
 
 
-def lines(folder):
-    """The README's lines, by the wheel alone."""
+def block(number):
+    """A block of Python in the README."""
+    return re.findall(r"```python\n(.*?)```", (HERE / "README.md").read_text(), re.DOTALL)[number]
+
+
+def check_track(line, where, folder):
+    """The ship has turned, by the installed package."""
+    duration_s, heading_rad = map(float, line.split())
+    assert duration_s == 600.0 and heading_rad > 3.2, line
+    assert pathlib.Path(where).is_relative_to(folder / "alone"), where
+    return f"turned {heading_rad:.2f} rad in {duration_s:g} s"
+
+
+def local(folder):
+    """The README's lines without a server."""
+    code = block(0)
+    assert len(code.splitlines()) == 5, code
     python = environment(folder / "alone")
-    run([*PIP, "--python", python, "install", "-q", "--no-index", wheel(folder)])
-    held = run([python, "-I", "-c", HELD]).split()
-    assert held == ["sistership-client"], held
-    block = re.search(r"```python\n(.*?)```", (HERE / "README.md").read_text(), re.DOTALL).group(1)
-    local = "http://127.0.0.1:8080"
-    assert block.count(local) == 1 and len(block.splitlines()) == 6, block
-    code = block.replace(local, os.environ["SISTERSHIP_URL"]) + TAIL
-    held_out, last, where = run([python, "-I", "-c", code]).splitlines()
+    refined, line, report, where = run([python, "-I", "-c", code + LOCAL]).splitlines()
+    source, shown = report.split()
+    assert float(refined) <= float(source) and shown == "True", (refined, report)
+    assert pathlib.Path("my-ship.fmu").read_bytes()[:2] == b"PK"
+    version = run([python, "-I", "-m", "sistership", "--version"])
+    assert re.fullmatch(r"sistership \d+\.\d+\.\d+", version.strip()), version
+    print(f"without a server: refined r {float(refined):.2g} rad/s, "
+          f"{check_track(line, where, folder)}")
+
+
+def served(folder):
+    """The README's lines with a server."""
+    code = block(1)
+    address = "http://127.0.0.1:8080"
+    assert code.count(address) == 1 and len(code.splitlines()) == 6, code
+    python = environment(folder / "alone")
+    code = code.replace(address, os.environ["SISTERSHIP_URL"]) + SERVED
+    held_out, line, where = run([python, "-I", "-c", code]).splitlines()
     held_out = ast.literal_eval(held_out)
     assert held_out["refined"].keys() == held_out["source"].keys() >= {"u", "r", "psi"}, held_out
-    duration_s, heading_rad = map(float, last.split())
-    assert duration_s == 600.0 and heading_rad > 3.2, last
-    assert pathlib.Path(where).is_relative_to(folder / "alone"), where
-    print(f"the README's lines: refined r {held_out['refined']['r']:.2g} rad/s, "
-          f"turned {heading_rad:.2f} rad in {duration_s:g} s")
+    print(f"with a server: refined r {held_out['refined']['r']:.2g} rad/s, "
+          f"{check_track(line, where, folder)}")
 
 
 def ready(_):
@@ -105,23 +127,19 @@ def ready(_):
 def tour(folder):
     """The notebook, with packages from an index, or with those of this interpreter."""
     ready(folder)
+    python, path = sys.executable, str(HERE / "src")
     if REQUIRED:
+        need_pip()
         python, path = environment(folder / "tour"), ""
-        run([*PIP, "--python", python, "install", "-q", "--no-compile",
-             f"{wheel(folder)}[frames,plots]", *TOUR[2:]])
-    else:
-        python, path = sys.executable, str(folder / "tour")
-        run([*PIP, "install", "-q", "--no-deps", "--no-index", "--target", path, wheel(folder)])
+        run([*PIP, "--python", python, "install", "-q", "--no-compile", *EXTRAS, *TOUR[2:]])
     print(run([python, HERE / "tests" / "execute.py", pathlib.Path.cwd() / "tour.ipynb"],
               env={**os.environ, "PYTHONPATH": path}))
 
 
 def main():
     try:
-        need(runs([sys.executable, "-c", SINCE]),
-             "python3 has no pip of version 22.3 or later (Debian: apt-get install python3-pip)")
         with tempfile.TemporaryDirectory() as folder:
-            asked = {"lines": lines, "tour": tour, "ready": ready}[sys.argv[1]]
+            asked = {"local": local, "served": served, "tour": tour, "ready": ready}[sys.argv[1]]
             asked(pathlib.Path(folder).resolve())
     except Skipped as reason:
         if REQUIRED:

@@ -9,7 +9,8 @@ import sys
 import tempfile
 import unittest
 
-from sistership_client import Client, NoAnswer, Refused, Track
+from sistership import (Client, CommandFailed, Model, NoAnswer, Refused, Track, estimate,
+                        run_command)
 
 HERE = pathlib.Path(__file__).resolve().parent.parent
 
@@ -18,6 +19,35 @@ class Generated(unittest.TestCase):
     def test_core_is_what_the_interface_says(self):
         done = subprocess.run([sys.executable, str(HERE / "generate.py"), "--check"])
         self.assertEqual(done.returncode, 0)
+
+
+@unittest.skipUnless("SISTERSHIP_PROGRAM" in os.environ, "no program")
+class WithoutAServer(unittest.TestCase):
+    def test_a_command_gives_its_document(self):
+        ranking = run_command("similar", "kvlcc2")["ranking"]
+        self.assertIn("esso-tanker", [one["ship"] for one in ranking])
+
+    def test_a_refusal_has_the_reason(self):
+        with self.assertRaises(CommandFailed) as caught:
+            run_command("similar", "no-such-ship")
+        self.assertEqual(caught.exception.exit_status, 1)
+        self.assertIn("no-such-ship", str(caught.exception))
+        with self.assertRaises(CommandFailed) as caught:
+            Model("kvlcc2").manoeuvre(turn_deg=400.0)
+        self.assertEqual(caught.exception.exit_status, 2)
+
+    def test_a_model_of_the_zoo_turns_as_the_program_simulates_it(self):
+        model = Model("mariner")
+        turn, = model.manoeuvre(turn_deg=35.0)["turns"]
+        track = model(600.0, delta_order=math.radians(35.0))
+        self.assertAlmostEqual(max(track["y_m"]), turn["max_transfer_m"], delta=1.0)
+
+    def test_an_estimate_is_a_model(self):
+        model = estimate(HERE / "tests" / "my-ship.yaml")
+        self.assertGreater(model(300.0, delta_order=0.3)["psi_rad"][-1], 0.5)
+        with tempfile.TemporaryDirectory() as folder:
+            copy = Model(model.write(pathlib.Path(folder) / "copy.yaml"))
+        self.assertEqual(copy.module.COEFFICIENTS, model.module.COEFFICIENTS)
 
 
 @unittest.skipUnless("SISTERSHIP_URL" in os.environ, "no server")

@@ -18,4 +18,4 @@ pub(crate) fn return_large_blocks() {
 
 /// Does nothing for other allocators.
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
-pub(crate) fn give_back() {}
+pub(crate) fn return_large_blocks() {}

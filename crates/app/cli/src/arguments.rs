@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{backup, family, fsck, gc, keys, serve, ships, users, verify, work, zoo};
+use crate::commands::{
+    backup, completions, family, fsck, gc, health, keys, manual, serve, ships, users, verify, work,
+    zoo,
+};
 use crate::commands::{
     branch, check, compare, derive, diagnose, estimate, export, import, init, manoeuvre, plan,
     predict, refine, similar, simulate, validate,
@@ -94,6 +97,8 @@ pub enum Command {
     Serve(serve::ServeArguments),
     /// Run a worker for the jobs that servers have queued.
     Work(work::WorkArguments),
+    /// Check that a server of this machine is ready.
+    Health(health::HealthArguments),
     /// Find ships of a store by category, tag, particulars, metrics and similarity.
     Ships(Box<ships::ShipsArguments>),
     /// Repeat the recorded recipe of a version and compare the bytes.
@@ -112,6 +117,10 @@ pub enum Command {
     Backup(backup::BackupArguments),
     /// Restore a backup into an empty store.
     Restore(backup::RestoreArguments),
+    /// Print completions of the command line for a shell.
+    Completions(completions::CompletionsArguments),
+    /// Write the manual pages of all commands.
+    Manual(manual::ManualArguments),
 }
 
 #[cfg(test)]

@@ -67,6 +67,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Demo(demo) => demo::run(demo, &zoo()?),
         Command::Serve(serve) => commands::serve::run(serve, &arguments.zoo),
         Command::Work(work) => commands::work::run(work),
+        Command::Health(health) => commands::health::run(health),
         Command::Ships(ships) => commands::ships::run(ships),
         Command::Branch(branch) => commands::branch::run(&zoo()?, branch),
         Command::Validate(validate) => commands::validate::run(&zoo()?, validate),
@@ -78,5 +79,7 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Gc(gc) => commands::gc::run(gc),
         Command::Backup(backup) => commands::backup::run_backup(backup),
         Command::Restore(restore) => commands::backup::run_restore(restore),
+        Command::Completions(completions) => commands::completions::run(completions),
+        Command::Manual(manual) => commands::manual::run(manual),
     }
 }

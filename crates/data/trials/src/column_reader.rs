@@ -131,8 +131,7 @@ fn mapped_columns(
     }
     if length > mapping.limits.rows {
         let most = mapping.limits.rows;
-        let message =
-            format!("{length} values are more than the {most} that are read; split the file");
+        let message = format!("{length} values are more than the limit of {most}; split the file");
         findings.error(None, None, message);
     }
     (!findings.has_errors()).then_some(columns)

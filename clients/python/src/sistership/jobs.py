@@ -1,12 +1,12 @@
-"""Jobs on the server, and a progress bar."""
+"""Jobs on the server."""
 
 from __future__ import annotations
 
-import sys
 import time
-from typing import Any, Callable, Dict, Mapping, Union
+from typing import Any, Dict, Mapping
 
 from .core import Core
+from .progress import Progress, end_bar, progress_sink
 
 ENDED = ("succeeded", "failed", "cancelled")
 
@@ -38,31 +38,17 @@ class Job:
         """Cancels the job."""
         self.view = dict(self.core.delete_jobs_id(self.id))
 
-    def wait(self, progress: Union[bool, Callable[[float, str], None]] = True,
+    def wait(self, progress: Progress = True,
              every_s: float = 0.5) -> Dict[str, Any]:
         """Waits for the result; `progress` draws a bar, or is called with share and message.
 
         Raises `JobFailed` with the server's reason."""
-        tell = _bar if progress is True and _watched() else progress
+        sink = progress_sink(progress)
         while self.refresh().view["state"] not in ENDED:
-            if callable(tell):
-                tell(self.view["progress"], self.view["message"])
+            if sink is not None:
+                sink(self.view["progress"], self.view["message"])
             time.sleep(every_s)
-        if callable(tell):
-            tell(1.0, self.view["state"])
-        if tell is _bar:
-            print(file=sys.stderr)
+        end_bar(sink, self.view["state"])
         if self.view["state"] != "succeeded":
             raise JobFailed(self.view.get("error") or self.view["state"])
         return self.view["result"]
-
-
-def _watched() -> bool:
-    """True if the output is visible: in a terminal or a notebook."""
-    return sys.stderr.isatty() or "ipykernel" in sys.modules
-
-
-def _bar(share: float, words: str) -> None:
-    done = round(30 * share)
-    print(f"\r[{'#' * done}{'.' * (30 - done)}] {words[:60]:60}", end="", file=sys.stderr,
-          flush=True)

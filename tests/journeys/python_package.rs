@@ -1,21 +1,34 @@
-//! The Python client as people get it: its wheel, the README's lines, and the tour that is its
-//! documentation.
+//! The Python package as people get it: the README's lines in an environment that holds nothing
+//! else, and the tour that is its documentation.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use sistership_tests::binary;
 use sistership_tests::server::TestServer;
 
 use super::sea_trials::{csv, few, ship};
 
-/// The wheel alone in an empty environment runs the README's five lines.
+/// The package alone in an empty environment runs the README's lines with a server.
 #[tokio::test(flavor = "multi_thread")]
-async fn python_wheel() {
+async fn python_with_a_server() {
+    let folder = ship_and_trial();
+    let server = TestServer::sqlite().await;
+    installed("served", folder.path(), Some(&server)).await;
+}
+
+/// The same without a server: the program does the work.
+#[tokio::test(flavor = "multi_thread")]
+async fn python_without_a_server() {
+    installed("local", ship_and_trial().path(), None).await;
+}
+
+/// A folder with the files that the README's lines name.
+fn ship_and_trial() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
     std::fs::write(folder.path().join("my-ship.yaml"), ship()).expect("written");
     std::fs::write(folder.path().join("zigzag.csv"), csv(&few()[1])).expect("written");
-    let server = TestServer::sqlite().await;
-    installed("lines", folder.path(), Some(&server)).await;
+    folder
 }
 
 /// The tour is executed, and its figures are what it says.
@@ -36,6 +49,7 @@ async fn installed(what: &str, folder: &Path, server: Option<&TestServer>) -> St
         .args([Path::new("-B"), &script(), Path::new(what)])
         .current_dir(folder)
         .env_remove("PYTHONPATH")
+        .env("SISTERSHIP_PROGRAM", binary::path())
         .env("SISTERSHIP_URL", server.map_or("", TestServer::url));
     let output = tokio::task::spawn_blocking(move || command.output()).await.expect("an end");
     let Ok(output) = output else {

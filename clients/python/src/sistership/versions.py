@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import types
 from typing import Any, Dict, Mapping, Optional, Sequence, cast
 
 from .core import Core, ManoeuvreRequest, SessionRequest
-from .tracks import CANONICAL, Track
-from .trials import PathLike
+from .equations import ExportedModel
 
 
-class Version:
-    """A version of a model. A call simulates it on this machine."""
+class Version(ExportedModel):
+    """A version of a model. Called with the inputs of a run it simulates on this machine."""
 
     def __init__(self, core: Core, ship: str, number: int) -> None:
+        super().__init__()
         self.core, self.ship, self.number = core, ship, number
-        self._module: Optional[types.ModuleType] = None
 
     def __repr__(self) -> str:
         return f"Version({self.name!r})"
@@ -60,29 +57,6 @@ class Version:
         """The version for another tool: `c`, `python`, `matlab`, `modelica`, `fmu2`, `fmu3`."""
         return self.core.get_models_model_versions_number_export(
             self.ship, self.number, format=format)  # type: ignore[arg-type]
-
-    def save(self, format: str, path: PathLike) -> str:
-        """Exports the version to a file and returns its path."""
-        given = self.export(format)
-        with open(path, "wb") as file:
-            file.write(given)
-        return os.fspath(path)
-
-    @property
-    def module(self) -> types.ModuleType:
-        """The version's equations as a module of Python: `rates`, `step`, `run`, `simulate`."""
-        if self._module is None:
-            module = types.ModuleType(f"sistership_{self.ship.replace('-', '_')}_{self.number}")
-            exec(compile(self.export("python"), module.__name__, "exec"), module.__dict__)
-            self._module = module
-        return self._module
-
-    def __call__(self, duration_s: float, **given: Any) -> Track:
-        """Simulates here: `version(600.0, delta_order=0.6)`; an input (all are in `module.INPUTS`) is
-        a number, or a function of time and state. `state`, `step_s` and `coefficients` may be
-        given, too."""
-        rows = list(self.module.run(duration_s, **given))
-        return Track(["t_s", *CANONICAL], [[t, *state] for t, state in rows])
 
 
 class UnderWay:

@@ -1,0 +1,5 @@
+"""`python -m sistership`: the program, with the same arguments."""
+
+from .program import main
+
+main()
