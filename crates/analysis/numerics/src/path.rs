@@ -134,11 +134,17 @@ impl RidgePath {
         let explained: f64 = (0..self.eigenvalues.len())
             .map(|i| solution(i) * (2.0 * self.data[target][i] - self.eigenvalues[i] * solution(i)))
             .sum();
-        // Effective number of parameters, sum of d / (d + lambda); one more for the mean.
-        let freedom: f64 =
-            self.eigenvalues.iter().map(|d| d / (d + choice.lambda).max(1e-300)).sum();
+        // One more for the mean.
+        let freedom = self.effective_count(choice.lambda);
         let mean = (self.target_variance[target] - explained).max(0.0);
         mean * self.count / (self.count - freedom - 1.0).max(1.0)
+    }
+
+    /// Effective number of parameters that the samples determine at `lambda`, the sum of `d/(d +
+    /// lambda)` over the eigenvalues (Hastie, Tibshirani and Friedman 2009, The elements of
+    /// statistical learning, Eq. 3.50).
+    pub fn effective_count(&self, lambda: f64) -> f64 {
+        self.eigenvalues.iter().map(|d| d / (d + lambda).max(1e-300)).sum()
     }
 
     /// Mean square of a target about its mean, or about zero if the statistics are about zero.

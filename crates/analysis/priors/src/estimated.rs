@@ -17,6 +17,12 @@ static ESTIMATES: LazyLock<Option<Law>> = LazyLock::new(|| {
 
 /// Estimate of a law's parameter, with a source that marks it as one.
 pub(crate) fn estimated_parameter(law: &Law, name: &str, target: &Vessel) -> Option<Quantity> {
+    let prior = law.parameters.get(name)?.prior;
+    clarke_estimate(law, name, target)
+        .or_else(|| prior.map(|prior| Quantity::new(prior.value, "mean of its prior in the law")))
+}
+
+fn clarke_estimate(law: &Law, name: &str, target: &Vessel) -> Option<Quantity> {
     let estimates = ESTIMATES.as_ref()?;
     let (wanted, known) = (law.parameters.get(name)?, estimates.parameters.get(name)?);
     // The same name may have another meaning in another law: dimension and meaning must agree.

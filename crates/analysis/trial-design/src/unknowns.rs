@@ -28,7 +28,16 @@ impl UnknownDeviations {
     /// Returns an error if the posterior cannot be read.
     pub fn new(model: &Model, effects: Vec<EffectCandidate>) -> Result<Self, PlanError> {
         let (coefficients, rows, remark) = match model.valid_posterior() {
-            Some(posterior) => (posterior.names.clone(), posterior.covariance_root()?, None),
+            Some(posterior) => {
+                // The filter knows coefficients only. They come first, so that their rows are the
+                // root of their own covariance.
+                let is_coefficient = |name: &&String| model.coefficients.contains_key(*name);
+                let names: Vec<String> =
+                    posterior.names.iter().take_while(is_coefficient).cloned().collect();
+                let mut rows = posterior.covariance_root()?;
+                rows.truncate(names.len());
+                (names, rows, None)
+            }
             None => share_prior(model),
         };
         let own: usize = effects.iter().map(|effect| effect.at.len()).sum();

@@ -213,12 +213,23 @@ impl Model {
         self.coefficients.get(name).map_or(0.0, |quantity| quantity.value)
     }
 
+    /// Coefficient or parameter of that name.
+    pub fn named_value(&self, name: &str) -> Option<&Quantity> {
+        self.coefficients.get(name).or_else(|| self.parameters.get(name))
+    }
+
+    /// Coefficient or parameter of that name, to be changed.
+    pub fn named_value_mut(&mut self, name: &str) -> Option<&mut Quantity> {
+        let Self { coefficients, parameters, .. } = self;
+        coefficients.get_mut(name).or_else(|| parameters.get_mut(name))
+    }
+
     /// Joint uncertainty of the coefficients; `None` if they have changed since they were
     /// estimated.
     pub fn valid_posterior(&self) -> Option<&Posterior> {
-        self.posterior.as_ref().filter(|p| {
-            p.belongs_to(|name| self.coefficients.get(name).map(|quantity| quantity.value))
-        })
+        self.posterior
+            .as_ref()
+            .filter(|p| p.belongs_to(|name| self.named_value(name).map(|quantity| quantity.value)))
     }
 
     /// Checks that the law has every name and that every parameter has a value.

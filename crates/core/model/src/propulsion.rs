@@ -98,8 +98,14 @@ impl SurgeBalance {
             let unit = Unit::parse(&raw.unit).map_err(|e| refused(name, e.to_string()))?;
             let (unit, dimension) = (raw.unit.clone(), unit.dimension);
             let meaning = raw.meaning.clone();
-            let known =
-                LawParameter { dimension, unit, meaning, from: None, is_approach_speed: false };
+            let known = LawParameter {
+                dimension,
+                unit,
+                meaning,
+                from: None,
+                is_approach_speed: false,
+                prior: None,
+            };
             Ok((name.clone(), known))
         };
         Ok(Self {

@@ -29,7 +29,8 @@ pub struct Plant {
     /// Accelerations per unit force on each axis, where masses do not change.
     mobility: Option<Matrix4<f64>>,
     input_names: Vec<String>,
-    /// Coefficients that are given with each state; all others are folded into the tape.
+    /// Coefficients, and parameters that trials determine, that are given with each state; all
+    /// others are folded into the tape.
     open: Vec<String>,
     input_defaults: Vec<Option<f64>>,
     lags_s: Vec<(usize, f64)>,
@@ -61,8 +62,8 @@ impl Plant {
         Self::from_equations(&EquationsOfMotion::new(model, law)?, CoefficientBinding::Values)
     }
 
-    /// Lowers a model as [`Plant::new`] does, with all coefficients open: values are given with
-    /// each state, and those of the model are not read.
+    /// Lowers a model as [`Plant::new`] does, with all coefficients open, and the parameters that
+    /// trials determine: values are given with each state, and those of the model are not read.
     ///
     /// # Errors
     /// The errors of [`Plant::new`].
@@ -94,7 +95,7 @@ impl Plant {
         check_inputs(law)?;
         let open: Vec<String> = match coefficients {
             CoefficientBinding::Values => Vec::new(),
-            CoefficientBinding::Names => model.coefficients.keys().cloned().collect(),
+            CoefficientBinding::Names => open_names(model, law),
         };
         // Open coefficients follow the inputs of the law on the tape.
         let names: Vec<String> =
@@ -128,7 +129,7 @@ impl Plant {
         &self.input_names
     }
 
-    /// Names of the coefficients that are given with each state, in order.
+    /// Names of the coefficients and parameters that are given with each state, in order.
     pub fn open_coefficients(&self) -> &[String] {
         &self.open
     }
@@ -152,6 +153,13 @@ impl Plant {
     pub fn input_defaults(&self) -> &[Option<f64>] {
         &self.input_defaults
     }
+}
+
+/// Names of the coefficients of a model, and of the parameters of its law that trials determine.
+fn open_names(model: &Model, law: &Law) -> Vec<String> {
+    let parameters = law.parameter_priors().map(|(name, _)| name);
+    let given = parameters.filter(|name| model.parameters.contains_key(*name));
+    model.coefficients.keys().chain(given).cloned().collect()
 }
 
 /// Refuses a law that has more inputs than [`Inputs`] can hold.

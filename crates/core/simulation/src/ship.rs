@@ -188,14 +188,13 @@ impl Ship {
             .zip(self.plant.input_defaults().iter().copied())
     }
 
-    /// Coefficients of another model in the order of the open coefficients; `None` if its names are
-    /// not those of this ship.
+    /// Coefficients and parameters of another model in the order of the open ones; `None` if its
+    /// names are not those of this ship.
     pub fn open_coefficient_values(&self, model: &Model) -> Option<Vec<f64>> {
         let names = self.plant.open_coefficients();
-        let same = model.coefficients.len() == names.len()
-            // Equal numbers and known names: both sets of names are the same.
-            && model.coefficients.keys().all(|name| names.contains(name));
-        same.then(|| names.iter().map(|name| model.coefficient(name)).collect())
+        let is_known = model.coefficients.keys().all(|name| names.contains(name));
+        let value = |name: &String| model.named_value(name).map(|quantity| quantity.value);
+        is_known.then(|| names.iter().map(value).collect()).flatten()
     }
 
     /// Number of inputs of the law.

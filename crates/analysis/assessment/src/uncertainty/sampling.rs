@@ -64,11 +64,8 @@ pub fn draw_from_posterior(model: &Model, sampling: Sampling) -> Option<Vec<Mode
 fn shift_coefficients(model: &Model, names: &[String], moved: &[f64], side: f64) -> Model {
     let mut model = model.clone();
     for (name, by) in names.iter().zip(moved) {
-        model
-            .coefficients
-            .get_mut(name)
-            .into_iter()
-            .for_each(|quantity| quantity.value += side * by);
+        let moved = model.named_value_mut(name).into_iter();
+        moved.for_each(|quantity| quantity.value += side * by);
     }
     model
 }

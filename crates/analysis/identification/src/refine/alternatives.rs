@@ -59,7 +59,7 @@ pub fn alternative_fits(
     let left_out =
         candidates.into_iter().filter(|one| one.option.error.is_some() && !one.left_out.is_empty());
     let one = |one: CandidateFit| {
-        let all = one.solution.fit(&variants)?.map(|fit| problem.model_with(&fit.coefficients));
+        let all = one.solution.fit(&variants)?.map(|fit| problem.fitted_model(&fit));
         Ok(all.map(|all| AlternativeFit { label: one.option.step, all, without: one.left_out }))
     };
     left_out.filter_map(|candidate| one(candidate).transpose()).collect()

@@ -32,6 +32,15 @@ pub(super) trait CandidateSolution: Sync {
         variants: &[TermVariant],
     ) -> Result<Option<CoefficientErrors>, RefineError>;
 
+    /// Returns the effective number of coefficients and parameters that the trials determine; the
+    /// prior determines the others. `None` if it is not known.
+    ///
+    /// # Errors
+    /// Returns an error if the trials have no sample.
+    fn effective_count(&self, _: &[TermVariant]) -> Result<Option<f64>, RefineError> {
+        Ok(None)
+    }
+
     /// Returns the place of its variant and its choices if the solution is a ridge.
     fn ridge_choices(&self) -> Option<(usize, &RidgeChoices)> {
         None

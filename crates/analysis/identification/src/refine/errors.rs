@@ -1,6 +1,6 @@
 //! Joint errors of coefficients.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use sistership_model::Model;
 use sistership_model::posterior::Posterior;
 
@@ -27,6 +27,27 @@ impl CoefficientErrors {
         Some(Self { names: names.to_vec(), covariance, source, cross })
     }
 
+    /// Returns the errors with unknowns after the others that are the source's, each with the
+    /// variance of its prior.
+    pub fn with_prior_variances(mut self, variances: &[(String, f64)]) -> Self {
+        let (first, size) = (self.names.len(), self.names.len() + variances.len());
+        for matrix in [&mut self.covariance, &mut self.source, &mut self.cross] {
+            *matrix = matrix.clone().resize(size, size, 0.0);
+            (first..).zip(variances).for_each(|(k, (_, variance))| matrix[(k, k)] = *variance);
+        }
+        self.names.extend(variances.iter().map(|(name, _)| name.clone()));
+        self
+    }
+
+    /// Returns the errors of quantities that change by a slope with each unknown.
+    pub fn rescaled(mut self, slopes: &DVector<f64>) -> Self {
+        let scale = DMatrix::from_diagonal(slopes);
+        for matrix in [&mut self.covariance, &mut self.source, &mut self.cross] {
+            *matrix = &scale * &*matrix * &scale;
+        }
+        self
+    }
+
     /// Returns the errors as a posterior of a model; `None` if the covariance has no Cholesky root.
     pub fn to_posterior(&self, model: &Model) -> Option<Posterior> {
         let deviations = self.covariance.diagonal().map(|variance| variance.max(0.0).sqrt());
@@ -44,7 +65,8 @@ impl CoefficientErrors {
         // of the identity makes it positive definite.
         let root = SLACK.iter().find_map(rooted)?.unpack();
         let names = self.names.clone();
-        let values = names.iter().map(|name| model.coefficient(name)).collect();
+        let value = |name: &String| model.named_value(name).map_or(0.0, |quantity| quantity.value);
+        let values = names.iter().map(value).collect();
         let root_correlation = Posterior::format_rows(size, &|i, j| root[(i, j)]);
         Some(Posterior {
             names,

@@ -40,6 +40,9 @@ pub struct CandidateEvaluation {
     pub variance: Option<f64>,
     /// Number of fitted coefficients; 0 for the transferred source.
     pub coefficients: usize,
+    /// Effective number of coefficients and parameters that the trials determine, where it is
+    /// known; 0 for the transferred source.
+    pub effective: Option<f64>,
     /// Family of terms and strength of the prior, for a ridge.
     pub ridge: Option<(TermFamily, f64)>,
     /// Model of each fold, fitted without it; empty for the transferred source, and if trials were
@@ -68,6 +71,7 @@ impl CandidateEvaluation {
             each: BTreeMap::new(),
             variance: None,
             coefficients: 0,
+            effective: None,
             ridge: None,
             folds: Vec::new(),
             reason: Some(reason),
@@ -109,6 +113,10 @@ fn evaluate_candidate(
             _ => fold_variance(problem, &candidate.left_out),
         },
         coefficients: candidate.size,
+        effective: match candidate.size {
+            0 => Some(0.0),
+            _ => candidate.solution.effective_count(variants).ok().flatten(),
+        },
         ridge: candidate.solution.ridge_choices().and_then(ridge),
         folds: fold_models(problem, &candidate.left_out),
         reason: candidate.option.reason.clone(),

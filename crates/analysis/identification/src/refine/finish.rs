@@ -18,6 +18,7 @@ use super::ridge::{CoefficientFit, RidgeChoices};
 use super::thresholds::SELECTION;
 use super::variant::TermVariant;
 use crate::constraints::LimitError;
+use sistership_assessment::course::course_figures;
 use sistership_assessment::uncertainty::{fold_factor, uncertainty_bands};
 use sistership_numerics::RidgeChoice;
 use sistership_propulsion::{PropulsionContext, PropulsionFault, SourcePropeller};
@@ -168,7 +169,7 @@ fn propulsion_context<'a>(problem: &'a RefinementProblem<'_>) -> PropulsionConte
 
 /// The refined model; the transferred source if nothing was fitted.
 fn refined_model(problem: &RefinementProblem<'_>, fitted: Option<&CoefficientFit>) -> Model {
-    fitted.map_or_else(|| problem.transferred.clone(), |fit| problem.model_with(&fit.coefficients))
+    fitted.map_or_else(|| problem.transferred.clone(), |fit| problem.fitted_model(fit))
 }
 
 /// Builds the refinement from the chosen candidate: errors, posterior, propulsion and uncertainty
@@ -183,9 +184,9 @@ fn build_refinement(
     candidates[best].option.chosen = true;
     let errors = candidates[best].solution.coefficient_errors(problem, variants)?;
     let mut fitted = taken.fit.map(|fit| fit.with_errors(errors));
-    // The coefficients are read again for their standard errors, which are known only now.
-    let coefficients = refined_model(problem, fitted.as_ref()).coefficients;
-    let mut model = Model { coefficients, ..taken.model };
+    // The values are read again for their standard errors, which are known only now.
+    let Model { coefficients, parameters, .. } = refined_model(problem, fitted.as_ref());
+    let mut model = Model { coefficients, parameters, ..taken.model };
     model.posterior = coefficient_posterior(problem, &model, fitted.as_ref(), variants)?;
     // The fold models' scatter widens the posterior; it never narrows it.
     let factor = fold_factor(&model, problem.law, &candidates[best].left_out);
@@ -205,8 +206,9 @@ fn build_refinement(
         None,
         problem.settings.bands,
     );
+    let course = course_figures(&model, problem.law);
     let manoeuvres =
-        RefinementManoeuvres { source: before, refined: taken.manoeuvres, bands, measured };
+        RefinementManoeuvres { source: before, refined: taken.manoeuvres, bands, course, measured };
     let propulsion_fault = fault.map(|fault| fault.to_string());
     let chosen = ChosenCandidate { candidates, best, model, fitted, propulsion_fault };
     assemble_refinement(problem, chosen, manoeuvres)
@@ -214,8 +216,15 @@ fn build_refinement(
 
 /// Multiplies all standard errors of a model and its fit by a factor.
 fn widen_errors(model: &mut Model, fitted: Option<&mut CoefficientFit>, factor: f64) {
-    let of_fit = fitted.into_iter().flat_map(|fit| fit.coefficients.values_mut());
-    of_fit.for_each(|coefficient| coefficient.standard_error *= factor);
+    let of_fit = fitted.into_iter().flat_map(|fit| {
+        // Errors of parameters that were not fitted are those of their source.
+        for name in fit.parameters.keys() {
+            let own = model.parameters.get_mut(name).and_then(|one| one.standard_error.as_mut());
+            own.into_iter().for_each(|error| *error *= factor);
+        }
+        fit.coefficients.values_mut().chain(fit.parameters.values_mut())
+    });
+    of_fit.for_each(|fitted| fitted.standard_error *= factor);
     let own = model.coefficients.values_mut().filter_map(|one| one.standard_error.as_mut());
     own.for_each(|error| *error *= factor);
     let posterior = model.posterior.iter_mut().flat_map(|all| all.deviations.iter_mut());

@@ -13,6 +13,7 @@ use sistership_simulation::metrics::ManoeuvreMetrics;
 use super::cma_es::SearchReport;
 use super::settings::RefinementSettings;
 use crate::constraints::LimitError;
+use sistership_assessment::course::CourseFigure;
 use sistership_assessment::uncertainty::{UncertaintyBand, UncertaintyBands};
 use sistership_priors::transfer::UnknownParameter;
 
@@ -103,6 +104,14 @@ pub struct CoefficientChange {
     pub standard_error: f64,
     /// Distance from the source in standard deviations of the prior.
     pub moved_sd: f64,
+}
+
+impl CoefficientChange {
+    /// Returns true if the standard error is no larger than the value; a value that is not so is
+    /// the prior's, not the trials'.
+    pub fn is_determined(&self) -> bool {
+        self.standard_error <= self.refined.abs()
+    }
 }
 
 /// One step of the widening ranges, with the errors that it gives.
@@ -230,6 +239,9 @@ pub struct RefinementManoeuvres {
     /// Confidence bands of the refined model's figures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bands: Option<UncertaintyBands>,
+    /// Response of the refined model on a straight course.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub course: Vec<CourseFigure>,
     /// Turning circles and zigzags among the trials, measured and simulated with the recorded
     /// rudder from their start.
     pub measured: Vec<MeasuredManoeuvre>,

@@ -12,7 +12,7 @@ use sistership_simulation::error::standard_deviations;
 use super::measure::PriorMeasure;
 use super::progress::{FitIterate, IterateObserver};
 use super::replayed_trials::ReplayedTrials;
-use super::ridge::FittedCoefficient;
+use super::ridge::{CoefficientFit, FittedCoefficient};
 use super::settings::RefinementSettings;
 
 /// Inputs that are constant while candidates are compared.
@@ -94,18 +94,28 @@ impl<'a> RefinementProblem<'a> {
         self.training.iter().map(|trial| trial.interval_s()).fold(f64::INFINITY, f64::min).max(1e-3)
     }
 
+    /// Returns the transferred model with the coefficients and parameters of a fit.
+    pub fn fitted_model(&self, fit: &CoefficientFit) -> Model {
+        let mut model = self.model_with(&fit.coefficients);
+        let all = fit.parameters.iter().map(|(name, one)| (name.clone(), self.refined(one)));
+        model.parameters.extend(all);
+        model
+    }
+
+    /// A fitted value as a quantity of a model.
+    fn refined(&self, fitted: &FittedCoefficient) -> Quantity {
+        Quantity {
+            standard_error: Some(fitted.standard_error),
+            ..Quantity::new(fitted.value, format!("refined from {}", self.source))
+        }
+    }
+
     /// Returns the transferred model with these coefficients and no others.
     pub fn model_with(&self, coefficients: &BTreeMap<String, FittedCoefficient>) -> Model {
         let mut model = self.transferred.clone();
         model.status = Status::Refined;
-        model.coefficients.clear();
-        for (name, fitted) in coefficients {
-            let quantity = Quantity {
-                standard_error: Some(fitted.standard_error),
-                ..Quantity::new(fitted.value, format!("refined from {}", self.source))
-            };
-            model.coefficients.insert(name.clone(), quantity);
-        }
+        let all = coefficients.iter().map(|(name, one)| (name.clone(), self.refined(one)));
+        model.coefficients = all.collect();
         model
     }
 }

@@ -146,7 +146,27 @@ fn coefficient_changes(
             moved_sd: if prior > 0.0 { (quantity.value - source) / prior } else { 0.0 },
         }
     };
-    model.coefficients.iter().map(one).collect()
+    let coefficients = model.coefficients.iter().map(one);
+    coefficients.chain(parameter_changes(problem, fitted)).collect()
+}
+
+/// Change of every parameter that was fitted from the transferred source.
+fn parameter_changes<'a>(
+    problem: &'a RefinementProblem<'_>,
+    fitted: Option<&'a CoefficientFit>,
+) -> impl Iterator<Item = CoefficientChange> + 'a {
+    let all = fitted.into_iter().flat_map(|fit| &fit.parameters);
+    all.filter_map(move |(name, fitted)| {
+        let source = problem.transferred.parameters.get(name)?.value;
+        Some(CoefficientChange {
+            name: name.clone(),
+            unit: problem.law.parameters.get(name)?.unit.clone(),
+            source,
+            refined: fitted.value,
+            standard_error: fitted.standard_error,
+            moved_sd: (fitted.value - source) / fitted.prior_deviation,
+        })
+    })
 }
 
 /// Remarks for the reader of the refinement.

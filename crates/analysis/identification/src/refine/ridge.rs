@@ -33,6 +33,8 @@ pub struct FittedCoefficient {
 pub struct CoefficientFit {
     /// Coefficients by name, in the law's units.
     pub coefficients: BTreeMap<String, FittedCoefficient>,
+    /// Nonlinear parameters of the law that were fitted, by name, in the law's units.
+    pub parameters: BTreeMap<String, FittedCoefficient>,
     /// Largest condition number of the regressions.
     pub condition_number: f64,
     /// Groups of coefficients that the samples cannot distinguish.
@@ -115,6 +117,14 @@ impl<'a> RegressionFold<'a> {
 }
 
 impl RegressionFold<'_> {
+    /// Effective number of coefficients that the samples determine, summed over the targets.
+    pub(super) fn effective_count(&self, choices: &RidgeChoices) -> f64 {
+        let of_targets = |(prepared, choices): (&PreparedRegression<'_>, &Vec<RidgeChoice>)| {
+            choices.iter().map(|choice| prepared.path.effective_count(choice.lambda)).sum::<f64>()
+        };
+        self.prepared.iter().zip(choices).map(of_targets).sum()
+    }
+
     /// Names of the coefficients, and half the second derivative by them of the objective of the
     /// fold's solution, each acceleration divided by its residual variance.
     pub(super) fn solution_curvature(&self, choices: &RidgeChoices) -> (Vec<String>, DMatrix<f64>) {
@@ -261,7 +271,8 @@ impl CoefficientFit {
     pub(super) fn with_errors(mut self, errors: Option<CoefficientErrors>) -> Self {
         if let Some(errors) = &errors {
             for (k, name) in errors.names.iter().enumerate() {
-                let fitted = self.coefficients.get_mut(name).into_iter();
+                let parameter = self.parameters.get_mut(name);
+                let fitted = self.coefficients.get_mut(name).into_iter().chain(parameter);
                 fitted.for_each(|fitted| {
                     fitted.standard_error = errors.covariance[(k, k)].max(0.0).sqrt()
                 });
@@ -281,6 +292,7 @@ pub fn fit_regressions(
 ) -> CoefficientFit {
     let mut result = CoefficientFit {
         coefficients: BTreeMap::new(),
+        parameters: BTreeMap::new(),
         condition_number: 1.0,
         collinear_groups: Vec::new(),
         errors: None,

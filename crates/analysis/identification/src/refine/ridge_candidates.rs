@@ -41,6 +41,13 @@ impl CandidateSolution for RidgeSolution {
         variants[self.variant].ridge_errors(&problem.training, &self.choices)
     }
 
+    fn effective_count(&self, variants: &[TermVariant]) -> Result<Option<f64>, RefineError> {
+        let variant = &variants[self.variant];
+        let all = variant.merged_moments(|_| true)?;
+        let fold = RegressionFold::new(&variant.blocks, &variant.model, &all, &[]);
+        Ok(Some(fold.effective_count(&self.choices)))
+    }
+
     fn ridge_choices(&self) -> Option<(usize, &RidgeChoices)> {
         Some((self.variant, &self.choices))
     }

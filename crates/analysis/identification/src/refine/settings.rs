@@ -11,7 +11,7 @@ use sistership_assessment::uncertainty::Sampling;
 
 /// Revision of the algorithm of this program. It rises with each change after which the same
 /// settings give another model.
-pub const ALGORITHM_REVISION: u32 = 1;
+pub const ALGORITHM_REVISION: u32 = 2;
 
 /// The estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -125,7 +125,7 @@ pub struct TuningRange {
 pub struct RefinementSettings {
     /// Revision of the algorithm. Versions keep it, so that another revision is never taken for the
     /// one that made them.
-    #[schemars(range(min = 1, max = 1))]
+    #[schemars(range(min = 2, max = 2))]
     pub algorithm_revision: u32,
     /// The estimator.
     pub method: EstimationMethod,

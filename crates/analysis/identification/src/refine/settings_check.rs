@@ -129,7 +129,7 @@ mod tests {
     fn every_setting_that_cannot_be_used_is_named() {
         assert_eq!(RefinementSettings::default().check(), Ok(()));
         let settings = RefinementSettings {
-            algorithm_revision: 2,
+            algorithm_revision: ALGORITHM_REVISION + 1,
             folds: 1,
             strengths: vec![1.0, f64::NAN],
             roll_strength: Some(-1.0),

@@ -95,12 +95,16 @@ impl TermVariant {
             .ok_or_else(|| RefineError::Data("the trials have no samples that can be used".into()))
     }
 
-    /// The model with other values of some coefficients.
+    /// The model with other values of some coefficients and parameters.
     pub fn model_at(&self, values: &BTreeMap<String, f64>) -> Model {
         let mut model = self.model.clone();
-        let all =
-            values.iter().map(|(name, value)| (name.clone(), Quantity::new(*value, "refined")));
-        model.coefficients.extend(all);
+        for (name, value) in values {
+            let refined = Quantity::new(*value, "refined");
+            match model.parameters.get_mut(name) {
+                Some(parameter) => *parameter = refined,
+                None => drop(model.coefficients.insert(name.clone(), refined)),
+            }
+        }
         model
     }
 

@@ -101,6 +101,7 @@ impl EffectApplier<'_> {
                 meaning,
                 from: None,
                 is_approach_speed: false,
+                prior: None,
             };
             law.parameters.insert(self.qualified_name(name), known);
             // The effect is absent until the values of a model are set.

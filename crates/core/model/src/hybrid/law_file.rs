@@ -173,7 +173,10 @@ impl InertiaFormulas {
                 if bis && !by.is_empty() { format!("{of} by {by}") } else { of.to_owned() };
             let unit = if bis && !by.is_empty() { "1" } else { unit };
             let from = from.map(str::to_owned);
-            (name.to_owned(), ParameterFile { unit: unit.into(), meaning, from, role: None })
+            (
+                name.to_owned(),
+                ParameterFile { unit: unit.into(), meaning, from, role: None, prior: None },
+            )
         };
         let x_g = if bis { "x_g_m/lpp_m" } else { "x_g_m" };
         IndexMap::from([

@@ -8,6 +8,7 @@ use indexmap::IndexMap;
 use super::additions::LawAdditions;
 use super::dimension::{STATES, axis_dimension};
 use super::error::TermError;
+use super::file::ParameterPrior;
 use crate::coefficient::{Axis, CoefficientName, split_submodel};
 use crate::particulars;
 use crate::quantity::Quantity;
@@ -75,6 +76,8 @@ pub struct LawParameter {
     /// True for the speed about which the law is expanded, which belongs to the trials and not to
     /// the ship.
     pub is_approach_speed: bool,
+    /// Prior by which trials determine it; none for a parameter that keeps the source's value.
+    pub prior: Option<ParameterPrior>,
 }
 
 /// Conditions under which coefficients deviate from the shared ones: while they hold, `X_u@name` is
@@ -254,6 +257,11 @@ impl Law {
             .iter()
             .find(|(_, parameter)| parameter.is_approach_speed)
             .map(|(name, _)| name.as_str())
+    }
+
+    /// Names of the parameters that trials determine, with their priors.
+    pub fn parameter_priors(&self) -> impl Iterator<Item = (&String, ParameterPrior)> {
+        self.parameters.iter().filter_map(|(name, parameter)| Some((name, parameter.prior?)))
     }
 
     /// Returns true for a 4-DOF law, in which roll is a state.

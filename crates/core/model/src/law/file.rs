@@ -88,6 +88,30 @@ pub struct ParameterFile {
     /// `approach_speed` for the speed about which the law is expanded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub role: Option<ParameterRole>,
+    /// Prior by which trials determine it; without one it keeps the source's value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prior: Option<ParameterPrior>,
+}
+
+/// Prior of a parameter that trials determine: how ships differ, and what is physically possible.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterPrior {
+    /// Value of a ship without a source that has the parameter.
+    pub value: f64,
+    /// Standard deviation about the source's value.
+    pub deviation: f64,
+    /// Least and greatest physical value.
+    pub range: [f64; 2],
+}
+
+impl ParameterPrior {
+    /// Returns true if the deviation is positive and the value lies within the range.
+    pub fn is_consistent(&self) -> bool {
+        let [low, high] = self.range;
+        let is_finite = [self.value, self.deviation, low, high].into_iter().all(f64::is_finite);
+        is_finite && self.deviation > 0.0 && low < self.value && self.value < high
+    }
 }
 
 /// Special meaning of a parameter.

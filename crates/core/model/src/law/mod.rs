@@ -14,5 +14,7 @@ pub use additions::{LawAdditions, StraightAhead};
 pub use definition::{AxisLaw, Law, LawInput, LawParameter, LawSubmodel, indicator_name};
 pub use dimension::{STATES, acceleration_dimension, axis_dimension};
 pub use error::TermError;
-pub use file::{AxisFile, InputFile, LawFile, LawKind, ParameterFile, SubmodelFile, TermFile};
+pub use file::{
+    AxisFile, InputFile, LawFile, LawKind, ParameterFile, ParameterPrior, SubmodelFile, TermFile,
+};
 pub use limits::{MAX_COEFFICIENTS, MAX_EFFECTS, MAX_SIZE, MAX_TERMS};

@@ -96,12 +96,17 @@ impl LawReader<'_> {
         if let Some(from) = &from {
             self.check_derivation(&field, from, unit.dimension)?;
         }
+        if raw.prior.is_some_and(|prior| !prior.is_consistent()) {
+            let message = "`prior` needs a positive `deviation` and a `value` within its `range`";
+            return Err(self.blame.field_error(&field, message));
+        }
         Ok(LawParameter {
             dimension: unit.dimension,
             unit: raw.unit.clone(),
             meaning: raw.meaning.clone(),
             from,
             is_approach_speed: raw.role == Some(ParameterRole::ApproachSpeed),
+            prior: raw.prior,
         })
     }
 

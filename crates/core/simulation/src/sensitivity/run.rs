@@ -13,8 +13,8 @@ use crate::tape::{LaneValues, TapeResults};
 pub struct SensitiveRun<'a, const L: usize> {
     system: &'a SensitiveSystem,
     states: Vec<LaneValues<L>>,
-    /// Sensitivities by lane, state and column: coefficients, then the initial state; followed by
-    /// padding for block reads.
+    /// Sensitivities by lane, state and column: coefficients, parameters by axis, then the initial
+    /// state; followed by padding for block reads.
     sensitivities: Vec<f64>,
     columns: usize,
     stages: [StageResult<L>; 4],
@@ -59,7 +59,9 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         let small = || SmallMatrix::zeros(order);
         let room = StepWorkspace {
             at: vec![[0.0; L]; order],
-            inputs: Vec::with_capacity(6 + system.input_names().len()),
+            inputs: Vec::with_capacity(
+                6 + system.input_names().len() + system.parameter_values.len(),
+            ),
             work: TapeResults::default(),
             gains: std::array::from_fn(|_| small()),
             product: small(),
@@ -102,8 +104,9 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         state
     }
 
-    /// Sensitivities of one state of a lane: to each coefficient, then to each initial state. `row`
-    /// is counted as in [`SensitiveSystem::states`].
+    /// Sensitivities of one state of a lane: to each coefficient, through each axis to each
+    /// parameter ([`SensitiveSystem::gather_sensitivities`] adds these up), then to each initial
+    /// state. `row` is counted as in [`SensitiveSystem::state_places`].
     pub fn state_sensitivities(&self, lane: usize, row: usize) -> &[f64] {
         let start = (lane * self.states.len() + row) * self.columns;
         &self.sensitivities[start..start + self.columns]
@@ -157,6 +160,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         room.inputs.clear();
         room.inputs.extend(given);
         room.inputs.extend_from_slice(inputs);
+        room.inputs.extend(system.parameter_values.iter().map(|value| [*value; L]));
         system.tape.evaluate(&room.inputs, &mut room.work);
         stages[i].read_tape(system, &room.work);
     }
@@ -223,11 +227,10 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
         let pushing: [&[f64]; 4] = std::array::from_fn(|i| {
             &pushing[i].regressors[lane * count..(lane + 1) * count + COLUMN_BLOCK]
         });
-        let starting = count..columns;
-        for (axis, range) in system.of_axis.iter().chain(std::iter::once(&starting)).enumerate() {
-            // Coefficients act through the accelerations of their axis; the initial state has no
-            // such term.
-            let pushes = if axis < axes { stages } else { 0 };
+        // Coefficients act through the accelerations of their axis; the initial state has no such
+        // term.
+        let pushed = system.of_axis.iter().map(|(axis, range)| (*axis, range.clone(), stages));
+        for (axis, range, pushes) in pushed.chain(std::iter::once((0, count..columns, 0))) {
             let mut sums = RowSums::new(order);
             for row in 0..order {
                 for k in 0..order {
@@ -237,7 +240,7 @@ impl<'a, const L: usize> SensitiveRun<'a, L> {
                     sums.add_term(row, order + i, room.reach[i][row * axes + axis][lane]);
                 }
             }
-            sums.replace_rows(own, columns, &pushing[..pushes], range.clone());
+            sums.replace_rows(own, columns, &pushing[..pushes], range);
         }
     }
 }

@@ -38,11 +38,17 @@ pub struct SensitiveSystem {
     mass: Vec<Option<usize>>,
     /// Accelerations per unit force on each axis, where masses do not change.
     constant: Option<Vec<f64>>,
-    /// Outputs of the regressors of the coefficients, with their scale.
+    /// Outputs of the forces per unit of each column: regressors of the coefficients with their
+    /// scale, then derivatives by the parameters, which act on several axes.
     pub(super) regressors: Vec<usize>,
-    /// Range of the coefficients of each axis among all.
-    pub(super) of_axis: Vec<Range<usize>>,
+    /// Ranges of columns with the axis on which they act.
+    pub(super) of_axis: Vec<(usize, Range<usize>)>,
+    /// Names of the coefficients, then of the parameters.
     names: Vec<String>,
+    /// Columns of each parameter, one for each axis on which it acts.
+    parameter_columns: Vec<Vec<usize>>,
+    /// Values of the parameters, inputs of the tape after those of the law.
+    pub(super) parameter_values: Vec<f64>,
     input_names: Vec<String>,
 }
 
@@ -53,19 +59,46 @@ impl SensitiveSystem {
     /// Returns an error that names what the model does not give, or if masses change with the
     /// motion, or if the model has effects on instruments or lags.
     pub fn new(model: &Model, law: &Law) -> Result<Self, PlantError> {
+        Self::with_parameters(model, law, &[])
+    }
+
+    /// Prepares a model with sensitivities to all of its coefficients and to some parameters of its
+    /// law, on which masses must not depend.
+    ///
+    /// # Errors
+    /// As [`SensitiveSystem::new`], and if the model does not give a parameter.
+    pub fn with_parameters(
+        model: &Model,
+        law: &Law,
+        parameters: &[String],
+    ) -> Result<Self, PlantError> {
         let equations = EquationsOfMotion::new(model, law)?;
         check_inputs(equations.law())?;
         equations.reject_lags_and_instruments("sensitivities")?;
+        // A parameter that is an input of the tape has derivatives.
+        let inputs = [equations.tape_input_names(), parameters.to_vec()].concat();
         SensitivityBuilder {
             equations: &equations,
-            lowering: EquationLowering::new(&equations, &equations.tape_input_names()),
+            lowering: EquationLowering::new(&equations, &inputs),
+            parameters,
         }
         .build_system()
     }
 
-    /// Names of the coefficients, in the order of the columns of the sensitivities.
+    /// Names of the coefficients, then of the parameters.
     pub fn names(&self) -> &[String] {
         &self.names
+    }
+
+    /// Writes the sensitivities of a state to each of [`SensitiveSystem::names`] into `out`, from
+    /// the columns that a run holds of it.
+    pub fn gather_sensitivities(&self, columns: &[f64], out: &mut [f64]) {
+        let coefficients = self.names.len() - self.parameter_columns.len();
+        out[..coefficients].copy_from_slice(&columns[..coefficients]);
+        // A parameter acts on several axes, whose effects on the state add up.
+        for (out, own) in out[coefficients..].iter_mut().zip(&self.parameter_columns) {
+            *out = own.iter().map(|&column| columns[column]).sum();
+        }
     }
 
     /// Places in the state vector of the rows of the sensitivities.
@@ -103,21 +136,26 @@ impl SensitiveSystem {
 struct SensitivityBuilder<'e> {
     equations: &'e EquationsOfMotion<'e>,
     lowering: EquationLowering<'e>,
+    parameters: &'e [String],
 }
 
-/// Coefficients and the outputs of their regressors.
+/// Outputs of the forces per unit of each column.
+#[derive(Default)]
 struct RegressorOutputs {
+    /// Names of the coefficients.
     names: Vec<String>,
-    /// Range of the coefficients of each axis.
-    of_axis: Vec<Range<usize>>,
+    /// Ranges of columns with the axis on which they act.
+    of_axis: Vec<(usize, Range<usize>)>,
     outputs: Vec<usize>,
+    /// Columns of each parameter.
+    parameter_columns: Vec<Vec<usize>>,
 }
 
 impl SensitivityBuilder<'_> {
     fn build_system(mut self) -> Result<SensitiveSystem, PlantError> {
         let (equations, axes, states) =
             (self.equations, self.equations.axes(), self.equations.state_places());
-        let forces =
+        let forces: Vec<WithGradient> =
             axes.iter().map(|&axis| self.add_axis_force(axis)).collect::<Result<_, _>>()?;
         let additions =
             axes.iter().map(|&axis| self.add_axis_acceleration(axis)).collect::<Result<_, _>>()?;
@@ -126,7 +164,12 @@ impl SensitivityBuilder<'_> {
             .map(|&state| self.add_kinematic_rate(state))
             .collect::<Result<_, _>>()?;
         let mass = self.add_constant_mass()?;
-        let RegressorOutputs { names, of_axis, outputs: regressors } = self.add_regressors()?;
+        let mut columns = self.add_regressors()?;
+        self.add_parameter_derivatives(&forces, &mut columns);
+        let RegressorOutputs { mut names, of_axis, outputs: regressors, parameter_columns } =
+            columns;
+        names.extend_from_slice(self.parameters);
+        let parameter_values = self.parameter_values()?;
         // All outputs must be on the tape before it is finished.
         let tape = self.lowering.finish();
         let constant = constant_mobility(equations, &tape, &mass)?;
@@ -144,6 +187,8 @@ impl SensitivityBuilder<'_> {
             regressors,
             of_axis,
             names,
+            parameter_columns,
+            parameter_values,
             input_names,
         })
     }
@@ -180,8 +225,10 @@ impl SensitivityBuilder<'_> {
         {
             let output = self.lowering.add_mass_entry(row, column)?;
             // The gains of a step assume masses whose derivatives are zero.
-            if output.is_some_and(|o| {
-                states.iter().any(|&s| self.lowering.add_derivative(o, STATE_NAMES[s]).is_some())
+            let constant = states.iter().map(|&state| STATE_NAMES[state]);
+            let mut constant = constant.chain(self.parameters.iter().map(String::as_str));
+            if output.is_some_and(|output| {
+                constant.any(|name| self.lowering.add_derivative(output, name).is_some())
             }) {
                 return Err(PlantError::MovingMass(self.equations.law().name.clone()));
             }
@@ -191,9 +238,8 @@ impl SensitivityBuilder<'_> {
     }
 
     fn add_regressors(&mut self) -> Result<RegressorOutputs, PlantError> {
-        let mut all =
-            RegressorOutputs { names: Vec::new(), of_axis: Vec::new(), outputs: Vec::new() };
-        for &axis in self.equations.axes() {
+        let mut all = RegressorOutputs::default();
+        for (place, &axis) in self.equations.axes().iter().enumerate() {
             // The coefficients of an axis form one range of columns.
             let start = all.names.len();
             for name in self.equations.axis_coefficients(axis) {
@@ -201,8 +247,38 @@ impl SensitivityBuilder<'_> {
                     .push(self.lowering.add_output(&self.equations.scaled_regressor(name)?)?);
                 all.names.push(name.clone());
             }
-            all.of_axis.push(start..all.names.len());
+            all.of_axis.push((place, start..all.names.len()));
         }
         Ok(all)
+    }
+
+    /// Adds the derivatives of the forces by each parameter, axis by axis; one that is zero has no
+    /// column.
+    fn add_parameter_derivatives(&mut self, forces: &[WithGradient], all: &mut RegressorOutputs) {
+        all.parameter_columns = vec![Vec::new(); self.parameters.len()];
+        for (axis, force) in forces.iter().enumerate() {
+            let start = all.outputs.len();
+            for (own, name) in all.parameter_columns.iter_mut().zip(self.parameters) {
+                if let Some(output) = self.lowering.add_derivative(force.value, name) {
+                    own.push(all.outputs.len());
+                    all.outputs.push(output);
+                }
+            }
+            all.of_axis.push((axis, start..all.outputs.len()));
+        }
+    }
+
+    /// Values of the parameters in the model.
+    fn parameter_values(&self) -> Result<Vec<f64>, PlantError> {
+        let model = self.equations.model();
+        let value = |name: &String| {
+            let missing = || PlantError::Missing {
+                law: self.equations.law().name.clone(),
+                name: name.clone(),
+                model: model.name.clone(),
+            };
+            model.parameters.get(name).map(|quantity| quantity.value).ok_or_else(missing)
+        };
+        self.parameters.iter().map(value).collect()
     }
 }

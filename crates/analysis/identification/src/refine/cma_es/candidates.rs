@@ -308,6 +308,7 @@ impl<'a> VariantSearch<'a> {
         // The search has no regression whose condition could be reported.
         let fit = CoefficientFit {
             coefficients,
+            parameters: BTreeMap::new(),
             condition_number: 1.0,
             collinear_groups: Vec::new(),
             errors: None,

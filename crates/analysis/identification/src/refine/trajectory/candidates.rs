@@ -16,6 +16,7 @@ use super::super::simulated::simulate_training;
 use super::super::variant::TermVariant;
 use super::fit::TrajectoryFit;
 use super::normal::{NormalEquations, SegmentSimulation, SegmentSums};
+use super::parameters::{BoundedParameter, free_parameters};
 use super::prior::WeakFormPrior;
 use super::segments::{ComparisonPlan, SegmentLengths, compared_states, divide_into_segments};
 use super::solve::PenalisedEquations;
@@ -31,10 +32,13 @@ struct TrajectoryDescent<'a> {
     index: usize,
     choices: &'a RidgeChoices,
     passing: SegmentSimulation<'a>,
+    /// Names of the coefficients.
     names: Vec<String>,
+    /// Parameters that are fitted besides.
+    parameters: Vec<BoundedParameter>,
 }
 
-/// Coefficients, with residuals and sensitivities of all segments there.
+/// Coefficients and unknowns of parameters, with residuals and sensitivities of all segments there.
 struct Linearisation {
     at: DVector<f64>,
     pass: SegmentSums,
@@ -88,7 +92,8 @@ pub(super) fn add_from_weak_form(
         trials,
     };
     let names = system.names().to_vec();
-    TrajectoryDescent { problem, variant, index, choices: &choices, passing, names }
+    let parameters = free_parameters(&variant.model, problem.law);
+    TrajectoryDescent { problem, variant, index, choices: &choices, passing, names, parameters }
         .add_candidates(error, candidates, progress)
 }
 
@@ -155,7 +160,7 @@ impl TrajectoryDescent<'_> {
                 self.problem,
                 (label, Some(pull)),
                 fit,
-                self.names.len(),
+                self.names.len() + self.parameters.len(),
                 simulated,
             );
             errors.push(candidate.option.error.unwrap_or(f64::INFINITY));
@@ -170,8 +175,7 @@ impl TrajectoryDescent<'_> {
 
     /// Huber's thresholds from the residuals of every few blocks of segments.
     fn huber_thresholds(&self, at: &DVector<f64>) -> Result<Vec<f64>, RefineError> {
-        let model = self.variant.model_at(&self.named_values(at));
-        let system = SensitiveSystem::new(&model, self.problem.law)?;
+        let system = self.system_at(at)?;
         Ok(self
             .passing
             .residual_sizes(&system, TRAJECTORY.median_stride)
@@ -195,19 +199,44 @@ impl TrajectoryDescent<'_> {
             .fold(0.0, f64::max)
             // The strength that the weak form needs may be far too large for trajectories.
             .min(TRAJECTORY.source_share);
-        Ok(WeakFormPrior::new(&self.names, &self.variant.blocks, &moments, &values, lambda))
+        Ok(WeakFormPrior::new(&self.names, &self.variant.blocks, &moments, &values, lambda)
+            .with_parameters(&self.parameters))
     }
 
-    /// Coefficients by name.
+    /// Coefficients and parameters by name.
     fn named_values(&self, at: &DVector<f64>) -> BTreeMap<String, f64> {
-        self.names.iter().cloned().zip(at.iter().copied()).collect()
+        let own = self.parameter_unknowns(at);
+        let parameters = own.map(|(one, unknown)| (one.name.clone(), one.value(unknown)));
+        self.names.iter().cloned().zip(at.iter().copied()).chain(parameters).collect()
     }
 
-    /// Simulates all segments with coefficients.
-    fn run_segments(&self, at: &DVector<f64>) -> Result<SegmentSums, RefineError> {
+    /// Parameters with their unknowns, which follow the coefficients.
+    fn parameter_unknowns<'b>(
+        &'b self,
+        at: &'b DVector<f64>,
+    ) -> impl Iterator<Item = (&'b BoundedParameter, f64)> {
+        self.parameters.iter().zip(at.iter().skip(self.names.len()).copied())
+    }
+
+    /// The system at coefficients and unknowns.
+    fn system_at(&self, at: &DVector<f64>) -> Result<SensitiveSystem, RefineError> {
         let model = self.variant.model_at(&self.named_values(at));
-        let system = SensitiveSystem::new(&model, self.problem.law)?;
-        Ok(self.passing.simulate_segments(&system))
+        let parameters: Vec<String> = self.parameters.iter().map(|one| one.name.clone()).collect();
+        Ok(SensitiveSystem::with_parameters(&model, self.problem.law, &parameters)?)
+    }
+
+    /// Simulates all segments with coefficients and unknowns.
+    fn run_segments(&self, at: &DVector<f64>) -> Result<SegmentSums, RefineError> {
+        let mut sums = self.passing.simulate_segments(&self.system_at(at)?);
+        sums.rescale(&self.slopes(at));
+        Ok(sums)
+    }
+
+    /// Derivatives of coefficients and parameters by their unknowns.
+    fn slopes(&self, at: &DVector<f64>) -> DVector<f64> {
+        let own = self.parameter_unknowns(at).map(|(one, unknown)| one.slope(unknown));
+        let all = std::iter::repeat_n(1.0, self.names.len()).chain(own);
+        DVector::from_iterator(at.len(), all)
     }
 
     /// The linearisation at coefficients.
@@ -293,6 +322,8 @@ impl TrajectoryDescent<'_> {
             variant: self.index,
             choices: self.choices.clone(),
             names: self.names.clone(),
+            parameters: self.parameters.clone(),
+            slopes: self.slopes(at),
             at: at.clone(),
             held: PenalisedEquations::new(&normal, prior, pull, at),
             gradients: pass.gradients.clone(),

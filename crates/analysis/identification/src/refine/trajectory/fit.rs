@@ -13,6 +13,7 @@ use super::super::outcome::RefineError;
 use super::super::problem::RefinementProblem;
 use super::super::ridge::{CoefficientFit, FittedCoefficient, RidgeChoices};
 use super::super::variant::TermVariant;
+use super::parameters::BoundedParameter;
 use super::prior::{WeakFormPrior, source_pull};
 use super::solve::PenalisedEquations;
 
@@ -23,6 +24,10 @@ pub(super) struct TrajectoryFit {
     pub choices: RidgeChoices,
     /// The coefficients in the order of the normal equations.
     pub(super) names: Vec<String>,
+    /// Parameters, whose unknowns follow.
+    pub(super) parameters: Vec<BoundedParameter>,
+    /// Derivatives of coefficients and parameters by the unknowns.
+    pub(super) slopes: DVector<f64>,
     pub(super) at: DVector<f64>,
     pub(super) held: PenalisedEquations,
     /// Gradients of the residuals by segment.
@@ -47,9 +52,20 @@ impl CandidateSolution for TrajectoryFit {
         let weak = variants[self.variant].ridge_errors(&problem.training, &self.choices)?;
         Ok(weak.and_then(|weak| self.joint_errors(&weak)))
     }
+
+    fn effective_count(&self, _: &[TermVariant]) -> Result<Option<f64>, RefineError> {
+        Ok(self.trials_share())
+    }
 }
 
 impl TrajectoryFit {
+    /// Trace of the share of the trials in the Hessian; the rest is that of the source.
+    fn trials_share(&self) -> Option<f64> {
+        let strength = self.pull + source_pull(self.pull);
+        let of_source = (self.held.inverse_hessian()? * &self.prior.of_source).trace() * strength;
+        Some((self.at.len() as f64 - of_source).max(0.0))
+    }
+
     /// The coefficients, without their errors.
     fn coefficient_fit(&self) -> CoefficientFit {
         let deviations = self.prior.coefficient_deviations(self.pull);
@@ -62,8 +78,14 @@ impl TrajectoryFit {
             )
         };
         let coefficients = self.names.iter().enumerate().map(one).collect();
+        let own = self.parameters.iter().zip(self.at.iter().skip(self.names.len()));
+        let parameter = |(one, unknown): (&BoundedParameter, &f64)| {
+            let (value, prior_deviation) = (one.value(*unknown), one.deviation);
+            (one.name.clone(), FittedCoefficient { value, standard_error: 0.0, prior_deviation })
+        };
         CoefficientFit {
             coefficients,
+            parameters: own.map(parameter).collect(),
             condition_number: self.held.condition_number(),
             collinear_groups: Vec::new(),
             errors: None,
@@ -75,24 +97,31 @@ impl TrajectoryFit {
     fn joint_errors(&self, weak: &CoefficientErrors) -> Option<CoefficientErrors> {
         let Self { names, prior, pull, .. } = self;
         let inverse = self.held.inverse_hessian()?;
-        let weak = weak.in_order(names)?;
+        let weak = weak.in_order(names)?.with_prior_variances(&self.parameter_variances());
         let to_weak = &prior.hessian * *pull;
         let to_source = &prior.of_source * source_pull(*pull);
         // The errors of weak form and source are correlated, since the source is the weak form's
         // prior.
         let both = &to_weak * &weak.cross * &to_source;
-        let middle = gradient_scatter(&self.gradients, self.count, names.len())
+        let middle = gradient_scatter(&self.gradients, self.count, self.at.len())
             + &to_weak * &weak.covariance * &to_weak
             + &to_source * &weak.source * &to_source
             + &both
             + both.transpose();
         let cross = &inverse * (&to_weak * &weak.cross + to_source * &weak.source);
-        Some(CoefficientErrors {
-            names: names.clone(),
+        let of_unknowns = CoefficientErrors {
+            names: weak.names,
             covariance: &inverse * middle * &inverse,
             source: weak.source,
             cross,
-        })
+        };
+        Some(of_unknowns.rescaled(&self.slopes))
+    }
+
+    /// Variances of the priors of the unknowns of parameters, by name.
+    fn parameter_variances(&self) -> Vec<(String, f64)> {
+        let one = |own: &BoundedParameter| (own.name.clone(), own.unknown_deviation().powi(2));
+        self.parameters.iter().map(one).collect()
     }
 }
 

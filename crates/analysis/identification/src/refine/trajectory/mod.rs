@@ -10,11 +10,17 @@
 //! trajectories need. A strong `mu` gives the weak form, in which the source has its weight
 //! already; with a small one the source must determine the directions on which trajectories have no
 //! information, so that it is a prior besides.
+//!
+//! Nonlinear parameters of the law that trials determine (`prior` in its file) are unknowns
+//! besides the coefficients, transformed to stay in their physical range ([`parameters`]). The weak
+//! form keeps the source's values; each costs `(mu + mu/(1 + mu))` times a share a square of its
+//! prior's deviations.
 
 mod candidates;
 mod estimator;
 mod fit;
 mod normal;
+mod parameters;
 mod prior;
 mod segments;
 mod solve;
@@ -25,3 +31,6 @@ pub(super) use prior::WeakFormPrior;
 pub(super) use segments::{
     ComparisonPlan, SegmentLengths, TrialSegment, compared_states, divide_into_segments,
 };
+
+#[cfg(test)]
+mod tests;

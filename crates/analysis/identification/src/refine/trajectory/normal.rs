@@ -48,11 +48,28 @@ impl NormalEquations {
         }
     }
 
+    /// Changes the unknowns to others, by whose change each of the former changes by its slope.
+    fn rescale(&mut self, slopes: &DVector<f64>) {
+        self.hessian
+            .column_iter_mut()
+            .zip(slopes.iter())
+            .for_each(|(mut column, slope)| column.component_mul_assign(&(slopes * *slope)));
+        self.gradient.component_mul_assign(slopes);
+    }
+
     pub fn add(&mut self, other: &Self) {
         self.hessian += &other.hessian;
         self.gradient += &other.gradient;
         self.cost += other.cost;
         self.count += other.count;
+    }
+}
+
+impl SegmentSums {
+    /// Changes the unknowns to others, by whose change each of the former changes by its slope.
+    pub fn rescale(&mut self, slopes: &DVector<f64>) {
+        self.trials.iter_mut().for_each(|normal| normal.rescale(slopes));
+        self.gradients.iter_mut().for_each(|gradient| gradient.component_mul_assign(slopes));
     }
 }
 
@@ -132,7 +149,8 @@ impl SegmentSimulation<'_> {
                     .enumerate()
                     .filter(|(_, (_, segment))| k < segment.steps);
                 due.for_each(|(lane, (own, segment))| {
-                    self.add_residuals(&run, lane, own, segment, (k + 1) / self.plan.stride - 1)
+                    let residual = (k + 1) / self.plan.stride - 1;
+                    self.add_residuals((system, &run), lane, own, segment, residual)
                 });
             }
         }
@@ -143,7 +161,7 @@ impl SegmentSimulation<'_> {
     /// Adds a lane's residuals at a time.
     fn add_residuals(
         &self,
-        run: &SensitiveRun<'_, LANES>,
+        (system, run): (&SensitiveSystem, &SensitiveRun<'_, LANES>),
         lane: usize,
         own: &mut LaneSums,
         segment: &TrialSegment,
@@ -169,12 +187,8 @@ impl SegmentSimulation<'_> {
             }
             let value = state_difference(place, state[place], *measured) / deviation;
             own.sizes[index].push(value.abs());
-            own.add_residual(
-                &run.state_sensitivities(lane, row)[..own.normal.gradient.len()],
-                value,
-                deviation,
-                self.thresholds[index],
-            );
+            system.gather_sensitivities(run.state_sensitivities(lane, row), &mut own.gathered);
+            own.add_residual(value, deviation, self.thresholds[index]);
         }
     }
 }
@@ -193,6 +207,8 @@ fn load_inputs(block: &[TrialSegment], half_step: usize, width: usize, into: &mu
 /// Sums of one lane, with rows that wait to be multiplied together.
 struct LaneSums {
     normal: NormalEquations,
+    /// Sensitivities of the state that is compared.
+    gathered: Vec<f64>,
     rows: DMatrix<f64>,
     waiting: usize,
     lost: bool,
@@ -204,6 +220,7 @@ impl LaneSums {
         let sizes = vec![Vec::new(); compared];
         Self {
             normal: NormalEquations::zeros(size),
+            gathered: vec![0.0; size],
             rows: DMatrix::zeros(size, ROWS),
             waiting: 0,
             lost: false,
@@ -211,8 +228,9 @@ impl LaneSums {
         }
     }
 
-    /// Adds one residual in standard deviations with its sensitivities, weighted as by Huber.
-    fn add_residual(&mut self, sensitivity: &[f64], value: f64, deviation: f64, threshold: f64) {
+    /// Adds one residual in standard deviations with the gathered sensitivities, weighted as by
+    /// Huber.
+    fn add_residual(&mut self, value: f64, deviation: f64, threshold: f64) {
         let size = value.abs();
         let weight = if size <= threshold { 1.0 } else { threshold / size };
         self.normal.cost +=
@@ -220,7 +238,7 @@ impl LaneSums {
         // Rows have the root of the weight, so that their products have the weight once.
         let factor = weight.sqrt() / deviation;
         let mut row = self.rows.column_mut(self.waiting);
-        row.iter_mut().zip(sensitivity).for_each(|(out, s)| *out = factor * s);
+        row.iter_mut().zip(&self.gathered).for_each(|(out, s)| *out = factor * s);
         self.normal.gradient.axpy(weight.sqrt() * value, &row, 1.0);
         self.waiting += 1;
         if self.waiting == ROWS {

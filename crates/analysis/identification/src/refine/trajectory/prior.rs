@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use super::super::blocks::{RegressionBlock, RegressionBlocks};
+use super::parameters::BoundedParameter;
+use super::thresholds::TRAJECTORY;
 use sistership_numerics::RegressionMoments;
 
 /// The prior by the weak form, as the minimum and the Hessian of its cost, and by the source.
@@ -56,6 +58,26 @@ impl WeakFormPrior {
         hessian += &of_source;
         let (weak, source): (Vec<f64>, Vec<f64>) = names.iter().map(|name| values(name)).unzip();
         Self { hessian, weak: weak.into(), of_source, source: source.into() }
+    }
+
+    /// Returns the prior with the unknowns of parameters after the coefficients; the weak form
+    /// keeps the source's values.
+    pub(super) fn with_parameters(self, parameters: &[BoundedParameter]) -> Self {
+        let (first, size) = (self.weak.len(), self.weak.len() + parameters.len());
+        let mut prior = Self {
+            hessian: self.hessian.resize(size, size, 0.0),
+            of_source: self.of_source.resize(size, size, 0.0),
+            weak: self.weak.resize_vertically(size, 0.0),
+            source: self.source.resize_vertically(size, 0.0),
+        };
+        for (k, parameter) in (first..).zip(parameters) {
+            let precision = TRAJECTORY.parameter_share / parameter.unknown_deviation().powi(2);
+            prior.hessian[(k, k)] = precision;
+            prior.of_source[(k, k)] = precision;
+            prior.weak[k] = parameter.source_unknown();
+            prior.source[k] = parameter.source_unknown();
+        }
+        prior
     }
 
     /// Returns its cost at coefficients, for a pull towards the weak form.

@@ -33,6 +33,10 @@ pub(super) struct TrajectoryThresholds {
     /// all of that as the share gives 0.51, the next pull diverges and wind is not always named,
     /// and with a hundredth it always is.
     pub source_share: f64,
+    /// `lambda_p`: cost of a prior's deviation of a nonlinear parameter by that of a change of every
+    /// acceleration by its own size, dimensionless. Source: derived, of the order of the square of
+    /// that change: a deviation of an interaction factor changes accelerations by a tenth.
+    pub parameter_share: f64,
     /// `r_p`: ratio to the error of another pull from which on an error is clearly worse,
     /// dimensionless. Source: chosen, twice the share by which candidates count as different; ends
     /// the pulls early (Train-TZRB in 0.24 s in place of 0.56).
@@ -84,6 +88,7 @@ pub(super) const TRAJECTORY: TrajectoryThresholds = TrajectoryThresholds {
     least_part: 3.0,
     pulls: [10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4],
     source_share: 0.01,
+    parameter_share: 0.01,
     clearly_worse: 1.02,
     huber: 3.0,
     median_stride: 4,

@@ -1,0 +1,75 @@
+#![allow(clippy::unwrap_used)]
+use sistership_model::quantity::Quantity;
+use sistership_model::trial::{Channel, Trial};
+use sistership_model::{Law, Model, Zoo};
+
+use crate::refine::outcome::Refinement;
+use crate::refine::request::RefinementSpec;
+use crate::refine::selection::refine;
+use crate::refine::settings::{EstimationMethod, RefinementSettings};
+use crate::testing::simulated_trials;
+
+/// A model with other values of some parameters.
+fn with_parameters(model: &Model, values: &[(&str, f64)]) -> Model {
+    let mut model = model.clone();
+    let all = values.iter().map(|&(name, value)| (name.to_owned(), Quantity::new(value, "truth")));
+    model.parameters.extend(all);
+    model
+}
+
+/// Zigzags of a model with its revolutions.
+fn recorded_zigzags(model: &Model, law: &Law) -> Vec<Trial> {
+    let mut trials = simulated_trials(model, law, 0.002);
+    let n_rps = model.revolutions_rps.unwrap();
+    for trial in &mut trials {
+        trial.channels.insert(Channel::N, vec![n_rps; trial.t_s.len()]);
+    }
+    trials
+}
+
+fn refined(source: &Model, law: &Law, trials: &[Trial], method: EstimationMethod) -> Refinement {
+    let zoo = Zoo::load_embedded().unwrap();
+    let trials: Vec<&Trial> = trials.iter().collect();
+    let settings = RefinementSettings { method, ..RefinementSettings::default() };
+    let request = RefinementSpec {
+        target: zoo.vessel("kvlcc2-7m").unwrap(),
+        source,
+        source_law: None,
+        law,
+        trials: &trials,
+        population: &[],
+        settings: &settings,
+    };
+    refine(&request, &|_, _| true).unwrap()
+}
+
+fn least_error(refinement: &Refinement) -> f64 {
+    refinement.options.iter().find(|option| option.chosen).unwrap().error.unwrap()
+}
+
+#[test]
+fn interaction_factors_are_fitted_within_their_range() {
+    let zoo = Zoo::load_embedded().unwrap();
+    let source = zoo.find_model("kvlcc2-7m").unwrap();
+    let law = zoo.law(&source.law).unwrap();
+    let moved = [("w_P0", 0.3), ("gamma_R_plus", 0.5), ("gamma_R_minus", 0.5), ("a_H", 0.4)];
+    let trials = recorded_zigzags(&with_parameters(&source, &moved), law);
+    let weak = refined(&source, law, &trials, EstimationMethod::Weak);
+    let fitted = refined(&source, law, &trials, EstimationMethod::Trajectory);
+    assert!(
+        least_error(&fitted) < 0.8 * least_error(&weak),
+        "{} {}",
+        least_error(&fitted),
+        least_error(&weak)
+    );
+    assert_eq!(weak.model.parameters, weak.transferred.parameters);
+    for (name, prior) in law.parameter_priors() {
+        let change = fitted.coefficients.iter().find(|one| one.name == *name).unwrap();
+        let [low, high] = prior.range;
+        assert!((low..=high).contains(&change.refined), "{name}: {}", change.refined);
+        assert_eq!(fitted.model.parameters[name].value, change.refined);
+        assert!(change.standard_error > 0.0, "{name} has an error");
+    }
+    let posterior = fitted.model.valid_posterior().unwrap();
+    assert!(posterior.names.iter().any(|name| name == "w_P0"));
+}
