@@ -30,7 +30,9 @@ pub fn missing_channels(law: &Law, trial: &Trial) -> Vec<MissingChannel> {
     let state = "it is part of the state that a simulation starts from";
     let mut needed: Vec<(Channel, &'static str)> =
         vec![(Channel::U, state), (Channel::V, state), (Channel::R, state)];
-    needed.push((Channel::Delta, "it is what steers"));
+    if law.inputs.contains_key(Channel::Delta.name()) {
+        needed.push((Channel::Delta, "it is what steers"));
+    }
     if law.axes.contains_key(&Axis::K) {
         let rolls = "the law has roll";
         needed.extend([(Channel::Phi, rolls), (Channel::P, rolls)]);
