@@ -24,6 +24,7 @@ mod over_http;
 mod pages;
 mod possible_sources;
 mod predictions;
+mod propulsion;
 mod python_client;
 mod python_package;
 mod rights;

@@ -7,6 +7,8 @@ from typing import Any, Dict, List, Literal, Optional, TypedDict, Union
 from .http import Http
 
 ActsOn = Any  # The part of the model on which an effect acts.
+Actuator = TypedDict('Actuator', {'channels': 'Dict[str, List[str]]', 'diameter_m': 'Union[float, None]', 'kind': 'ActuatorKind', 'note': 'Union[str, None]', 'source': 'str', 'turns': 'Union[Rotation, None]', 'x_m': 'Union[float, None]', 'y_m': 'float'}, total=False)
+ActuatorKind = Any  # Kind of an actuator.
 AliasRequest = TypedDict('AliasRequest', {'reason': 'str', 'version': 'int'}, total=True)
 AliasStep = TypedDict('AliasStep', {'actor': 'str', 'from': 'Union[int, None]', 'moved_us': 'int', 'reason': 'str', 'revision': 'int', 'to': 'int'}, total=False)
 AliasView = TypedDict('AliasView', {'alias': 'str', 'model': 'str', 'revision': 'int', 'version': 'int'}, total=True)
@@ -136,6 +138,7 @@ RoleName = Any  # Role of a user or key; each includes the rights of those befor
 RoleRequest = TypedDict('RoleRequest', {'family': 'Union[str, None]', 'role': 'RoleName', 'ship': 'Union[str, None]'}, total=False)
 RoleView = TypedDict('RoleView', {'family': 'Union[str, None]', 'role': 'str', 'ship': 'Union[str, None]'}, total=False)
 RolesRequest = TypedDict('RolesRequest', {'roles': 'List[RoleRequest]'}, total=True)
+Rotation = Any  # Direction of rotation seen from aft.
 RudderSign = Any  # Direction in which positive rudder turns the ship.
 Rule = TypedDict('Rule', {'no_worse_than': 'Union[float, None]'}, total=False)
 Sampling = TypedDict('Sampling', {'samples': 'int', 'seed': 'int'}, total=False)
@@ -172,7 +175,7 @@ VersionDetail = TypedDict('VersionDetail', {'document': 'Dict[str, Any]', 'versi
 VersionHead = TypedDict('VersionHead', {'author': 'str', 'created_us': 'int', 'id': 'str', 'law': 'str', 'method': 'str', 'model': 'str', 'number': 'int', 'parent': 'Union[str, None]', 'report': 'Union[str, None]', 'sha256': 'str'}, total=False)
 VersionWithEffects = TypedDict('VersionWithEffects', {'at': 'str', 'number': 'int'}, total=True)
 VesselConventions = TypedDict('VesselConventions', {'rudder_positive': 'RudderSign'}, total=False)
-VesselFile = TypedDict('VesselFile', {'category': 'str', 'conventions': 'VesselConventions', 'free_running': 'List[FreeRunning]', 'kind': 'VesselKind', 'licences': 'Dict[str, str]', 'models': 'List[PublishedModelFile]', 'name': 'str', 'particulars': 'Section', 'quoted_vectors': 'Dict[str, QuotedVectorFile]', 'scale': 'Union[float, None]', 'sources': 'Dict[str, Source]', 'title': 'str', 'type': 'Union[str, None]'}, total=False)
+VesselFile = TypedDict('VesselFile', {'actuators': 'Dict[str, Actuator]', 'category': 'str', 'conventions': 'VesselConventions', 'free_running': 'List[FreeRunning]', 'kind': 'VesselKind', 'licences': 'Dict[str, str]', 'models': 'List[PublishedModelFile]', 'name': 'str', 'particulars': 'Section', 'quoted_vectors': 'Dict[str, QuotedVectorFile]', 'scale': 'Union[float, None]', 'sources': 'Dict[str, Source]', 'title': 'str', 'type': 'Union[str, None]'}, total=False)
 VesselKind = Any  # The word `vessel`.
 WebhookEvent = Any  # Event of which webhooks are notified.
 WebhookRequest = TypedDict('WebhookRequest', {'drift_above': 'Union[float, None]', 'events': 'List[WebhookEvent]', 'ship': 'Union[str, None]', 'title': 'str', 'url': 'str'}, total=False)

@@ -3,7 +3,7 @@
 //! computed in advance.
 
 use rayon::prelude::*;
-use sistership_model::Trial;
+use sistership_model::{Law, Trial};
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
 use sistership_simulation::state::at;
@@ -131,7 +131,9 @@ impl<'d, 'a> SeparationProblem<'d, 'a> {
         ship: &Ship,
         planned: &PlannedManoeuvre,
     ) -> Result<Option<f64>, RefineError> {
-        let Some(trial) = simulate_trial(self.base, ship, planned) else { return Ok(None) };
+        let Some(trial) = simulate_trial(self.base, (ship, self.search.law), planned) else {
+            return Ok(None);
+        };
         // The planned trial is added to the information of the recorded ones.
         let mut total = self.total.clone();
         total.add(&self.planned_products(&trial)?);
@@ -168,7 +170,7 @@ impl<'d, 'a> SeparationProblem<'d, 'a> {
 /// can be simulated.
 fn simulate_trial(
     base: &FilteredBase<'_>,
-    ship: &Ship,
+    (ship, law): (&Ship, &Law),
     planned: &PlannedManoeuvre,
 ) -> Option<Trial> {
     let workspace = &base.workspace;
@@ -187,5 +189,7 @@ fn simulate_trial(
     // and what it would tell there is no expectation.
     let is_ahead = track.state_column(at::U).iter().all(|u| *u > 0.0);
     let model = workspace.trials.first().filter(|_| is_ahead)?;
-    Some(trial_from_track(&track, model, planned.heading_deg.to_radians()))
+    let mut trial = trial_from_track(&track, model, planned.heading_deg.to_radians());
+    law.set_actuators(&mut trial);
+    Some(trial)
 }

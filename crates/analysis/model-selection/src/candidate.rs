@@ -9,7 +9,7 @@ use sistership_identification::refine::{Prior, RefinementSettings};
 use sistership_priors::transfer::{blank_model, trial_approach};
 
 /// General laws, which belong to no ship.
-const GENERAL: [&str; 3] = ["low-speed", "abkowitz", "abkowitz-roll"];
+const GENERAL: [&str; 4] = ["low-speed", "abkowitz", "abkowitz-roll", "differential-thrust"];
 
 /// Law of the candidate with a prior from a population: the most general one without roll, on which
 /// few ships give information.
@@ -132,7 +132,11 @@ fn source_candidates(
     trials: &[&Trial],
 ) -> Vec<SelectionCandidate> {
     let Some(own) = zoo.law(&source.law) else { return Vec::new() };
-    let others = general.iter().filter(|law| law.name != own.name);
+    // The accelerations of a ship with a rudder are no prior of one without.
+    let is_other = |law: &&Arc<Law>| {
+        law.name != own.name && law.steers_by_difference() == own.steers_by_difference()
+    };
+    let others = general.iter().filter(is_other);
     let laws = std::iter::once(own).filter(|law| is_measured(law, trials)).chain(others);
     let one = |law: &Arc<Law>| SelectionCandidate {
         source: source.clone(),
@@ -143,15 +147,45 @@ fn source_candidates(
     laws.map(one).collect()
 }
 
-/// Returns true if the trials record what a law needs: roll in every trial for a law with roll.
+/// Returns true if the trials record what a law needs: roll in every trial for a law with roll, and
+/// what steers. A law without a steering angle is one for ships whose trials have none.
 fn is_measured(law: &Law, trials: &[&Trial]) -> bool {
-    !law.has_roll() || trials.iter().all(|trial| trial.channel(Channel::Phi).is_some())
+    let everywhere = |channel: Channel| trials.iter().all(|trial| trial.channel(channel).is_some());
+    let steers = match law.steers_by_difference() {
+        true => {
+            trials.iter().all(|trial| trial.channel(Channel::Delta).is_none())
+                && law
+                    .helm_inputs()
+                    .filter_map(|(_, name, _)| Channel::by_name(name))
+                    .all(everywhere)
+        }
+        false => !law.follows_helm() || everywhere(Channel::Delta),
+    };
+    steers && (!law.has_roll() || everywhere(Channel::Phi))
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+
+    #[test]
+    fn the_difference_of_thrusters_is_fitted_where_no_angle_steers() {
+        let zoo = Zoo::load_embedded().unwrap();
+        let target = zoo.vessel("kcs").unwrap();
+        let models = ["mariner", "kvlcc2"].map(|name| zoo.find_model(name).unwrap());
+        let mut trial = Trial { t_s: vec![0.0], ..Trial::default() };
+        let laws = |trial: &Trial| {
+            let beside = AdditionalPriors { estimate: true, population: Some(&models[1]) };
+            let all = list_candidates(&zoo, target, (&models[..], beside), &[trial]);
+            all.into_iter().map(|one| one.law.name.clone()).collect::<Vec<_>>()
+        };
+        trial.channels.extend([Channel::NS, Channel::NP].map(|side| (side, vec![1.0])));
+        assert_eq!(laws(&trial), ["differential-thrust"], "without a source");
+        trial.channels.insert(Channel::Delta, vec![0.1]);
+        let steered = laws(&trial);
+        assert!(steered.len() > 3 && !steered.contains(&"differential-thrust".to_owned()));
+    }
 
     #[test]
     fn estimate_and_population_enter_beside_a_source_of_another_ship() {

@@ -44,13 +44,14 @@ fn rudder_orders() -> Vec<RudderOrder> {
 /// motion: the order, and where the simulation stops. `None` if it completes all of them, or if the
 /// records lack an input of its law.
 pub fn simulation_fault(model: &Model, law: &Law, trials: &[&Trial]) -> Option<SimulationFault> {
-    let mut helms = rudder_records(model, trials, (&rudder_orders(), SIMULATION_CHECK.lengths))?;
-    helms.extend(motion_records(model, trials).unwrap_or_default());
+    let mut helms =
+        rudder_records((model, law), trials, (&rudder_orders(), SIMULATION_CHECK.lengths))?;
+    helms.extend(motion_records((model, law), trials).unwrap_or_default());
     let ship = prepare_ship(model, law, trials).ok()?;
     let steering = replay_fault(&ship, &helms);
     let steering = steering.or_else(|| zigzag_fault(&ship, &model.steering));
     let propulsion = || {
-        let engine = replay_fault(&ship, &engine_records(model, trials).unwrap_or_default());
+        let engine = replay_fault(&ship, &engine_records((model, law), trials).unwrap_or_default());
         engine.or_else(|| propulsion_fault(&ship))
     };
     steering
@@ -100,7 +101,7 @@ const ENGINE: [(f64, &str); 2] = [(0.0, ", propeller stopped,"), (-1.0, ", prope
 /// Records that begin in motions of the trials, spread over all of them: a ship gets into motions
 /// that the model does not reach by itself. From each the rudder goes hard over to both sides, and
 /// moves at random.
-fn motion_records(model: &Model, trials: &[&Trial]) -> Option<Vec<Trial>> {
+fn motion_records((model, law): (&Model, &Law), trials: &[&Trial]) -> Option<Vec<Trial>> {
     let orders = |k: usize| {
         [
             RudderOrder::Held(1.0),
@@ -109,18 +110,18 @@ fn motion_records(model: &Model, trials: &[&Trial]) -> Option<Vec<Trial>> {
         ]
     };
     let steered =
-        |k: usize| orders(k).map(|order| motion_record(model, trials, k, order, (1.0, "")));
+        |k: usize| orders(k).map(|order| motion_record((model, law), trials, k, order, (1.0, "")));
     (0..SIMULATION_CHECK.motions).flat_map(steered).collect()
 }
 
 /// Records from the same motions with the propeller stopped and reversed and the rudder amidships;
 /// `None` if a trial has no revolutions.
-fn engine_records(model: &Model, trials: &[&Trial]) -> Option<Vec<Trial>> {
+fn engine_records((model, law): (&Model, &Law), trials: &[&Trial]) -> Option<Vec<Trial>> {
     if trials.iter().any(|trial| trial.channel(Channel::N).is_none()) {
         return None;
     }
     let driven = |k: usize| {
-        ENGINE.map(|engine| motion_record(model, trials, k, RudderOrder::Held(0.0), engine))
+        ENGINE.map(|engine| motion_record((model, law), trials, k, RudderOrder::Held(0.0), engine))
     };
     (0..SIMULATION_CHECK.motions).flat_map(driven).collect()
 }
@@ -128,7 +129,7 @@ fn engine_records(model: &Model, trials: &[&Trial]) -> Option<Vec<Trial>> {
 /// A record that begins in the middle of the k-th of equal parts of all samples; `None` if that
 /// sample lacks a speed, the yaw rate or the rudder.
 fn motion_record(
-    model: &Model,
+    (model, law): (&Model, &Law),
     trials: &[&Trial],
     k: usize,
     order: RudderOrder,
@@ -138,13 +139,18 @@ fn motion_record(
         trials.iter().flat_map(|trial| (0..trial.len()).map(move |at| (*trial, at))).collect();
     let (trial, at) = *places.get((2 * k + 1) * places.len() / (2 * SIMULATION_CHECK.motions))?;
     let of = |channel: Channel| Some((channel, trial.channel(channel)?[at]));
-    let angle_rad = of(Channel::Delta)?.1;
+    // A craft without a rudder begins with its helm amidships.
+    let angle_rad = match law.steers_by_difference() {
+        true => 0.0,
+        false => of(Channel::Delta)?.1,
+    };
     let moving = [Channel::U, Channel::V, Channel::R].map(of).into_iter();
     let moving = moving.collect::<Option<Vec<_>>>()?;
     let revolutions = of(Channel::N).map(|(channel, n_rps)| (channel, turns * n_rps));
     let others = [Channel::P, Channel::Phi].into_iter().filter_map(of).chain(revolutions);
     let start = RecordStart { channels: moving.into_iter().chain(others).collect(), angle_rad };
-    let record = rudder_record(model, trials, (order, SIMULATION_CHECK.motion_lengths), &start)?;
+    let record =
+        rudder_record((model, law), trials, (order, SIMULATION_CHECK.motion_lengths), &start)?;
     let from = format!("from the motion of {} at {:.0} s", trial.name, trial.t_s[at]);
     Some(Trial { name: format!("{}{engine} {from}", record.name), ..record })
 }
@@ -180,7 +186,7 @@ mod tests {
         let mut trials = simulated_trials(&model, &law, 0.0);
         let count = |trials: &[Trial]| {
             let trials: Vec<&Trial> = trials.iter().collect();
-            motion_records(&model, &trials).map(|records| records.len())
+            motion_records((&model, &law), &trials).map(|records| records.len())
         };
         assert_eq!(count(&trials), Some(3 * SIMULATION_CHECK.motions));
         trials[3].channels.remove(&Channel::Delta);

@@ -115,9 +115,11 @@ fn steady_speed(of: &PropulsionEvidence<'_>, [approach_m_s, n_rps]: [f64; 2]) ->
 }
 
 /// Returns true if only the trials determine the effect of the propeller: the law takes no
-/// revolutions, or coefficients multiply them.
+/// revolutions, or coefficients multiply them. A law of several actuators has their thrust in all
+/// quadrants.
 pub fn needs_balance(law: &Law) -> bool {
-    law.factors.contains_key("n") || !law.inputs.contains_key("n")
+    let is_one = law.helm_inputs().next().is_none();
+    is_one && (law.factors.contains_key("n") || !law.inputs.contains_key("n"))
 }
 
 fn add_range(parameters: &mut BTreeMap<String, Quantity>, of: char, range: CoveredRange) {

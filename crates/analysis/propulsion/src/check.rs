@@ -135,7 +135,7 @@ pub fn check_turning(ship: &Ship) -> Result<(), PropulsionFault> {
 
 fn check_motions(ship: &Ship, motions: &[PropellerOrder]) -> Result<(), PropulsionFault> {
     let speed = ship.approach_speed_m_s();
-    if !ship.has_propeller() || ship.revolutions_at(speed) <= 0.0 {
+    if !ship.follows_revolutions() || ship.revolutions_at(speed) <= 0.0 {
         return Err(PropulsionFault::NoRevolutions);
     }
     // The ship's own deceleration sets the time scale of all orders.

@@ -31,6 +31,10 @@ impl PropulsionContext<'_> {
         // self-propulsion point is no better there, and trials at low speed have no such point.
         let least = model.validity.as_ref().and_then(|region| region.ranges.get("n"));
         let is_measured = least.is_some_and(|[least, _]| *least <= 0.0);
+        // A balance has one propeller: the thrust of several stays that of the law.
+        if self.law.helm_inputs().next().is_some() {
+            return model;
+        }
         let has_propeller = !needs_balance(self.law);
         if is_measured || has_propeller && self.propulsion_fault(&model).is_none() {
             return model;

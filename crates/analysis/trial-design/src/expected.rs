@@ -36,7 +36,10 @@ pub(crate) fn build_design(
     let expected = ExpectedInformation::new(asked, like)?;
     let (before, instruments) = prior_information(request, bare, unknowns, &expected)?;
     let record = |course: &SimulatedCandidate| {
-        trial_from_track(&course.track, like, course.candidate.heading_deg.to_radians())
+        let heading_rad = course.candidate.heading_deg.to_radians();
+        let mut trial = trial_from_track(&course.track, like, heading_rad);
+        request.law.set_actuators(&mut trial);
+        trial
     };
     let trials: Vec<Trial> = courses.iter().map(record).collect();
     let trials: Vec<&Trial> = trials.iter().collect();

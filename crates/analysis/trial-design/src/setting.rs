@@ -55,7 +55,7 @@ impl DesignContext {
 fn calm_ship(request: &PlanRequest<'_>) -> Result<Ship, PlanError> {
     let calm = Model { effects: Vec::new(), ..request.model.clone() };
     let mut ship = Ship::new(&calm, request.law)?;
-    if !ship.has_rudder() {
+    if !ship.follows_helm() {
         return Err(PlanError::NoRudder(request.law.name.clone()));
     }
     ship.set_envelope_speed(ship.approach_speed_m_s());

@@ -3,6 +3,7 @@
 //! No I/O and no async: text goes in, checked values come out, and every error names file, line and
 //! field.
 
+pub mod actuator;
 pub mod branch;
 pub mod categories;
 pub mod coefficient;

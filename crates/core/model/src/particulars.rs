@@ -40,6 +40,7 @@ const KNOWN_PARTICULARS: &[(&str, Dimension, f64, f64)] = &[
     ("propeller_diameter_m", Dimension::LENGTH, 1e-3, 15.0),
     ("propeller_blades", Dimension::NONE, 2.0, 9.0),
     ("propeller_pitch_ratio", Dimension::NONE, 0.1, 3.0),
+    ("thruster_y_m", Dimension::LENGTH, 1e-3, 50.0),
     ("frontal_area_m2", AREA, 1e-3, 5000.0),
     ("lateral_area_m2", AREA, 1e-3, 20000.0),
     ("water_density_kg_m3", DENSITY, 900.0, 1100.0),
@@ -144,6 +145,8 @@ fn derived_value(name: &str, stated: &dyn Fn(&str) -> Option<f64>) -> Option<f64
         "displacement_m3" => volume().or_else(from_block),
         "block_coefficient" => Some(volume()? / box_volume()?),
         "mass_kg" => Some(stated("displacement_m3").or_else(from_block)? * density),
+        // Between the hull of a catamaran and its outer side, where the actuators are not stated.
+        "thruster_y_m" => Some(0.4 * stated("beam_m")?),
         "rudder_height_m" => {
             Some((stated("rudder_area_m2")? * stated("rudder_aspect_ratio")?).sqrt())
         }

@@ -216,7 +216,7 @@ impl Law {
 /// parameters.
 fn add_inputs(law: &mut Law, balance: &SurgeBalance, propulsion: &Propulsion) {
     let default = propulsion.value("revolutions");
-    let revolutions = LawInput { dimension: Dimension::RATE, default };
+    let revolutions = LawInput { dimension: Dimension::RATE, default, helm: None };
     law.inputs.entry(REVOLUTIONS_INPUT.to_owned()).or_insert(revolutions);
     for (name, parameter) in &balance.parameters {
         law.parameters.insert(qualified_own_name(name), parameter.clone());

@@ -51,10 +51,18 @@ pub enum Channel {
     UWater,
     /// Sway velocity through the water, m/s, to starboard, in addition to `V` over the ground.
     VWater,
+    /// Revolutions of the starboard propeller or thruster, 1/s, in addition to `N`, their mean.
+    NS,
+    /// Revolutions of the port propeller or thruster, 1/s.
+    NP,
+    /// Angle of the starboard rudder, rad, in addition to `Delta`, their mean.
+    DeltaS,
+    /// Angle of the port rudder, rad.
+    DeltaP,
 }
 
 /// Name in manifests, canonical column, and dimension of each channel, in the order of the enum.
-const CHANNELS: [(Channel, &str, &str, Dimension); 17] = [
+const CHANNELS: [(Channel, &str, &str, Dimension); 21] = [
     (Channel::X, "x", "x_m", Dimension::LENGTH),
     (Channel::Y, "y", "y_m", Dimension::LENGTH),
     (Channel::Psi, "psi", "psi_rad", Dimension::NONE),
@@ -77,6 +85,10 @@ const CHANNELS: [(Channel, &str, &str, Dimension); 17] = [
     (Channel::Depth, "depth", "depth_m", Dimension::LENGTH),
     (Channel::UWater, "u_water", "u_water_m_s", Dimension::SPEED),
     (Channel::VWater, "v_water", "v_water_m_s", Dimension::SPEED),
+    (Channel::NS, "n_s", "n_s_rps", Dimension::RATE),
+    (Channel::NP, "n_p", "n_p_rps", Dimension::RATE),
+    (Channel::DeltaS, "delta_s", "delta_s_rad", Dimension::NONE),
+    (Channel::DeltaP, "delta_p", "delta_p_rad", Dimension::NONE),
 ];
 
 impl Channel {

@@ -3,9 +3,11 @@
 
 use std::collections::BTreeMap;
 
+use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::actuator::{self, Actuator, Actuators};
 use crate::error::{ErrorContext, FileError};
 use crate::free_running::FreeRunning;
 use crate::manifest::RudderSign;
@@ -45,6 +47,10 @@ pub struct VesselFile {
     pub conventions: VesselConventions,
     /// Particulars of the ship.
     pub particulars: Section,
+    /// What moves and steers the ship, by name.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schemars(with = "BTreeMap<String, Actuator>")]
+    pub actuators: Actuators,
     /// Characteristic vectors exactly as a publication prints them, by the definition's name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub quoted_vectors: BTreeMap<String, QuotedVectorFile>,
@@ -192,8 +198,10 @@ impl Vessel {
             faults.extend(found.into_iter().map(at));
         };
         add("licences", check_licences(&raw.licences, &keys));
-        let (particulars, unread) = raw.particulars.resolve_all(&keys);
+        let (mut particulars, unread) = raw.particulars.resolve_all(&keys);
         add("particulars.values", unread);
+        add("actuators", actuator::find_faults(&raw.actuators, &keys));
+        actuator::add_particulars(&mut particulars, &raw.actuators);
         add("particulars.values", particulars::find_faults(&particulars));
         // A faulty section is replaced by an empty one, so that the other checks continue.
         let quoted_vectors = read_quoted_vectors(&raw, &keys).unwrap_or_else(|fault| {

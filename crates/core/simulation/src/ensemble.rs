@@ -2,7 +2,7 @@
 
 use crate::integrate::Method;
 use crate::plant::{LawInputs, MAX_INPUTS, PlantWorkspace};
-use crate::ship::Ship;
+use crate::ship::{HelmOrder, Ship};
 use crate::state::{LaneStates, StateVector, at, lane_of, set_lane};
 
 /// Number of ships that are calculated together.
@@ -32,12 +32,16 @@ impl ShipEnsemble {
         Self { blocks }
     }
 
-    /// Advances all ships by a step: `inputs` are those of the law, of which the rudder angle is
-    /// replaced by that of each ship, and `order_rad` is the order to its steering gear.
-    pub fn advance_step(&mut self, ship: &Ship, inputs: &LawInputs, order_rad: f64, step_s: f64) {
-        self.blocks
-            .iter_mut()
-            .for_each(|block| block.advance_step(ship, inputs, order_rad, step_s));
+    /// Advances all ships by a step under an order. `inputs` returns those of the law at a helm
+    /// angle, which differs from ship to ship.
+    pub fn advance_step(
+        &mut self,
+        ship: &Ship,
+        inputs: &dyn Fn(f64) -> LawInputs,
+        order: HelmOrder,
+        step_s: f64,
+    ) {
+        self.blocks.iter_mut().for_each(|block| block.advance_step(ship, inputs, order, step_s));
     }
 
     /// States of the active ships.
@@ -71,19 +75,22 @@ impl ShipBlock {
         block
     }
 
-    fn advance_step(&mut self, ship: &Ship, inputs: &LawInputs, order_rad: f64, step_s: f64) {
+    fn advance_step(
+        &mut self,
+        ship: &Ship,
+        inputs: &dyn Fn(f64) -> LawInputs,
+        order: HelmOrder,
+        step_s: f64,
+    ) {
         let Self { states, work, sailing } = self;
-        // Order and inputs are constant over the step; only the rudder angle differs between
-        // stages.
+        // The order is constant over the step; only the helm angle differs between stages.
         *states = Method::Rk4.advance_states(states, &[step_s; BLOCK_SIZE], |_, states| {
-            let mut lanes: [[f64; BLOCK_SIZE]; MAX_INPUTS] =
-                inputs.map(|value| [value; BLOCK_SIZE]);
-            if let Some(place) = ship.rudder_place() {
-                lanes[place] = states[at::DELTA];
-            }
+            let of_lanes = states[at::DELTA].map(inputs);
+            let lanes: [[f64; BLOCK_SIZE]; MAX_INPUTS] =
+                std::array::from_fn(|place| of_lanes.map(|of_lane| of_lane[place]));
             let mut rates = ship.state_rates(states, &lanes, work);
             rates[at::DELTA] =
-                states[at::DELTA].map(|angle| ship.rudder_rate(order_rad, angle, step_s));
+                states[at::DELTA].map(|angle| ship.rudder_rate(order.delta_rad, angle, step_s));
             rates
         });
         // A ship that has dropped out stays inactive, also if its state returned to the range.

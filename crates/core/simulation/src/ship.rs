@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use sistership_model::law::Law;
+use sistership_formula::Expr;
+use sistership_model::law::{Law, helm_value, set_actuators};
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::validity::{Excursion, Region};
-use sistership_model::{Model, particulars};
+use sistership_model::{Model, Trial, particulars};
 
 use crate::branch::{CorrectionInstant, CorrectionModel, attached_correction};
 use crate::envelope::MotionEnvelope;
@@ -35,6 +36,10 @@ pub struct Ship {
     envelope: MotionEnvelope,
     template: LawInputs,
     slots: InputSlots,
+    /// Places of the inputs that follow helm and revolutions by a formula.
+    helm_inputs: Vec<(usize, Expr)>,
+    follows_helm: bool,
+    follows_revolutions: bool,
     lpp_m: f64,
     approach_speed_m_s: f64,
     approach_n_rps: f64,
@@ -122,6 +127,9 @@ impl Ship {
             envelope,
             template,
             slots,
+            helm_inputs: law.helm_inputs().map(|(place, _, of)| (place, of.clone())).collect(),
+            follows_helm: law.follows_helm(),
+            follows_revolutions: law.follows_revolutions(),
             lpp_m,
             approach_speed_m_s: speed,
             approach_n_rps,
@@ -169,9 +177,14 @@ impl Ship {
         self.slots.delta.is_some()
     }
 
-    /// Place of the rudder angle among the law's inputs.
-    pub(crate) fn rudder_place(&self) -> Option<usize> {
-        self.slots.delta
+    /// Returns true if an ordered helm acts on the ship, by a rudder or by other actuators.
+    pub fn follows_helm(&self) -> bool {
+        self.follows_helm
+    }
+
+    /// Returns true if ordered revolutions act on the ship, by one propeller or by several.
+    pub fn follows_revolutions(&self) -> bool {
+        self.follows_revolutions
     }
 
     /// Returns true for a 4-DOF law, which has roll.
@@ -277,15 +290,31 @@ impl Ship {
             MotionEnvelope::new(self.lpp_m, speed_m_s.abs().max(self.approach_speed_m_s));
     }
 
-    /// Returns the inputs for a rudder angle and revolutions.
+    /// Returns the inputs for a helm angle and revolutions.
     pub fn inputs_for(&self, delta_rad: f64, n_rps: f64) -> LawInputs {
         let mut inputs = self.template;
+        self.set_orders(&mut inputs, delta_rad, n_rps);
+        inputs
+    }
+
+    /// Sets in a record of ordered helm and revolutions the channels of the actuators that follow
+    /// them.
+    pub fn set_actuators(&self, record: &mut Trial) {
+        let names = self.plant.input_names();
+        let helms = self.helm_inputs.iter().map(|(place, helm)| (names[*place].as_str(), helm));
+        set_actuators(helms, record);
+    }
+
+    /// Sets the inputs that follow a helm angle and revolutions; the others stay.
+    fn set_orders(&self, inputs: &mut LawInputs, delta_rad: f64, n_rps: f64) {
+        for (place, helm) in &self.helm_inputs {
+            inputs[*place] = helm_value(helm, delta_rad, n_rps);
+        }
         for (slot, value) in [(self.slots.delta, delta_rad), (self.slots.n, n_rps)] {
             if let Some(slot) = slot {
                 inputs[slot] = value;
             }
         }
-        inputs
     }
 
     /// Rate of change of the state with the steering gear following `order`.

@@ -201,7 +201,7 @@ fn law_with_effects(model: &Model, law: &Law) -> Result<Law, ExportError> {
         // A current that the model already has becomes the default of the input.
         let Some(value) = law.dressing.parameters.remove(&name) else { continue };
         let dimension = law.parameters[&name].dimension;
-        law.inputs.insert(name, LawInput { dimension, default: Some(value) });
+        law.inputs.insert(name, LawInput { dimension, default: Some(value), helm: None });
     }
     Ok(law)
 }

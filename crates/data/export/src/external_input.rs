@@ -28,8 +28,12 @@ pub struct ExternalInput {
 pub const CURRENT: (&str, &str, [&str; 2]) = ("current", "constant", ["north_m_s", "east_m_s"]);
 
 /// Names, identifiers, units and meanings of common inputs of laws and effects.
-const KNOWN: [(&str, &str, &str, &str); 9] = [
+const KNOWN: [(&str, &str, &str, &str); 13] = [
     ("n", "n", "1/s", "propeller revolutions, positive drives ahead"),
+    ("n_s", "n_starboard", "1/s", "revolutions of the starboard propeller, positive drives ahead"),
+    ("n_p", "n_port", "1/s", "revolutions of the port propeller, positive drives ahead"),
+    ("delta_s", "delta_starboard", "rad", "starboard rudder, positive turns the ship to starboard"),
+    ("delta_p", "delta_port", "rad", "port rudder, positive turns the ship to starboard"),
     ("depth", "depth", "m", "water depth; infinite for deep water"),
     ("wind_speed", "wind_speed", "m/s", "true wind speed"),
     ("wind_from", "wind_from", "rad", "direction the true wind comes from, clockwise from north"),
@@ -65,10 +69,13 @@ impl ExternalInput {
                 (to_identifier(name), si_unit(input), single_line(&format!("`{name}` of the law")))
             }
         };
-        let default = match (name, input.default) {
-            // Propeller revolutions default to those of the model's approach.
-            ("n", None) => model.revolutions_rps.unwrap_or(0.0),
-            (_, default) => default.unwrap_or(0.0),
+        // Propeller revolutions default to those of the model's approach.
+        let approach_rps = model.revolutions_rps.unwrap_or(0.0);
+        let default = match (name, input.default, &input.helm) {
+            (_, Some(default), _) => default,
+            ("n", None, _) => approach_rps,
+            (_, None, Some(helm)) => law::helm_value(helm, 0.0, approach_rps),
+            (_, None, None) => 0.0,
         };
         let range = valid_range(model, name);
         Self { name: name.to_owned(), identifier, unit, meaning, default, range }

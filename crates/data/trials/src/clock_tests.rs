@@ -10,6 +10,7 @@ fn read(header: &str, unit: &str, cells: &[&str]) -> (Vec<f64>, Option<String>, 
         target: ColumnTarget::Time,
         unit: unit.into(),
         to_si,
+        at_rest: 0.0,
     };
     let mut clock = ColumnClock::from_columns(std::slice::from_ref(&column));
     let (mut values, mut faults) = (Vec::new(), String::new());

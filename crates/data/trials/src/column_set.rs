@@ -10,6 +10,7 @@ use sistership_model::manifest::ColumnMapping;
 use crate::guess::ColumnGuess;
 use crate::preview::FilePreview;
 use crate::table::ColumnTarget;
+use crate::thruster_guess::ThrusterColumns;
 use crate::units::UnitKind;
 
 /// Largest number of rows of all files that are compared.
@@ -30,6 +31,8 @@ pub(crate) struct ColumnSet {
     pub time: Option<(usize, f64)>,
     /// Notes on combinations of columns.
     pub notes: Vec<String>,
+    /// True if a pair of thrusters is recorded by its commands.
+    pub has_commands: bool,
 }
 
 impl ColumnSet {
@@ -86,7 +89,13 @@ impl ColumnSet {
             }
             self.guesses.push(guess);
         }
-        self.notes.extend(thruster_note(&found));
+        if let Some(pair) = ThrusterColumns::from_identification(&found, &self.sample) {
+            pair.settle_guesses(&mut self.guesses[self.sentences.len()..]);
+            let columns = pair.columns.iter().map(|(name, one)| ((*name).to_owned(), one.clone()));
+            self.columns.extend(columns);
+            self.notes.push(pair.note());
+            self.has_commands = true;
+        }
         // The samples may be large, and are not needed any more.
         self.sample = RecordingSample::default();
     }
@@ -103,9 +112,7 @@ impl ColumnSet {
 
     /// Returns true if it is a complete trial: time, steering or propulsion, turning and speed.
     pub(crate) fn is_complete(&self) -> bool {
-        // Commands of thrusters have no channel, but count as steering here.
-        let commands = self.has_any(&["delta", "delta_s", "delta_p", "n", "n_s", "n_p"])
-            || self.notes.iter().any(|note| note.contains("thruster"));
+        let commands = self.has_any(&["delta", "delta_s", "delta_p", "n", "n_s", "n_p"]);
         let speed = self.has_any(&["u", "speed", "x", "latitude", "v_north"]);
         commands && speed && self.has_any(&["r", "psi"])
     }
@@ -251,27 +258,5 @@ fn alternative_question(column: &IdentifiedColumn) -> Option<String> {
         100.0 * other.probability,
         flag(&first),
         flag(other)
-    ))
-}
-
-/// Returns the note on commands of two thrusters, for which a trial has no channel.
-fn thruster_note(found: &Identification) -> Option<String> {
-    let pair = found.thrusters.as_ref()?;
-    let (port, starboard) = pair.columns;
-    let header = |at: usize| found.columns.get(at).map_or("", |column| column.header.as_str());
-    let (steers, other) = if pair.is_opposed {
-        ("sum", ", one of them with a reversed sign")
-    } else {
-        ("difference", "")
-    };
-    Some(format!(
-        "`{}` and `{}` are the commands of two thrusters{other}: their {steers} correlates with \
-         the yaw rate ({:.2}), the other combination with the speed ahead ({:.2}). A trial has \
-         the channels `delta` and `n`, but none for a pair of thrusters: both columns are \
-         ignored, and `refine` does not support these trials yet",
-        header(port),
-        header(starboard),
-        pair.yaw_correlation,
-        pair.speed_correlation
     ))
 }

@@ -50,12 +50,8 @@ pub(crate) fn convert_table(
             ColumnTarget::Unidentified(_) => {}
         }
     }
-    // Means of port and starboard are formed in the signs of the file, and converted like any
-    // channel.
-    for (channel, mut values) in pair_means(&mut recording, findings) {
-        apply_sign(channel, &mut values, mapping, &recording, findings);
-        recording.trial.channels.insert(channel, values);
-    }
+    let means = pair_means(&mut recording, findings);
+    recording.trial.channels.extend(means);
     recording
 }
 
@@ -68,7 +64,9 @@ fn apply_sign(
 ) {
     let (conventions, declared) = (&mapping.conventions, &mapping.declared);
     match channel {
-        Channel::Delta if conventions.rudder_positive == RudderSign::PortTurn => {
+        Channel::Delta | Channel::DeltaS | Channel::DeltaP
+            if conventions.rudder_positive == RudderSign::PortTurn =>
+        {
             values.iter_mut().for_each(|value| *value = -*value);
         }
         Channel::Psi => {

@@ -76,6 +76,7 @@ mod stream;
 mod table;
 #[cfg(test)]
 mod testing;
+mod thruster_guess;
 mod trial_file;
 mod units;
 mod water;

@@ -7,8 +7,16 @@ use crate::units::UnitKind;
 
 /// Other common names of channels; a wind direction without a qualifier is where the wind comes
 /// from.
-const ALIASES: [(&str, Channel); 2] =
-    [("wind_dir", Channel::WindFrom), ("apparent_wind_dir", Channel::ApparentWindFrom)];
+const ALIASES: [(&str, Channel); 8] = [
+    ("wind_dir", Channel::WindFrom),
+    ("apparent_wind_dir", Channel::ApparentWindFrom),
+    ("n_starboard", Channel::NS),
+    ("n_stbd", Channel::NS),
+    ("n_port", Channel::NP),
+    ("delta_starboard", Channel::DeltaS),
+    ("delta_stbd", Channel::DeltaS),
+    ("delta_port", Channel::DeltaP),
+];
 
 const RAW_ALIASES: [(&str, RawQuantity); 4] = [
     ("lat", RawQuantity::Latitude),

@@ -30,7 +30,9 @@ pub fn missing_channels(law: &Law, trial: &Trial) -> Vec<MissingChannel> {
     let state = "it is part of the initial state of a simulation";
     let mut needed: Vec<(Channel, &'static str)> =
         vec![(Channel::U, state), (Channel::V, state), (Channel::R, state)];
-    needed.push((Channel::Delta, "it is the steering input"));
+    if law.inputs.contains_key(Channel::Delta.name()) {
+        needed.push((Channel::Delta, "it is the steering input"));
+    }
     if law.axes.contains_key(&Axis::K) {
         let rolls = "the law has roll";
         needed.extend([(Channel::Phi, rolls), (Channel::P, rolls)]);

@@ -329,6 +329,7 @@ fn si_column(target: ColumnTarget, name: &str) -> TableColumn {
         target,
         unit: UnitKind::from_target(target).canonical_unit().into(),
         to_si: 1.0,
+        at_rest: 0.0,
     }
 }
 

@@ -139,8 +139,8 @@ impl NmeaSentence<'_> {
             "ROT" if self.field_is(2, "A") => vec![channel(Channel::R, number(1, DEG / 60.0))],
             "RSA" => {
                 let side =
-                    |at, side| raw(side, number(at, DEG).filter(|_| self.field_is(at + 1, "A")));
-                vec![side(1, RawQuantity::DeltaS), side(3, RawQuantity::DeltaP)]
+                    |at, of| channel(of, number(at, DEG).filter(|_| self.field_is(at + 1, "A")));
+                vec![side(1, Channel::DeltaS), side(3, Channel::DeltaP)]
             }
             "RPM" if self.field_is(1, "S") && self.field_is(5, "A") => {
                 vec![self.shaft_revolutions()]
@@ -180,8 +180,8 @@ impl NmeaSentence<'_> {
         let revolutions = self.parse_field(3)? / 60.0;
         match self.parse_field(2)? as i64 {
             0 => Some((ColumnTarget::Channel(Channel::N), revolutions)),
-            1 => Some((ColumnTarget::Raw(RawQuantity::NS), revolutions)),
-            2 => Some((ColumnTarget::Raw(RawQuantity::NP), revolutions)),
+            1 => Some((ColumnTarget::Channel(Channel::NS), revolutions)),
+            2 => Some((ColumnTarget::Channel(Channel::NP), revolutions)),
             _ => None,
         }
     }

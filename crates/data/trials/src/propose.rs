@@ -9,12 +9,13 @@ use sistership_model::manifest::{
 };
 
 use crate::column_set::ColumnSet;
-use crate::declarations::{Declarations, Derivable, SensorFile};
+use crate::declarations::{Declarations, Derivable, Maximum, SensorFile};
 use crate::file_set::{ClockSpan, FileRole, SetFile, classify_files};
 use crate::guess::ColumnGuess;
 use crate::manifest_file::ManifestFile;
 use crate::preview::preview_file;
 use crate::sampling::{FileSample, sample_file};
+use crate::thruster_guess::FULL_COMMAND_RPS;
 
 /// Range of seconds since 1970, in the years 2001 to 2065.
 const UNIX_S: std::ops::Range<f64> = 1.0e9..3.0e9;
@@ -271,7 +272,11 @@ impl FileSet {
         let mut ignore: Vec<String> = left.map(|guess| guess.column.clone()).collect();
         ignore.sort_unstable();
         ignore.dedup();
-        Declarations { derive, ignore, sheet: self.sheet.clone(), ..Declarations::default() }
+        let full = Maximum { value: FULL_COMMAND_RPS, unit: "rps".to_owned() };
+        let commands = self.shapes.iter().any(|shape| shape.has_commands);
+        let maximum = commands.then(|| ("n".to_owned(), full)).into_iter().collect();
+        let sheet = self.sheet.clone();
+        Declarations { derive, ignore, sheet, maximum, ..Declarations::default() }
     }
 }
 

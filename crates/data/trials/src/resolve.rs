@@ -70,7 +70,7 @@ fn unidentified_columns(heading: HeaderRows, time: &WrittenTime) -> Vec<TableCol
         // Days of a sheet become seconds here; other written times are seconds once the clock has
         // read them.
         let to_si = if unit == "excel" { 86_400.0 } else { 1.0 };
-        TableColumn { index, header: header.clone(), target, unit, to_si }
+        TableColumn { index, header: header.clone(), target, unit, to_si, at_rest: 0.0 }
     };
     heading.names.iter().enumerate().map(of_column).collect()
 }
@@ -169,6 +169,7 @@ impl ColumnResolver<'_> {
                 target: self.redirect_target(target),
                 unit: plain_unit(unit).into(),
                 to_si,
+                at_rest: if plain_unit(unit) == PULSE { PULSE_AT_REST } else { 0.0 },
             }),
             Err(message) => {
                 self.findings.error(None, Some(&header), format!("{}: {message}", target.name()))
@@ -331,25 +332,41 @@ impl ColumnResolver<'_> {
     }
 }
 
-/// Returns the factor to canonical units; a percentage refers to the declared maximum.
+/// Full command of a thruster in a unit of commands: a lever counts to 1, the pulses of a speed
+/// controller span 400 us to either side of rest.
+fn full_command(unit: &str) -> Option<f64> {
+    match unit {
+        "%" => Some(100.0),
+        "lever" => Some(1.0),
+        PULSE => Some(400.0),
+        _ => None,
+    }
+}
+
+/// Unit of the pulses of a speed controller, us.
+const PULSE: &str = "pwm";
+
+/// Pulse of a thruster at rest, us.
+const PULSE_AT_REST: f64 = 1500.0;
+
+/// Returns the factor to canonical units; a command refers to the declared maximum.
 pub(crate) fn unit_factor(
     target: ColumnTarget,
     unit: &str,
     declared: &Declarations,
 ) -> Result<f64, String> {
-    if plain_unit(unit) != "%" {
+    let command = plain_unit(unit);
+    let Some(most) = full_command(command) else {
         return UnitKind::from_target(target).unit_to_si(unit);
-    }
+    };
     // `delta_s` may use the maximum declared for `delta`.
     let of_pair = target.name().split('_').next().unwrap_or_default();
     let full = declared.maximum.get(target.name()).or_else(|| declared.maximum.get(of_pair));
     match full {
-        Some(full) => {
-            Ok(full.value / 100.0 * UnitKind::from_target(target).unit_to_si(&full.unit)?)
-        }
+        Some(full) => Ok(full.value / most * UnitKind::from_target(target).unit_to_si(&full.unit)?),
         None => Err(format!(
-            "`%` needs the value of 100 %; declare `maximum: {{ {of_pair}: {{ value: ..., unit: \
-             {} }} }}`",
+            "`{command}` needs the value of {most}; declare `maximum: {{ {of_pair}: {{ value: ..., \
+             unit: {} }} }}`",
             UnitKind::from_target(target).canonical_unit()
         )),
     }

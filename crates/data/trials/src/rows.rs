@@ -200,7 +200,8 @@ impl RowSink for TableBuilder<'_> {
         self.scratch.clear();
         for position in 0..self.table.columns.len() {
             let column = &self.table.columns[position];
-            let si = |value: f64| Some(value * column.to_si).filter(|value| value.is_finite());
+            let si =
+                |value: f64| Some(column.to_canonical(value)).filter(|value| value.is_finite());
             match cell(position, column).and_then(|value| si(value).ok_or(CellFault::NotANumber)) {
                 Ok(value) => self.scratch.push(value),
                 // An empty column is dropped in the end: its cells do not make the row faulty yet.
@@ -263,6 +264,7 @@ mod tests {
             target: ColumnTarget::Channel(Channel::U),
             unit: "km/h".into(),
             to_si: 0.5,
+            at_rest: 0.0,
         };
         let mut findings = Findings::default();
         let mut builder = TableBuilder::new(vec![column], missing, &mut findings);
@@ -304,6 +306,7 @@ mod tests {
             target,
             unit: "1".into(),
             to_si: 1.0,
+            at_rest: 0.0,
         };
         let channel = ColumnTarget::Channel;
         let columns = vec![

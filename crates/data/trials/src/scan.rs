@@ -111,16 +111,16 @@ impl SteeringColumns {
         let one = |channel: Channel| [at(ColumnTarget::Channel(channel)), None];
         let or =
             |first: ColumnPair, second: ColumnPair| if first[0].is_some() { first } else { second };
-        let raw = |one: RawQuantity, other: RawQuantity| {
-            [at(ColumnTarget::Raw(one)), at(ColumnTarget::Raw(other))]
+        let pair = |one: Channel, other: Channel| {
+            [at(ColumnTarget::Channel(one)), at(ColumnTarget::Channel(other))]
         };
         let signed =
             |place: ColumnPair| place.map(|one| one.map(|(at, factor)| (at, sign * factor)));
         // The pair of a twin ship is read only if the channel itself is absent.
         let yaw = one(Channel::R);
         Self {
-            rudder: signed(or(one(Channel::Delta), raw(RawQuantity::DeltaS, RawQuantity::DeltaP))),
-            revolutions: or(one(Channel::N), raw(RawQuantity::NS, RawQuantity::NP)),
+            rudder: signed(or(one(Channel::Delta), pair(Channel::DeltaS, Channel::DeltaP))),
+            revolutions: or(one(Channel::N), pair(Channel::NS, Channel::NP)),
             yaw,
             // The heading is only needed where there is no yaw rate.
             heading: if yaw[0].is_some() { [None, None] } else { one(Channel::Psi) },
@@ -156,7 +156,8 @@ impl<F: FnMut(&SteeringSample)> RowSink for SteeringScan<F> {
         let places = &self.places;
         let mut number = |place: Option<(usize, f64)>| {
             let (at, factor) = place?;
-            cell(at, &places.columns[at]).ok().map(|value| factor * value)
+            let column = &places.columns[at];
+            cell(at, column).ok().map(|value| factor * (value - column.at_rest))
         };
         let mut mean = |[one, other]: ColumnPair| match (number(one), number(other)) {
             (Some(one), Some(other)) => 0.5 * (one + other),

@@ -175,6 +175,7 @@ mod tests {
             target: ColumnTarget::Channel(channel),
             unit: String::new(),
             to_si: 1.0,
+            at_rest: 0.0,
         };
         SensorSeries { column, t: t.to_vec(), values: values.to_vec() }
     }

@@ -33,7 +33,7 @@ pub(crate) struct TableRows {
 impl TableRows {
     pub(crate) fn new(table: Table) -> Self {
         // The numbers are in SI units already.
-        let si = |column: &TableColumn| TableColumn { to_si: 1.0, ..column.clone() };
+        let si = |column: &TableColumn| TableColumn { to_si: 1.0, at_rest: 0.0, ..column.clone() };
         Self { columns: table.columns.iter().map(si).collect(), table }
     }
 }

@@ -25,27 +25,17 @@ pub(crate) enum RawQuantity {
     Course,
     /// Speed over ground, m/s.
     Speed,
-    /// Rudders, rad: starboard and port.
-    DeltaS,
-    DeltaP,
-    /// Propellers, 1/s: starboard and port.
-    NS,
-    NP,
     /// Velocity over ground, m/s: towards north and towards east.
     VNorth,
     VEast,
 }
 
 // In the order of the variants of `RawQuantity`, which index this table.
-const RAW: [(RawQuantity, &str, Dimension); 10] = [
+const RAW: [(RawQuantity, &str, Dimension); 6] = [
     (RawQuantity::Latitude, "latitude", Dimension::NONE),
     (RawQuantity::Longitude, "longitude", Dimension::NONE),
     (RawQuantity::Course, "course", Dimension::NONE),
     (RawQuantity::Speed, "speed", Dimension::SPEED),
-    (RawQuantity::DeltaS, "delta_s", Dimension::NONE),
-    (RawQuantity::DeltaP, "delta_p", Dimension::NONE),
-    (RawQuantity::NS, "n_s", Dimension::RATE),
-    (RawQuantity::NP, "n_p", Dimension::RATE),
     (RawQuantity::VNorth, "v_north", Dimension::SPEED),
     (RawQuantity::VEast, "v_east", Dimension::SPEED),
 ];
@@ -68,8 +58,6 @@ impl RawQuantity {
         match self {
             Self::Latitude | Self::Longitude => &[Channel::X, Channel::Y],
             Self::Course | Self::Speed | Self::VNorth | Self::VEast => &[Channel::U, Channel::V],
-            Self::DeltaS | Self::DeltaP => &[Channel::Delta],
-            Self::NS | Self::NP => &[Channel::N],
         }
     }
 }
@@ -104,6 +92,15 @@ pub(crate) struct TableColumn {
     /// Unit as declared, for messages.
     pub unit: String,
     pub to_si: f64,
+    /// Value of the file that stands for zero.
+    pub at_rest: f64,
+}
+
+impl TableColumn {
+    /// Returns a value of the file in canonical units.
+    pub(crate) fn to_canonical(&self, value: f64) -> f64 {
+        (value - self.at_rest) * self.to_si
+    }
 }
 
 /// Returns the number of columns in memory at a time: those that are read, and those computed from

@@ -35,6 +35,7 @@ fn test_column(index: usize, target: ColumnTarget, header: &str) -> TableColumn 
         target,
         unit: UnitKind::from_target(target).canonical_unit().into(),
         to_si: 1.0,
+        at_rest: 0.0,
     }
 }
 

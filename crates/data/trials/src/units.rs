@@ -3,7 +3,7 @@
 use sistership_formula::units::{Dimension, Unit};
 use sistership_model::trial::Channel;
 
-use crate::table::{ColumnTarget, RawQuantity};
+use crate::table::ColumnTarget;
 
 /// Physical kind of a column. Dimensions alone cannot distinguish a yaw rate from propeller
 /// revolutions: both are 1/s, but one counts radians and the other turns, and 80 rpm read as a yaw
@@ -125,8 +125,7 @@ impl UnitKind {
     pub(crate) fn from_target(target: ColumnTarget) -> Self {
         match target {
             ColumnTarget::Time => Self::Time,
-            ColumnTarget::Channel(Channel::N)
-            | ColumnTarget::Raw(RawQuantity::NS | RawQuantity::NP) => Self::Revolutions,
+            ColumnTarget::Channel(Channel::N | Channel::NS | Channel::NP) => Self::Revolutions,
             ColumnTarget::Channel(channel) => Self::from_dimension(channel.dimension()),
             ColumnTarget::Raw(raw) => Self::from_dimension(raw.dimension()),
             ColumnTarget::Unidentified(_) => Self::Length,

@@ -110,11 +110,16 @@ fn a_catamaran_is_read_and_its_thrusters_are_named() {
     assert_eq!(channel(&proposal, "x_ned"), Some("x"));
     assert_eq!(channel(&proposal, "yaw_rate"), Some("r"));
     assert_eq!(channel(&proposal, "right_force"), None);
-    assert!(proposal.notes[0].contains("thr_left") && proposal.notes[0].contains("refine"));
+    assert!(proposal.notes[0].contains("thr_left") && proposal.notes[0].contains("maximum"));
+    assert_eq!(channel(&proposal, "thr_left"), Some("n_p"));
+    assert_eq!(channel(&proposal, "thr_right"), Some("n_s"));
+    assert_eq!(&*proposal.manifest.manifest.columns["n_p"].unit, "pwm");
     assert_eq!(trials.len(), 8);
     for trial in trials {
         println!("{:?}", trial.as_ref().map(|trial| (trial.name.clone(), trial.len())));
-        trial.unwrap();
+        let trial = trial.unwrap();
+        let starboard = trial.channel(Channel::NS).unwrap();
+        assert!(starboard.iter().all(|n_rps| n_rps.abs() <= 20.0), "{}", trial.name);
     }
 }
 

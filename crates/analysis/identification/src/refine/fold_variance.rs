@@ -25,7 +25,11 @@ use sistership_priors::transfer::prepare_sister_ships;
 pub(super) fn fold_variance(problem: &RefinementProblem<'_>, folds: &[Model]) -> Option<f64> {
     let first = folds.first().filter(|_| folds.len() > 1)?;
     let asked = RudderOrder::random_orders(HELM.records);
-    let helms = rudder_records(&problem.transferred, &problem.whole, (&asked, HELM.lengths))?;
+    let helms = rudder_records(
+        (&problem.transferred, problem.law),
+        &problem.whole,
+        (&asked, HELM.lengths),
+    )?;
     let ship = prepare_sister_ships(first, problem.law, &problem.whole).ok()?;
     let coefficients = sister_coefficients(&ship, folds).ok()?;
     let each =

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use sistership_model::law::Law;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::vessel::Steering;
 use sistership_model::{Model, particulars};
@@ -73,7 +74,7 @@ pub struct RecordStart {
 /// and revolutions of the trials' approach, in their depth and without wind. `None` if the approach
 /// or the length is not known.
 pub fn rudder_records(
-    model: &Model,
+    (model, law): (&Model, &Law),
     trials: &[&Trial],
     (helms, lengths): (&[RudderOrder], f64),
 ) -> Option<Vec<Trial>> {
@@ -86,13 +87,13 @@ pub fn rudder_records(
     ];
     let channels = motion.into_iter().filter_map(|(channel, value)| Some((channel, value?)));
     let ahead = RecordStart { channels: channels.collect(), angle_rad: 0.0 };
-    helms.iter().map(|helm| rudder_record(model, trials, (*helm, lengths), &ahead)).collect()
+    helms.iter().map(|helm| rudder_record((model, law), trials, (*helm, lengths), &ahead)).collect()
 }
 
 /// Returns a record of an order from initial conditions, `lengths` ship lengths long, in the depth
 /// of the trials and without wind. `None` if the approach or the length is not known.
 pub fn rudder_record(
-    model: &Model,
+    (model, law): (&Model, &Law),
     trials: &[&Trial],
     (helm, lengths): (RudderOrder, f64),
     begun: &RecordStart,
@@ -106,13 +107,15 @@ pub fn rudder_record(
         constants.map(|(channel, value)| (channel, vec![value; count])).collect();
     let angles = helm.rudder_angles(&model.steering, interval_s, (begun.angle_rad, count));
     channels.insert(Channel::Delta, angles);
-    Some(Trial {
+    let mut record = Trial {
         name: helm.name(&model.steering),
         t_s: (0..count).map(|sample| sample as f64 * interval_s).collect(),
         channels,
         depth_m: trials.first().and_then(|trial| trial.depth_m),
         ..Trial::default()
-    })
+    };
+    law.set_actuators(&mut record);
+    Some(record)
 }
 
 /// `count` samples of orders as shares of the gear's limit, from a place of a low-discrepancy

@@ -165,6 +165,9 @@ fn with_candidates<T>(
     let started = StartingPoint { request, known, whole: &whole, approach: trial_approach(&whole) };
     let propeller = started.source_propeller();
     let (mut transferred, measure) = started.starting_prior(!parts.is_empty())?;
+    if request.law.steers_by_difference() {
+        steer_by_thrusters(&mut transferred);
+    }
     steer_as_recorded(&mut transferred, request.target, &whole);
     // Parts replace whole trials in fit and comparison alike.
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
@@ -199,6 +202,16 @@ fn with_candidates<T>(
     compare_longer(&problem, &mut candidates)?;
     report_progress(progress, 0.8, "fitting all trials")?;
     then(&problem, candidates, &variants, progress)
+}
+
+/// Rate of the helm of a craft that the difference of thrusters steers, deg/s: the whole difference
+/// in half a second, in which electric thrusters change their revolutions.
+const THRUSTER_RATE_DEG_S: f64 = 70.0;
+
+/// Sets the rate of the helm of a craft without a rudder, whose source may have a steering gear.
+fn steer_by_thrusters(model: &mut Model) {
+    model.steering.rate_deg_s = THRUSTER_RATE_DEG_S;
+    model.steering.source = Some("thrusters that change their revolutions at once".to_owned());
 }
 
 /// Sets a model's rudder rate to that of the recorded rudder movements, where these show it.

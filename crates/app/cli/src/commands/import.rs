@@ -1,10 +1,11 @@
 //! `sistership import`: identification of the columns of trial files, and their manifest.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Args;
 use sistership_model::trial::Trial;
-use sistership_model::{FileError, Zoo};
+use sistership_model::{FileError, Vessel, Zoo};
 use sistership_trials::{
     ColumnGuess, Exclusion, GivenColumn, LoadedTrials, ManifestFile, ProposalRequest, Role,
     find_faults, load_path, missing_channels, propose_files,
@@ -19,6 +20,7 @@ use super::store::StoreArguments;
 use crate::failure::{Failure, about_file};
 use crate::files::OutputFile;
 use crate::output;
+use crate::resolve::vessel_file;
 use crate::trials::format_finding;
 use crate::values::positive;
 
@@ -49,8 +51,9 @@ pub struct ImportArguments {
     /// 2000 logs, MCAP.
     #[arg(required_unless_present = "bundle")]
     files: Vec<PathBuf>,
-    /// Ship of the trials; `refine --ship` may name it instead.
-    #[arg(long, value_name = "NAME", default_value = "", hide_default_value = true)]
+    /// Ship of the trials, by name or by its file, whose `actuators` name columns; `refine --ship`
+    /// may name it instead.
+    #[arg(long, value_name = "SHIP", default_value = "", hide_default_value = true)]
     ship: String,
     /// Write the manifest to this file; by default `trials.yaml` in the common folder of all files.
     #[arg(long, value_name = "FILE")]
@@ -140,16 +143,19 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     let promised = OutputFile::new(&out, &arguments.files)?;
     let files: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
     let folder = out.parent().unwrap_or(Path::new(""));
-    let given = given_columns(arguments)?;
+    let vessel = named_vessel(zoo, &arguments.ship)?;
+    let named = vessel.iter().flat_map(|vessel| actuator_columns(vessel));
+    let given: Vec<GivenColumn> = given_columns(arguments)?.into_iter().chain(named).collect();
     let request = ProposalRequest {
-        ship: &arguments.ship,
+        ship: vessel.as_ref().map_or(arguments.ship.as_str(), |vessel| vessel.name()),
         files: &files,
         folder: Some(folder),
         given: &given,
     };
     let mut proposal = propose_files(&request).map_err(join_errors)?;
     // Segmentation first: faults are then searched only in the segments that become trials.
-    let logs = segment_logs(&mut proposal.manifest, folder, ship_length(zoo, arguments));
+    let logs =
+        segment_logs(&mut proposal.manifest, folder, ship_length(vessel.as_deref(), arguments));
     let excluded = exclude_faults(&mut proposal.manifest, folder)?;
     let text = proposal.manifest.to_yaml().map_err(|error| about_file(&out, error))?;
     promised.write(text.as_bytes())?;
@@ -220,10 +226,33 @@ fn common_folder(files: &[PathBuf]) -> PathBuf {
 }
 
 /// Returns the ship's length: as given, or of the ship with that name in the zoo.
-fn ship_length(zoo: &Zoo, arguments: &ImportArguments) -> Option<f64> {
-    let known =
-        || zoo.vessel(&arguments.ship)?.particulars.get("lpp_m").map(|quantity| quantity.value);
+fn ship_length(vessel: Option<&Vessel>, arguments: &ImportArguments) -> Option<f64> {
+    let known = || vessel?.particulars.get("lpp_m").map(|quantity| quantity.value);
     arguments.length.or_else(known)
+}
+
+/// Returns the ship that `--ship` names: one of the zoo, or a file. Another name is only a label.
+fn named_vessel(zoo: &Zoo, ship: &str) -> Result<Option<Arc<Vessel>>, Failure> {
+    match zoo.vessel(ship) {
+        Some(vessel) => Ok(Some(Arc::clone(vessel))),
+        None if Path::new(ship).is_file() => vessel_file(zoo, Path::new(ship)).map(Some),
+        None => Ok(None),
+    }
+}
+
+/// Columns that the actuators of a ship name.
+fn actuator_columns(vessel: &Vessel) -> impl Iterator<Item = GivenColumn> {
+    let channels = vessel.file.actuators.values().flat_map(|actuator| &actuator.channels);
+    channels.flat_map(|(channel, headers)| {
+        let role = Role::from_name(channel.name());
+        let column = move |header: &String| GivenColumn {
+            header: header.clone(),
+            role,
+            unit: None,
+            is_reversed: None,
+        };
+        headers.iter().map(column)
+    })
 }
 
 fn join_errors(errors: Vec<FileError>) -> Failure {

@@ -112,7 +112,7 @@ pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     }
     let tracks = tracks.iter().chain(further.tracks.iter().map(|(_, track)| track));
     if let (Some(file), Some(track)) = (file, tracks.into_iter().next()) {
-        file.write(&track::track_csv(track, &law, ship.has_propeller())?)?;
+        file.write(&track::track_csv(track, &law, ship.follows_revolutions())?)?;
     }
     let bands = draw_bands(manoeuvre, &model, &law)?;
     let document = ManoeuvreDocument::from_results(&model, &ship, sailed, further, bands, remarks);
@@ -170,7 +170,8 @@ fn prepare_ship(manoeuvre: &ManoeuvreArguments, model: &Model, law: &Law) -> Res
     let mut ship = build_ship(model, law)?;
     let speed = manoeuvre.speed_m_s.unwrap_or(ship.approach_speed_m_s());
     ship.set_envelope_speed(speed);
-    if ship.has_propeller() && manoeuvre.n_rps.is_none() && ship.revolutions_at(speed) == 0.0 {
+    if ship.follows_revolutions() && manoeuvre.n_rps.is_none() && ship.revolutions_at(speed) == 0.0
+    {
         let message = format!(
             "law `{}` needs propeller revolutions and {} gives none: add --n-rps",
             law.name, model.name

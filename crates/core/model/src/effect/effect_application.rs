@@ -135,7 +135,7 @@ impl EffectApplier<'_> {
             };
             // Infinite depth means deep water.
             let still = if channel == Some(Channel::Depth) { f64::INFINITY } else { 0.0 };
-            law.inputs.insert(input, LawInput { dimension, default: Some(still) });
+            law.inputs.insert(input, LawInput { dimension, default: Some(still), helm: None });
         }
     }
 

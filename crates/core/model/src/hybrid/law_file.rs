@@ -25,7 +25,10 @@ impl LawWriter<'_> {
     pub fn write_law(self) -> LawFile {
         let inertia = InertiaFormulas::from_scaling(self.file.scaling);
         let input = |input: &ActuatorInput| {
-            (input.name.clone(), InputFile { unit: input.unit.into(), default: None })
+            (
+                input.name.clone(),
+                InputFile { unit: input.unit.into(), default: None, helm: side_helm(&input.name) },
+            )
         };
         let mirror = |input: &ActuatorInput| Some((input.name.clone(), input.mirror.clone()?));
         let factor =
@@ -218,4 +221,10 @@ impl InertiaFormulas {
             (Axis::N, row(&[(Axis::Y, self.moment), (Axis::N, self.yaw)])),
         ])
     }
+}
+
+/// Formula of an actuator of one side that follows the same order as that of the other.
+fn side_helm(name: &str) -> Option<String> {
+    let of_pair = name.strip_suffix("_s").or_else(|| name.strip_suffix("_p"))?;
+    ["delta", "n"].contains(&of_pair).then(|| of_pair.to_owned())
 }

@@ -59,6 +59,9 @@ pub struct LawInput {
     pub dimension: Dimension,
     /// Default value; an input without a default must be given.
     pub default: Option<f64>,
+    /// Value under an order of helm, as a formula of `delta` (rad) and `n` (1/s): manoeuvres order
+    /// these two alone.
+    pub helm: Option<Expr>,
 }
 
 /// Nonlinear parameter.

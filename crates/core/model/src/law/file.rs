@@ -72,6 +72,10 @@ pub struct InputFile {
     /// Default value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<f64>,
+    /// Value in manoeuvres, a formula of the ordered helm `delta` (rad) and revolutions `n` (1/s),
+    /// for an input that is one actuator of several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub helm: Option<String>,
 }
 
 /// A parameter as its file writes it.

@@ -5,6 +5,7 @@ mod definition;
 mod dimension;
 mod error;
 mod file;
+mod helm;
 pub(crate) mod limits;
 mod read;
 mod submodel;
@@ -17,4 +18,5 @@ pub use error::TermError;
 pub use file::{
     AxisFile, InputFile, LawFile, LawKind, ParameterFile, ParameterPrior, SubmodelFile, TermFile,
 };
+pub use helm::{helm_value, set_actuators};
 pub use limits::{MAX_COEFFICIENTS, MAX_EFFECTS, MAX_SIZE, MAX_TERMS};

@@ -7,7 +7,8 @@ use indexmap::IndexMap;
 use super::additions::LawAdditions;
 use super::definition::{AxisLaw, Law, LawInput, LawParameter};
 use super::dimension::{STATES, acceleration_dimension, axis_dimension};
-use super::file::{AxisFile, LawFile, ParameterFile, ParameterRole, TermFile};
+use super::file::{AxisFile, InputFile, LawFile, ParameterFile, ParameterRole, TermFile};
+use super::helm::order_dimension;
 use super::submodel::read_submodels;
 use super::{limits, symmetry};
 use crate::coefficient::{Axis, CoefficientName};
@@ -52,10 +53,7 @@ fn read_law(file: &str, text: &str) -> Result<Law, FileError> {
     let reader = LawReader { blame: &blame };
     // Sections are read in the order of their dependence: a formula may use those before it.
     for (name, input) in &raw.inputs {
-        let unit = Unit::parse(&input.unit)
-            .map_err(|e| blame.field_error(&format!("inputs.{name}"), e))?;
-        law.inputs
-            .insert(name.clone(), LawInput { dimension: unit.dimension, default: input.default });
+        law.inputs.insert(name.clone(), reader.read_input(name, input)?);
     }
     for (name, parameter) in &raw.parameters {
         law.parameters.insert(name.clone(), reader.read_parameter(name, parameter)?);
@@ -84,6 +82,21 @@ struct LawReader<'a> {
 }
 
 impl LawReader<'_> {
+    fn read_input(&self, name: &str, raw: &InputFile) -> Result<LawInput, FileError> {
+        let refuse = |message: String| self.blame.field_error(&format!("inputs.{name}"), message);
+        let dimension = Unit::parse(&raw.unit).map_err(|e| refuse(e.to_string()))?.dimension;
+        let helm = raw.helm.as_deref().map(formula::parse).transpose();
+        let helm = helm.map_err(|e| refuse(e.to_string()))?;
+        if let Some(helm) = &helm {
+            let found = formula::dimension_of(helm, &order_dimension);
+            let found = found.map_err(|e| refuse(format!("`helm` {e}")))?;
+            if found != dimension {
+                return Err(refuse(format!("`helm` gives {found}, the input is {dimension}")));
+            }
+        }
+        Ok(LawInput { dimension, default: raw.default, helm })
+    }
+
     fn read_parameter(&self, name: &str, raw: &ParameterFile) -> Result<LawParameter, FileError> {
         let field = format!("parameters.{name}");
         let unit = Unit::parse(&raw.unit).map_err(|e| self.blame.field_error(&field, e))?;

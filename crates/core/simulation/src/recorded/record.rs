@@ -1,5 +1,7 @@
 //! Channels of a trial in the form that a simulation reads.
 
+use std::borrow::Cow;
+
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::trial_input::{MissingInput, TrialInput, find_input};
 
@@ -11,7 +13,8 @@ use crate::state::{RECORDED_CHANNELS, StateVector, at};
 /// Channels of a trial that a simulation reads.
 pub struct TrialRecord<'a> {
     pub trial: &'a Trial,
-    pub delta: &'a [f64],
+    /// Recorded rudder angle; zero for a ship that none steers.
+    pub delta: Cow<'a, [f64]>,
     pub n: Option<&'a [f64]>,
     /// Each input of the law: recorded, or a constant.
     inputs: Vec<Result<MonotoneCubic<'a>, f64>>,
@@ -42,13 +45,12 @@ impl<'a> TrialRecord<'a> {
         let inputs = inputs
             .map(|(place, (name, default))| law_input(trial, name, default, follows(place)))
             .collect::<Result<_, _>>()?;
-        Ok(Self {
-            trial,
-            delta: need(Channel::Delta)?,
-            n: trial.channel(Channel::N),
-            inputs,
-            start,
-        })
+        let delta = match trial.channel(Channel::Delta) {
+            Some(delta) => Cow::Borrowed(delta),
+            None if ship.has_rudder() => Cow::Borrowed(need(Channel::Delta)?),
+            None => Cow::Owned(vec![0.0; trial.len()]),
+        };
+        Ok(Self { trial, delta, n: trial.channel(Channel::N), inputs, start })
     }
 
     pub fn recorded_state(&self, sample: usize) -> StateVector {
@@ -105,7 +107,10 @@ mod tests {
         let zoo = Zoo::load_embedded().unwrap();
         let model = zoo.find_model("mariner").unwrap();
         let mut law = zoo.law(&model.law).unwrap().as_ref().clone();
-        law.inputs.insert("ballast".into(), LawInput { dimension: Dimension::NONE, default: None });
+        law.inputs.insert(
+            "ballast".into(),
+            LawInput { dimension: Dimension::NONE, default: None, helm: None },
+        );
         let ship = Ship::new(&model, &law).unwrap();
         let mut trial = Trial { t_s: vec![0.0, 1.0], ..Trial::default() };
         for channel in Channel::all_channels() {

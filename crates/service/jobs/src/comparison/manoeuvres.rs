@@ -32,7 +32,7 @@ pub struct ComparedFigure {
 /// Simulates the standard manoeuvres of a model at its own speed and revolutions.
 pub fn simulate_standard(one: &ComparisonModel<'_>, ship: &Ship) -> StandardManoeuvres {
     // Without revolutions the propeller would brake the ship, and the figures would mean nothing.
-    if ship.has_propeller() && ship.revolutions_at(ship.approach_speed_m_s()) == 0.0 {
+    if ship.follows_revolutions() && ship.revolutions_at(ship.approach_speed_m_s()) == 0.0 {
         let reason = format!(
             "law `{}` needs propeller revolutions and {} gives none",
             one.law.name, one.model.name

@@ -115,6 +115,7 @@ impl InputsRequest {
             self.start.channel_values().map(|(channel, value)| (channel, vec![value; count])),
         );
         trial.channels.extend([(Channel::Delta, self.delta_rad.clone()), (Channel::N, n)]);
+        ship.set_actuators(&mut trial);
         check_times(&trial)?;
         Ok(trial)
     }

@@ -191,6 +191,7 @@ fn script_trial(ship: &Ship, lines: &[ScriptLine], orders: &ManoeuvreOrders, spe
     }
     trial.channels.extend([(Channel::Delta, delta), (Channel::N, n)]);
     trial.t_s = t_s;
+    ship.set_actuators(&mut trial);
     trial
 }
 

@@ -253,7 +253,10 @@ mod tests {
         let (model, law) = mariner_model();
         let trials = simulated_trials(&model, &law, 0.0);
         let mut law = law.as_ref().clone();
-        law.inputs.insert("ballast".into(), LawInput { dimension: Dimension::NONE, default: None });
+        law.inputs.insert(
+            "ballast".into(),
+            LawInput { dimension: Dimension::NONE, default: None, helm: None },
+        );
         let names: Vec<String> = law.inputs.keys().cloned().collect();
         let cut = SegmentLengths { segment_s: 60.0, residual_s: 5.0, step_s: 1.0 };
         let plan = ComparisonPlan { compared: Vec::new(), stride: 5, step_s: 1.0 };

@@ -114,9 +114,10 @@ impl PredictionSession {
         ship.envelope().check_state(t_s, &next)?;
         (self.state, self.t_s) = (next, t_s);
         if let Some(PosteriorDraws { ship, sisters, .. }) = &mut self.beside {
-            // Each draw fills in its own rudder angle.
-            let inputs = inputs_with_orders(ship, 0.0, self.order.n_rps, &self.others);
-            sisters.advance_step(ship, &inputs, self.order.delta_rad, step_s);
+            // Each draw has its own helm angle.
+            let (order, others) = (self.order, &self.others);
+            let inputs = |delta_rad: f64| inputs_with_orders(ship, delta_rad, order.n_rps, others);
+            sisters.advance_step(ship, &inputs, order, step_s);
         }
         Ok(())
     }
