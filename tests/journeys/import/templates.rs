@@ -32,9 +32,8 @@ fn a_correction_is_kept_and_offered_for_the_next_file() {
         command.env("SISTERSHIP_TEMPLATES", folder.path().join("templates"));
         command.arg("import").arg(&path).arg("--out").arg(&out).arg("--json").args(flags);
         let output = command.output().expect("the program runs");
-        serde_json::from_slice(&output.stdout).unwrap_or_else(|error| {
-            panic!("{error}: {}", String::from_utf8_lossy(&output.stderr))
-        })
+        serde_json::from_slice(&output.stdout)
+            .unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(&output.stderr)))
     };
     let settled = ["--column", "c1=t:s", "--column", "c2=u:m/s", "--column", "c3=psi:deg"];
     let rudder = ["--column", "c4=delta:deg:reversed", "--save-template", "yard-x"];

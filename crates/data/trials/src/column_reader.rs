@@ -30,7 +30,8 @@ impl ColumnFile<'_> {
     /// Reads the mapped columns; rows are counted from 1.
     pub(crate) fn read_table(self, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
         let format = self.format;
-        let unreadable = |error: io::Error| format!("the {} cannot be read: {error}", format.name());
+        let unreadable =
+            |error: io::Error| format!("the {} cannot be read: {error}", format.name());
         let opened = open_columns(format, self.input, mapping.limits).map_err(unreadable);
         let mut source = opened.map_err(|message| findings.error(None, None, message)).ok()?;
         let columns = mapped_columns(source.columns(), mapping, findings)?;

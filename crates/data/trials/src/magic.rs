@@ -131,10 +131,7 @@ mod tests {
         for (start, wanted) in [
             (&b"PAR1"[..], FormatKind::Parquet),
             (b"PK\x03\x04", FormatKind::Workbook),
-            (
-                b"MATLAB 5.0 MAT-file, Platform: GLNXA64",
-                FormatKind::Columns(ColumnFormat::Matlab),
-            ),
+            (b"MATLAB 5.0 MAT-file, Platform: GLNXA64", FormatKind::Columns(ColumnFormat::Matlab)),
             (b"\x89HDF\r\n\x1a\n...", FormatKind::Columns(ColumnFormat::Hdf5)),
             (b"<?xml version=\"1.0\"?>\n<gpx>", FormatKind::Columns(ColumnFormat::Gpx)),
             (

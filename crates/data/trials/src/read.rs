@@ -21,9 +21,7 @@ use crate::smoothing::smooth_recording;
 use crate::stream::TableRows;
 use crate::table::Table;
 use crate::trial_file::{InputContent, SensorInput, TrialFile};
-use crate::{
-    csv_file, derived, ground, nmea_file, parquet_file, position, water, workbook,
-};
+use crate::{csv_file, derived, ground, nmea_file, parquet_file, position, water, workbook};
 
 /// Reads, converts and checks a trial, and smooths it if the conventions require it.
 ///

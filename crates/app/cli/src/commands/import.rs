@@ -6,8 +6,8 @@ use clap::Args;
 use sistership_model::trial::Trial;
 use sistership_model::{FileError, Zoo};
 use sistership_trials::{
-    ColumnGuess, Exclusion, GivenColumn, LoadedTrials, ManifestFile, ProposalRequest, Role, find_faults,
-    load_path, missing_channels, propose_files,
+    ColumnGuess, Exclusion, GivenColumn, LoadedTrials, ManifestFile, ProposalRequest, Role,
+    find_faults, load_path, missing_channels, propose_files,
 };
 
 use super::import_bundle;
@@ -102,7 +102,8 @@ fn given_column(text: &str) -> Result<GivenColumn, String> {
     let unit = parts.next().map(|unit| unit.trim().to_owned()).filter(|unit| !unit.is_empty());
     if let (Some(role), Some(unit)) = (role, &unit) {
         let known = role.kind().known_units().iter().map(|unit| unit.name);
-        let known: Vec<&str> = known.chain(role.kind().percent_unit().map(|unit| unit.name)).collect();
+        let known: Vec<&str> =
+            known.chain(role.kind().percent_unit().map(|unit| unit.name)).collect();
         if !known.contains(&unit.as_str()) {
             return Err(format!("`{unit}` does not fit {name}; use one of {}", known.join(", ")));
         }

@@ -170,9 +170,7 @@ impl TemplateFolder {
         let note = |template: ImportTemplate| {
             let name = template.name.clone();
             let file = files.iter().find(|file| template.fits_columns(&columns_of(file)))?;
-            Some(format!(
-                "{file} has the same columns as template `{name}`: use --template {name}"
-            ))
+            Some(format!("{file} has the same columns as template `{name}`: use --template {name}"))
         };
         known.filter_map(note).collect()
     }

@@ -36,7 +36,11 @@ fn split_identifier(identifier: u32) -> (u32, u8) {
     let (format, specific) = ((identifier >> 16) & 0xff, (identifier >> 8) & 0xff);
     let page = (identifier >> 24) & 0x3;
     // Below 240 the second byte is the address of the receiver, not a part of the number.
-    let pgn = if format < 240 { (page << 16) | (format << 8) } else { (page << 16) | (format << 8) | specific };
+    let pgn = if format < 240 {
+        (page << 16) | (format << 8)
+    } else {
+        (page << 16) | (format << 8) | specific
+    };
     (pgn, (identifier & 0xff) as u8)
 }
 

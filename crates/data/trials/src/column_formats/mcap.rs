@@ -67,7 +67,9 @@ pub(crate) fn read_mcap(input: impl Read, limits: FileLimits) -> io::Result<Memo
     let is_dated = reader.is_dated;
     reader.log.into_columns(is_dated).map_err(|error| match unread.is_empty() {
         true => error,
-        false => io::Error::other(format!("{error}; messages in {} are not read", unread.join(", "))),
+        false => {
+            io::Error::other(format!("{error}; messages in {} are not read", unread.join(", ")))
+        }
     })
 }
 
@@ -161,8 +163,7 @@ fn add_json(message: &mut TopicMessage, path: &str, value: &Value, depth: usize)
     match value {
         Value::Object(fields) if depth < MAX_DEPTH => {
             for (name, value) in fields {
-                let path =
-                    if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
                 add_json(message, &path, value, depth + 1);
             }
         }

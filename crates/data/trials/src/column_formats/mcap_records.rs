@@ -81,7 +81,9 @@ fn visit_chunk(
     let length = bytes.read_number(8)?;
     let records = bytes.take_slice(length)?;
     if unpacked > most as u64 {
-        return Err(invalid_data(format!("a chunk unpacks to {unpacked} bytes, more than is read")));
+        return Err(invalid_data(format!(
+            "a chunk unpacks to {unpacked} bytes, more than is read"
+        )));
     }
     let records = unpack_records(packing, records, unpacked)?;
     let mut rest = RecordBytes(&records);
@@ -118,7 +120,8 @@ fn visit_record(
     let mut bytes = RecordBytes(content);
     let record = match code {
         SCHEMA => {
-            let (id, name, encoding) = (bytes.read_number(2)? as u16, bytes.read_text()?, bytes.read_text()?);
+            let (id, name, encoding) =
+                (bytes.read_number(2)? as u16, bytes.read_text()?, bytes.read_text()?);
             let length = bytes.read_number(4)?;
             McapRecord::Schema { id, name, encoding, text: bytes.take_slice(length)? }
         }
@@ -155,11 +158,16 @@ impl<'a> RecordBytes<'a> {
 
     /// Returns a little-endian number of at most eight bytes.
     fn read_number(&mut self, size: u64) -> io::Result<u64> {
-        Ok(self.take_slice(size)?.iter().rev().fold(0, |whole, &byte| (whole << 8) | u64::from(byte)))
+        Ok(self
+            .take_slice(size)?
+            .iter()
+            .rev()
+            .fold(0, |whole, &byte| (whole << 8) | u64::from(byte)))
     }
 
     fn read_text(&mut self) -> io::Result<&'a str> {
         let length = self.read_number(4)?;
-        std::str::from_utf8(self.take_slice(length)?).map_err(|_| invalid_data("a name is no UTF-8"))
+        std::str::from_utf8(self.take_slice(length)?)
+            .map_err(|_| invalid_data("a name is no UTF-8"))
     }
 }

@@ -37,7 +37,7 @@ impl MessageFields<'_> {
 
     /// Returns the lowest bits of a byte.
     fn low_bits(&self, at: usize, count: u32) -> Option<u8> {
-        self.0.get(at).map(|byte| byte & ((1_u8 << count) - 1))
+        self.0.get(at).map(|byte| byte & (u8::MAX >> (8 - count)))
     }
 }
 
@@ -145,7 +145,9 @@ mod tests {
         let heading = [0xff, 0x10, 0x27, 0xff, 0x7f, 0x18, 0xfc, 0xfd];
         assert!((only(127_250, &heading) - 0.9).abs() < 1e-9);
         assert!((only(127_251, &[0, 0x00, 0x48, 0xe8, 0x01, 0xff, 0xff, 0xff]) - 1.0).abs() < 1e-6);
-        assert!((only(127_488, &[0, 0xe0, 0x01, 0xff, 0xff, 0x7f, 0xff, 0xff]) - 120.0).abs() < 1e-9);
+        assert!(
+            (only(127_488, &[0, 0xe0, 0x01, 0xff, 0xff, 0x7f, 0xff, 0xff]) - 120.0).abs() < 1e-9
+        );
         assert!(decode_message(127_488, &[0, 0xff, 0xff]).is_empty());
         assert!(decode_message(127_245, &[]).is_empty());
         let wind = decode_message(130_306, &[0, 0x10, 0x27, 0x10, 0x27, 0xfa, 0xff, 0xff]);

@@ -10,8 +10,13 @@ const MAX_DEPTH: usize = 10;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PrimitiveType {
     Bool,
-    Int { size: usize, is_signed: bool },
-    Float { size: usize },
+    Int {
+        size: usize,
+        is_signed: bool,
+    },
+    Float {
+        size: usize,
+    },
     Text,
     /// Text of two bytes a character.
     WideText,
@@ -71,7 +76,8 @@ fn resolve_type(
         let mut words = line.split_whitespace();
         let (Some(kind), Some(field)) = (words.next(), words.next()) else { continue };
         // A constant has its value after its name.
-        let is_constant = field.contains('=') || words.next().is_some_and(|next| next.starts_with('='));
+        let is_constant =
+            field.contains('=') || words.next().is_some_and(|next| next.starts_with('='));
         if is_constant {
             continue;
         }
@@ -95,7 +101,9 @@ fn resolve_type(
 
 /// Splits `float64[36]`, `float64[]` or `float64[<=4]`.
 fn split_count(kind: &str) -> Option<(&str, FieldCount)> {
-    let Some((name, rest)) = kind.split_once('[') else { return Some((unbounded_type(kind), FieldCount::One)) };
+    let Some((name, rest)) = kind.split_once('[') else {
+        return Some((unbounded_type(kind), FieldCount::One));
+    };
     let count = rest.strip_suffix(']')?;
     let count = match count.parse() {
         Ok(fixed) => FieldCount::Fixed(fixed),
