@@ -24,7 +24,8 @@ const ALONE: [(Role, Role, f64); 16] = [
 ];
 
 /// Log odds of two quantities that are seldom in one recording.
-const SELDOM_TOGETHER: [(Role, Role, f64); 6] = [
+const SELDOM_TOGETHER: [(Role, Role, f64); 7] = [
+    (Role::X, Role::Latitude, -1.5),
     (Role::Delta, Role::DeltaS, -6.0),
     (Role::Delta, Role::DeltaP, -6.0),
     (Role::N, Role::NS, -6.0),
@@ -52,7 +53,7 @@ const ONE_UNIT: [(Role, Role, f64); 13] = [
 
 /// Log odds of quantities that every recording of manoeuvres has, under any of their names.
 const NEEDED: [(&[Role], f64); 4] = [
-    (&[Role::Delta, Role::DeltaS, Role::DeltaP], 3.0),
+    (&[Role::Delta, Role::DeltaS, Role::DeltaP], 1.5),
     (&[Role::N, Role::NS, Role::NP], 3.5),
     (&[Role::Psi, Role::R], 3.0),
     (&[Role::U, Role::Speed, Role::X, Role::Latitude, Role::VNorth], 3.0),

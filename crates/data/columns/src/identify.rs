@@ -1,5 +1,6 @@
 //! Identification of the columns of a recording.
 
+use crate::annealing::anneal_assignments;
 use crate::data::RecordingSample;
 use crate::hypothesis::{Assignment, Hypothesis};
 use crate::outcome::{AlternativeReading, Identification, IdentifiedColumn};
@@ -7,7 +8,7 @@ use crate::own_evidence::OwnEvidence;
 use crate::physics::PhysicalEvidence;
 use crate::relation::ColumnRelation;
 use crate::role::Role;
-use crate::search::{AssignmentSearch, SettledColumn};
+use crate::search::{AssignmentSearch, SettledColumn, swap_axes};
 use crate::signals::RecordingSignals;
 use crate::starts;
 use crate::thrusters;
@@ -18,12 +19,16 @@ const CERTAIN: f64 = 0.97;
 /// Log odds of a name, and of relations, that support a hypothesis by themselves.
 const NAMED: f64 = 3.0;
 const RELATED: f64 = 8.0;
+/// The same for relations in a file whose other columns have no names either.
+const RELATED_ALONE: f64 = 25.0;
 /// Log odds from which a relation is mentioned in the reason.
 const REPORTED_ODDS: f64 = 3.0;
 /// Probability of an alternative from which it is reported.
 const ALTERNATIVE_PROBABILITY: f64 = 0.15;
+/// Log odds below the best within which the optima of a unit of time are searched further.
+const NEAR: f64 = 8.0;
 /// Probability below which a column that its name does not support is left unassigned.
-const ACCEPTED_PROBABILITY: f64 = 0.6;
+const ACCEPTED_PROBABILITY: f64 = 0.45;
 
 /// Column whose content is given by the user.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,12 +49,13 @@ pub fn identify_columns(recording: &RecordingSample, given: &[GivenColumn]) -> I
     // The time column is found from the evidence of single columns; relations between columns need
     // its integrals, so that the signals are computed again once it is known.
     let plain = RecordingSignals::new(recording, None);
-    let own: Vec<OwnEvidence> = recording
+    let mut own: Vec<OwnEvidence> = recording
         .columns
         .iter()
         .zip(&plain.summaries)
         .map(|(column, summary)| OwnEvidence::new(column, summary))
         .collect();
+    OwnEvidence::mark_nameless(&mut own);
     let time = given_time(recording, given).or_else(|| time::time_column(&recording.columns, &own));
     let units = time.map_or(Vec::new(), |at| time_units(recording, &own, at, given));
     let signals = RecordingSignals::new(recording, time);
@@ -62,14 +68,20 @@ pub fn identify_columns(recording: &RecordingSample, given: &[GivenColumn]) -> I
         settled_columns(recording, given),
     );
     // One search for each unit of time: the relations decide between the units.
-    let found = units.iter().map(|unit| {
-        let (best, odds) = starts::best_assignment(&search, unit.to_si);
-        (*unit, best, odds + unit.odds)
+    let found = units.iter().flat_map(|unit| {
+        let optima = starts::local_optima(&search, unit.to_si).into_iter();
+        optima.map(|(best, odds)| (*unit, best, odds + unit.odds))
     });
-    let mut found: Vec<(TimeUnit, Assignment, f64)> = found.collect();
+    let mut found: Vec<TimedOptimum> = found.collect();
+    if search.has_open_columns() {
+        found.extend(annealed_optima(&search, &units, &found));
+    }
     found.sort_by(|a, b| b.2.total_cmp(&a.2));
     let Some((unit, best, _)) = found.first().cloned() else { return Identification::default() };
     // Figures for the reader are computed for the best assignment only.
+    let swapped = swap_axes(&best);
+    let odds = search.assignment_odds(&swapped) + unit.odds;
+    found.push((unit, swapped, odds));
     let physics = PhysicalEvidence::with_figures(&signals);
     let outcome =
         AssignmentReport { search: &search, best: &best, relations: physics.find_relations(&best) };
@@ -79,12 +91,41 @@ pub fn identify_columns(recording: &RecordingSample, given: &[GivenColumn]) -> I
         .enumerate()
         .map(|(at, column)| outcome.describe_column(at, &column.header))
         .collect();
+    // A column that another optimum reads otherwise is as uncertain as that optimum is likely.
+    for (at, column) in columns.iter_mut().enumerate() {
+        let others = found.iter().filter(|other| other.1.columns[at] != best.columns[at]);
+        let odds = others.map(|other| other.2 - found[0].2).fold(f64::NEG_INFINITY, f64::max);
+        column.probability = column.probability.min(1.0 / (1.0 + odds.exp()));
+        column.is_certain = column.is_certain && column.probability > CERTAIN;
+    }
     if let Some(at) = time {
-        let second = found.get(1).map(|other| (other.0, other.2 - found[0].2));
+        let second = found.iter().find(|other| other.0.name != unit.name);
+        let second = second.map(|other| (other.0, other.2 - found[0].2));
         columns[at] = identify_time(&recording.columns[at].header, &own[at], unit, second);
     }
     let thrusters = thrusters::find_thrusters(&own, &signals, &best);
     Identification { columns, thrusters }
+}
+
+/// Unit of time, assignment of the columns, and log odds of both.
+type TimedOptimum = (TimeUnit, Assignment, f64);
+
+/// Returns further optima by annealing, for each unit of time that is nearly as likely as the best.
+fn annealed_optima(
+    search: &AssignmentSearch,
+    units: &[TimeUnit],
+    found: &[TimedOptimum],
+) -> Vec<TimedOptimum> {
+    let most = found.iter().map(|one| one.2).fold(f64::NEG_INFINITY, f64::max);
+    let best_of = |unit: &TimeUnit| {
+        let own = found.iter().filter(|one| one.0.name == unit.name && one.2 > most - NEAR);
+        own.max_by(|a, b| a.2.total_cmp(&b.2))
+    };
+    let annealed = |one: &TimedOptimum| -> Vec<TimedOptimum> {
+        let each = anneal_assignments(search, &one.1).into_iter();
+        each.map(|(best, odds)| (one.0, best, odds + one.0.odds)).collect()
+    };
+    units.iter().filter_map(best_of).flat_map(annealed).collect()
 }
 
 fn given_time(recording: &RecordingSample, given: &[GivenColumn]) -> Option<usize> {
@@ -250,7 +291,8 @@ impl AssignmentReport<'_> {
             return known || own.summary.count == 0;
         };
         let settled = self.search.settled.iter().any(|one| one.column == at);
-        let borne = own.name_odds(what.role) >= NAMED || self.relation_odds(what.role) >= RELATED;
+        let related = if self.search.has_open_columns() { RELATED_ALONE } else { RELATED };
+        let borne = own.name_odds(what.role) >= NAMED || self.relation_odds(what.role) >= related;
         settled || (probability > CERTAIN && borne)
     }
 

@@ -6,6 +6,7 @@
 //! assignment that is likeliest by all three, the probability of each column, and the alternative
 //! where two hypotheses are nearly as likely.
 
+mod annealing;
 mod cooccurrence;
 mod data;
 mod faults;

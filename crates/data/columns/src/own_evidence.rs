@@ -8,6 +8,8 @@ use crate::summary::ColumnSummary;
 
 /// Log odds of a given channel where a header names none: one of some thirty quantities.
 const UNNAMED: f64 = -3.2;
+/// The same where no column of a file has a name: most columns of such files are channels.
+const NAMELESS: f64 = -1.5;
 /// Largest loss of log odds of a channel whose column clearly names another quantity.
 const NAMED_OTHERWISE: f64 = 8.0;
 /// Log odds lost with a unit that is not the written one.
@@ -28,6 +30,8 @@ pub(crate) struct OwnEvidence {
     pub header: HeaderEvidence,
     pub summary: ColumnSummary,
     is_blank: bool,
+    /// Log odds of a channel that the header does not name.
+    unnamed: f64,
 }
 
 impl OwnEvidence {
@@ -35,7 +39,14 @@ impl OwnEvidence {
         let header = HeaderEvidence::new(&column.header, column.below.as_deref());
         let text = column.header.trim();
         let is_blank = text.is_empty() || text.starts_with('#') || header.candidates.is_empty();
-        Self { header, summary: summary.clone(), is_blank }
+        Self { header, summary: summary.clone(), is_blank, unnamed: UNNAMED }
+    }
+
+    /// Marks the columns of a file in which no column has a name.
+    pub(crate) fn mark_nameless(all: &mut [Self]) {
+        if all.iter().all(|own| own.is_blank) {
+            all.iter_mut().for_each(|own| own.unnamed = NAMELESS);
+        }
     }
 
     /// Returns the log odds of a hypothesis against the column being none of the channels.
@@ -49,6 +60,11 @@ impl OwnEvidence {
             + self.range_odds(what)
     }
 
+    /// Returns true if the column has numbers, and its header names no quantity.
+    pub(crate) fn is_open(&self) -> bool {
+        self.is_blank && self.summary.count > 0
+    }
+
     /// Returns the log odds of the column holding none of the channels.
     pub(crate) fn unassigned_odds(&self) -> f64 {
         let other = self.header.other_quantity().map_or(0.0, |(_, odds)| odds);
@@ -60,8 +76,8 @@ impl OwnEvidence {
             Some(odds) => odds,
             // `speed` may be either speed, a heading is often called a course.
             None if self.shares_name(role) => self.header.best_odds() - 3.0,
-            None if self.is_blank => UNNAMED,
-            None => UNNAMED - self.header.best_odds().min(NAMED_OTHERWISE),
+            None if self.is_blank => self.unnamed,
+            None => self.unnamed - self.header.best_odds().min(NAMED_OTHERWISE),
         }
     }
 
@@ -101,6 +117,14 @@ impl OwnEvidence {
             // A written unit of another kind means another quantity.
             None if self.has_other_unit(kind) => -OTHER_UNIT,
             None => -unusual_unit_odds(what),
+        }
+    }
+
+    /// Returns the log odds that a hypothesis loses by an unusual unit that is not written.
+    pub(crate) fn unusual_unit_loss(&self, what: &Hypothesis) -> f64 {
+        match self.header.units.is_empty() {
+            true => unusual_unit_odds(what),
+            false => 0.0,
         }
     }
 
@@ -169,7 +193,8 @@ impl OwnEvidence {
         // A place moves by minutes of arc in a trial, and is written with many digits.
         let moves = if place && summary.spread * what.unit.to_si > 0.2 { -10.0 } else { 0.0 };
         let swings = match (summary.swings, what.role) {
-            (true, Role::Psi | Role::Course) => -6.0,
+            (true, Role::Psi | Role::Course) => -8.0,
+            (true, Role::R) => -2.0,
             (true, Role::Phi | Role::P) => 1.5,
             _ => 0.0,
         };

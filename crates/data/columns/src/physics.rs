@@ -11,6 +11,13 @@ use crate::rudder;
 use crate::signals::RecordingSignals;
 use crate::track::GroundTrack;
 
+/// Part of the largest revolutions within which they are constant.
+const STEADY: f64 = 0.03;
+/// Usual part of the sway in the surge of a recording of manoeuvres, and the standard deviation of
+/// its natural logarithm.
+const DRIFT: f64 = 0.15;
+const DRIFT_SCATTER: f64 = 0.9;
+
 /// Relations between the columns of a recording, with results cached by assignment.
 pub(crate) struct PhysicalEvidence<'a> {
     pub observed: RelationInput<'a>,
@@ -54,6 +61,9 @@ impl<'a> PhysicalEvidence<'a> {
         all.extend(self.steering_relation(of));
         all.extend(self.propulsion_relation(of));
         all.extend(self.heel_relation(of));
+        all.extend(self.drift_relation(of));
+        all.extend(self.speed_order(of));
+        all.extend(self.turning_loss(of));
         all.extend(self.twin_relations(of));
         all
     }
@@ -131,7 +141,14 @@ impl<'a> PhysicalEvidence<'a> {
         let length = 0.4 * speed_m_s / turning.filter(|r| *r > 1e-4)?;
         let advance = speed_m_s / revolutions.max(1e-9) / length.clamp(0.5, 300.0);
         let off = (advance.max(1e-12) / 0.02).ln();
-        let odds = (2.0 - 0.5 * off * off).clamp(MIN_ODDS, 2.0);
+        let sized = (2.0 - 0.5 * off * off).clamp(MIN_ODDS, 2.0);
+        let summary = &self.observed.signals.summaries[i];
+        // Revolutions that change take the speed with them; a temperature does not.
+        let driven = match summary.spread > STEADY * summary.largest {
+            true => (3.0 * self.block_correlation(i, j) - 1.0).clamp(-1.5, 1.5),
+            false => 0.0,
+        };
+        let odds = sized + driven;
         let ahead = speed_m_s / revolutions.max(1e-9);
         let figure = self.observed.format_figure(|| format!("{ahead:.2} m ahead per revolution"));
         Some(ColumnRelation { roles: [n, Role::Other, Role::Other], odds, figure })
@@ -146,6 +163,50 @@ impl<'a> PhysicalEvidence<'a> {
             .observed
             .format_figure(|| format!("heel correlates with the yaw rate ({correlation:.2})"));
         Some(ColumnRelation { roles: [Role::Phi, Role::R, Role::Other], odds, figure })
+    }
+
+    /// Relation of sway with yaw rate and surge: the stern of a turning ship is carried outwards, to
+    /// port in a turn to starboard, by some tenths of the speed ahead.
+    fn drift_relation(&self, of: &Assignment) -> Option<ColumnRelation> {
+        let ((i, fi), (j, fj)) = (of.find(Role::V)?, of.find(Role::R)?);
+        let correlation = -self.block_correlation(i, j) * fi.signum() * fj.signum();
+        // Bounded so that it does not outweigh the usual sign.
+        let turned = (4.0 * (correlation - 0.25)).clamp(-0.8, 2.5);
+        let largest = |at: usize| self.observed.signals.summaries[at].largest;
+        let sized = of.find(Role::U).map_or(0.0, |(k, fk)| {
+            let part = (largest(i) * fi.abs() / (largest(k) * fk.abs()).max(1e-9)).max(1e-9);
+            -(0.5 * ((part / DRIFT).ln() / DRIFT_SCATTER).powi(2)).min(4.0)
+        });
+        let told = || format!("drifts against the yaw rate by {correlation:.2}");
+        let figure = self.observed.format_figure(told);
+        let roles = [Role::V, Role::R, Role::Other];
+        Some(ColumnRelation { roles, odds: turned + sized, figure })
+    }
+
+    /// Relation of surge with yaw rate: a turning ship loses speed.
+    fn turning_loss(&self, of: &Assignment) -> Option<ColumnRelation> {
+        let ((i, fi), (j, _)) = (of.find(Role::U)?, of.find(Role::R)?);
+        let scale = self.observed.signals.scales.first()?;
+        let turning: Vec<f64> = scale.columns[j].mean.iter().map(|rate| rate.abs()).collect();
+        let ahead = &scale.columns[i].mean;
+        let correlation = -rudder::pearson_correlation(ahead, &turning) * fi.signum();
+        let odds = (4.0 * (correlation - 0.25)).clamp(-1.5, 2.5);
+        let figure =
+            self.observed.format_figure(|| format!("falls as the ship turns, by {correlation:.2}"));
+        Some(ColumnRelation { roles: [Role::U, Role::R, Role::Other], odds, figure })
+    }
+
+    /// Relation of the speed over ground with the speed ahead, which is a part of it.
+    fn speed_order(&self, of: &Assignment) -> Option<ColumnRelation> {
+        let ((i, fi), (j, fj)) = (of.find(Role::Speed)?, of.find(Role::U)?);
+        let scale = self.observed.signals.scales.first()?;
+        let mean = |at: usize, factor: f64| -> f64 {
+            scale.columns[at].mean.iter().map(|value| (value * factor).abs()).sum()
+        };
+        let (speed, ahead) = (mean(i, fi), mean(j, fj));
+        let odds = if ahead > speed { -3.0 } else { 0.0 };
+        let figure = self.observed.format_figure(|| format!("{:.3} of it is ahead", ahead / speed));
+        Some(ColumnRelation { roles: [Role::Speed, Role::U, Role::Other], odds, figure })
     }
 
     /// Returns the correlation of the means over coarse blocks.

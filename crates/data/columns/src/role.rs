@@ -110,7 +110,7 @@ const TABLE: [RoleProperties; 29] = [
     role_properties(Role::Y, "y", QuantityKind::Length, [1.0, 1e7], true),
     role_properties(Role::Latitude, "latitude", QuantityKind::Angle, [0.001, 1.571], false),
     role_properties(Role::Longitude, "longitude", QuantityKind::Angle, [0.001, 3.15], false),
-    role_properties(Role::Psi, "psi", QuantityKind::Angle, [0.08, 60.0], true),
+    role_properties(Role::Psi, "psi", QuantityKind::Angle, [0.2, 60.0], true),
     role_properties(Role::U, "u", QuantityKind::Speed, [0.2, 25.0], true),
     role_properties(Role::V, "v", QuantityKind::Speed, [0.01, 6.0], true),
     role_properties(Role::R, "r", QuantityKind::Rate, [0.002, 1.0], true),

@@ -15,14 +15,21 @@ const PASSES: usize = 8;
 /// Number of the likeliest pairs of columns that are tried for two coupled quantities.
 const PAIRS: usize = 16;
 
+/// Number of columns without a name that single changes settle.
+const OPEN: usize = 3;
+
 /// Quantities that explain each other, which single changes may not find.
-const COUPLED: [(Role, Role); 5] = [
+pub(crate) const COUPLED: [(Role, Role); 6] = [
     (Role::Psi, Role::R),
-    (Role::Phi, Role::P),
     (Role::X, Role::Y),
     (Role::Latitude, Role::Longitude),
     (Role::VNorth, Role::VEast),
+    (Role::Phi, Role::P),
+    (Role::DeltaS, Role::DeltaP),
 ];
+/// Kinds of quantities whose units explain each other.
+const UNIT_KINDS: [(QuantityKind, QuantityKind); 2] =
+    [(QuantityKind::Length, QuantityKind::Speed), (QuantityKind::Angle, QuantityKind::Rate)];
 /// Quantities whose signs can change together without any effect on the relations between them.
 const SIGNED: [&[Role]; 5] = [
     &[Role::Delta, Role::DeltaS, Role::DeltaP],
@@ -76,8 +83,28 @@ impl<'a> AssignmentSearch<'a> {
         });
         // A prohibitive penalty for each settled column that the assignment contradicts.
         let kept = self.settled.iter().filter(|one| of.columns[one.column] != one.what).count();
-        each.sum::<f64>() + self.physics.total_odds(of) + cooccurrence::set_odds(of)
+        each.sum::<f64>()
+            + self.physics.total_odds(of)
+            + cooccurrence::set_odds(of)
+            + self.shared_unit_odds(of)
             - 1e3 * kept as f64
+    }
+
+    /// Returns what several columns lose by the same unusual unit, except for one of them: a recorder
+    /// has one unit for a kind of quantity.
+    fn shared_unit_odds(&self, of: &Assignment) -> f64 {
+        let mut seen: Vec<(QuantityKind, &str)> = Vec::new();
+        let mut shared = 0.0;
+        for (what, own) in of.columns.iter().zip(self.own) {
+            let Some(what) = what else { continue };
+            let (lost, unit) = (own.unusual_unit_loss(what), (what.role.kind(), what.unit.name));
+            if seen.contains(&unit) {
+                shared += lost;
+            } else if lost > 0.0 {
+                seen.push(unit);
+            }
+        }
+        shared
     }
 
     /// Improves an assignment by single columns, signs, pairs of columns and exchanges until
@@ -86,11 +113,17 @@ impl<'a> AssignmentSearch<'a> {
         let (mut best, mut odds) = (start.clone(), self.assignment_odds(&start));
         for pass in 0..PASSES {
             let before = odds;
+            // Pairs and exchanges cost most, and seldom gain anything after the second pass. Pairs
+            // come first: single columns would take their places.
+            if pass < 2 {
+                COUPLED.iter().for_each(|&pair| self.try_pairs(pair, &mut best, &mut odds));
+            }
             (0..self.own.len()).for_each(|column| self.try_column(column, &mut best, &mut odds));
             self.try_signs(&mut best, &mut odds);
-            // Pairs and exchanges cost most, and seldom gain anything after the first pass.
-            if pass < 1 {
-                COUPLED.iter().for_each(|&pair| self.try_pairs(pair, &mut best, &mut odds));
+            self.try_units(&mut best, &mut odds);
+            if pass < 2 {
+                self.try_roll(&mut best, &mut odds);
+                self.try_axes(&mut best, &mut odds);
                 self.try_exchanges(&mut best, &mut odds);
             }
             if odds <= before {
@@ -107,6 +140,65 @@ impl<'a> AssignmentSearch<'a> {
             for what in other.columns.iter_mut().flatten().filter(|what| group.contains(&what.role))
             {
                 what.is_reversed = !what.is_reversed;
+            }
+            self.keep_if_better(other, best, odds);
+        }
+    }
+
+    /// Tries every unit for all columns of a kind at once, and for two kinds that explain each other.
+    fn try_units(&self, best: &mut Assignment, odds: &mut f64) {
+        for (one, other) in UNIT_KINDS {
+            for a in one.known_units() {
+                let first = self.in_unit(best, one, a.name);
+                self.keep_if_better(first.clone(), best, odds);
+                for b in other.known_units() {
+                    self.keep_if_better(self.in_unit(&first, other, b.name), best, odds);
+                }
+            }
+        }
+    }
+
+    /// Returns the assignment with all columns of a kind in one unit, where their evidence allows it.
+    fn in_unit(&self, of: &Assignment, kind: QuantityKind, unit: &str) -> Assignment {
+        let mut other = of.clone();
+        for (at, what) in other.columns.iter_mut().enumerate() {
+            let Some(what) = what.as_mut().filter(|what| what.role.kind() == kind) else {
+                continue;
+            };
+            let same = |known: &&Hypothesis| {
+                known.role == what.role
+                    && known.is_reversed == what.is_reversed
+                    && known.unit.name == unit
+            };
+            if let Some(known) = self.hypotheses[at].iter().find(same) {
+                *what = *known;
+            }
+        }
+        other
+    }
+
+    /// Tries roll and roll rate in place of heading and yaw rate, with another column as yaw rate.
+    fn try_roll(&self, best: &mut Assignment, odds: &mut f64) {
+        let (Some((i, _)), Some((j, _))) = (best.find(Role::Psi), best.find(Role::R)) else {
+            return;
+        };
+        let (Some(psi), Some(r)) = (best.columns[i], best.columns[j]) else { return };
+        let rolled = best
+            .with_column(i, Some(Hypothesis { role: Role::Phi, ..psi }))
+            .with_column(j, Some(Hypothesis { role: Role::P, ..r }));
+        for k in (0..self.own.len()).filter(|&k| k != i && k != j) {
+            for what in self.hypotheses_for(k, Role::R) {
+                self.keep_if_better(rolled.with_column(k, Some(what)), best, odds);
+            }
+        }
+        self.keep_if_better(rolled, best, odds);
+    }
+
+    /// Tries the axes of the earth the other way round, each with roll read as heading as well.
+    fn try_axes(&self, best: &mut Assignment, odds: &mut f64) {
+        for other in [best.clone(), swap_axes(best)] {
+            for steers in [None, Some(false), Some(true)] {
+                self.keep_if_better(roll_as_yaw(&other, steers), best, odds);
             }
             self.keep_if_better(other, best, odds);
         }
@@ -130,6 +222,12 @@ impl<'a> AssignmentSearch<'a> {
             }
         }
         start
+    }
+
+    /// Returns true if several columns have neither a name nor a reading that the user settles.
+    pub(crate) fn has_open_columns(&self) -> bool {
+        let is_open = |&at: &usize| self.own[at].is_open() && !self.is_settled(at);
+        (0..self.own.len()).filter(is_open).count() > OPEN
     }
 
     fn is_settled(&self, column: usize) -> bool {
@@ -195,7 +293,8 @@ impl<'a> AssignmentSearch<'a> {
             for a in self.hypotheses_for(i, one) {
                 for j in (0..self.own.len()).filter(|&j| j != i) {
                     for b in self.hypotheses_for(j, other) {
-                        let pair = best.with_column(i, Some(a)).with_column(j, Some(b));
+                        let pair =
+                            other_place(best, one).with_column(i, Some(a)).with_column(j, Some(b));
                         let alone =
                             self.own[i].hypothesis_odds(&a) + self.own[j].hypothesis_odds(&b);
                         likely.push((alone + self.pair_odds((one, other), &pair), pair));
@@ -231,6 +330,57 @@ impl<'a> AssignmentSearch<'a> {
         };
         relation.map_or(0.0, |relation| relation.odds)
     }
+}
+
+/// Returns the assignment with north and east exchanged, which no relation without a heading
+/// distinguishes.
+pub(crate) fn swap_axes(of: &Assignment) -> Assignment {
+    let swapped = |what: Hypothesis| {
+        let role = match what.role {
+            Role::X => Role::Y,
+            Role::Y => Role::X,
+            Role::VNorth => Role::VEast,
+            Role::VEast => Role::VNorth,
+            _ => return what,
+        };
+        Hypothesis { role, is_reversed: what.is_reversed && role.is_signed(), ..what }
+    };
+    let columns = of.columns.iter().map(|one| one.map(swapped)).collect();
+    Assignment { columns, ..of.clone() }
+}
+
+/// Returns the assignment with roll and roll rate as heading and yaw rate, and what was the yaw rate
+/// as rudder, of the usual sign or reversed, or not read.
+fn roll_as_yaw(of: &Assignment, steers: Option<bool>) -> Assignment {
+    let rudder = |what: Hypothesis, is_reversed: bool| {
+        let named = what.unit.name.split('/').next();
+        let units = QuantityKind::Angle.known_units().iter();
+        let unit = units.clone().find(|unit| Some(unit.name) == named).copied();
+        unit.map(|unit| Hypothesis { role: Role::Delta, unit, is_reversed })
+    };
+    let turned = |what: Hypothesis| match what.role {
+        Role::Phi => Some(Hypothesis { role: Role::Psi, ..what }),
+        Role::P => Some(Hypothesis { role: Role::R, ..what }),
+        Role::R => steers.and_then(|is_reversed| rudder(what, is_reversed)),
+        Role::Delta if steers.is_some() => None,
+        Role::Psi => None,
+        _ => Some(what),
+    };
+    let columns = of.columns.iter().map(|one| one.and_then(turned)).collect();
+    Assignment { columns, ..of.clone() }
+}
+
+/// Returns the assignment without positions of the other form, of which only one makes the track.
+fn other_place(of: &Assignment, role: Role) -> Assignment {
+    let others = match role {
+        Role::X => [Role::Latitude, Role::Longitude],
+        Role::Latitude => [Role::X, Role::Y],
+        _ => return of.clone(),
+    };
+    let mut free = of.clone();
+    let is_other = |what: &Hypothesis| others.contains(&what.role);
+    free.columns.iter_mut().for_each(|one| *one = one.filter(|what| !is_other(what)));
+    free
 }
 
 /// Returns the hypotheses that the evidence of a column alone allows.

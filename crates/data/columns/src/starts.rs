@@ -9,20 +9,19 @@ use crate::search::AssignmentSearch;
 /// Correlation of changes and integrals above which one column is a rate of the other.
 const RATE: f64 = 0.9;
 /// Number of starting points in addition to that by headers.
-const STARTS: usize = 3;
+const STARTS: usize = 6;
 /// Largest number of pairs that are considered.
 const MOST: usize = 6;
 /// Quantities and their rates.
 const PAIRS: [(Role, Role); 4] =
     [(Role::Psi, Role::R), (Role::X, Role::VNorth), (Role::Y, Role::VEast), (Role::Phi, Role::P)];
 
-/// Returns the best assignment from all starting points, and its log odds.
-pub(crate) fn best_assignment(search: &AssignmentSearch, time_factor: f64) -> (Assignment, f64) {
+/// Returns the assignments that all starting points lead to, with their log odds.
+pub(crate) fn local_optima(search: &AssignmentSearch, time_factor: f64) -> Vec<(Assignment, f64)> {
     let named = search.independent_start(time_factor);
     let related = related_starts(search, &named, STARTS);
     let each = related.into_iter().chain([named]).map(|start| search.improve_assignment(start));
-    let best = each.max_by(|a, b| a.1.total_cmp(&b.1));
-    best.unwrap_or_else(|| (search.independent_start(time_factor), f64::NEG_INFINITY))
+    each.collect()
 }
 
 /// Returns the likeliest assignments in which each pair of columns is a quantity and its rate, or

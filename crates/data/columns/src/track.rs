@@ -12,6 +12,12 @@ const EARTH: f64 = 6.371e6;
 const FLOOR: f64 = 2e-3;
 /// Largest log odds of a direction that a straight line would explain as well.
 const STRAIGHT: f64 = 4.0;
+/// Range of the mean speed of a track, m/s, the standard deviation, in natural logarithms, outside
+/// it, and the largest loss of log odds.
+const SLOWEST: f64 = 0.15;
+const FASTEST: f64 = 25.0;
+const FADE: f64 = 0.45;
+const MAX_LOSS: f64 = 14.0;
 /// Largest speed of a current as a fraction of the ship's speed.
 const CURRENT: f64 = 0.4;
 
@@ -76,6 +82,12 @@ impl GroundTrack {
             all.extend(self.water_relation(observed, of, along));
         }
         all.extend(self.velocity_relation(observed, of, Role::Speed, &self.length, "over ground"));
+        // Metres north and east have a relation with their rates of their own.
+        if self.roles.0 == Role::Latitude {
+            all.extend(self.velocity_relation(observed, of, Role::VNorth, &self.north, "north"));
+            all.extend(self.velocity_relation(observed, of, Role::VEast, &self.east, "east"));
+        }
+        all.extend(self.pace_relation(observed, of));
         all.extend(self.course_relation(observed, of));
         all
     }
@@ -103,6 +115,22 @@ impl GroundTrack {
             || format!("{:.1} % of the squared velocity is across the heading", 100.0 * part);
         let figure = observed.format_figure(told);
         Some(ColumnRelation { roles: [self.roles.0, self.roles.1, Role::Psi], odds, figure })
+    }
+
+    /// Relation of the track with the speeds of ships, which only counts against it: any two columns
+    /// make a track of some speed.
+    fn pace_relation(
+        &self,
+        observed: RelationInput<'_>,
+        of: &Assignment,
+    ) -> Option<ColumnRelation> {
+        let seconds: f64 = observed.signals.scales.last()?.duration.iter().sum();
+        let pace = self.length.iter().sum::<f64>() / (seconds * of.time_factor).max(1e-9);
+        let out = (SLOWEST / pace.max(1e-9)).max(pace / FASTEST).max(1.0);
+        // A log-normal tail, as of values outside the range of a quantity.
+        let odds = -(0.5 * (out.ln() / FADE).powi(2)).min(MAX_LOSS);
+        let figure = observed.format_figure(|| format!("moves with {pace:.2} m/s"));
+        Some(ColumnRelation { roles: [self.roles.0, self.roles.1, Role::Other], odds, figure })
     }
 
     /// Returns the fraction of the squares across the best straight line: the smaller eigenvalue of

@@ -109,16 +109,16 @@ fn first() -> u64 {
 fn columns_with_names_are_identified() {
     let Some(table) = table(first()..first() + 60, true) else { return };
     let all = table["all"];
-    // Of 590 columns 97.3 % are right and 9 wrong ones are not marked.
-    assert!(all.part() >= 0.965, "{all:?}");
-    assert!(all.unseen <= all.all / 50, "{all:?}");
+    // Of 590 columns 98.5 % are right and 5 wrong ones are not marked.
+    assert!(all.part() >= 0.98, "{all:?}");
+    assert!(all.unseen <= all.all / 100, "{all:?}");
 }
 
 #[test]
 fn columns_without_any_name_are_identified() {
     let Some(table) = table(first()..first() + 24, false) else { return };
     let all = table["all"];
-    // Of 228 columns 56.1 % are right; 80 % are wanted, docs/evidence/import.md says what is missing.
-    assert!(all.part() >= 0.54, "{all:?}");
-    assert!(all.unseen <= all.all / 8, "{all:?}");
+    // Of 228 columns 71.9 % are right; 80 % are wanted, docs/evidence/import.md says what is missing.
+    assert!(all.part() >= 0.70, "{all:?}");
+    assert!(all.unseen <= all.all / 30, "{all:?}");
 }

@@ -115,7 +115,8 @@ fn canboat_line(text: &str) -> Option<LogLine> {
 /// Returns the bytes of hexadecimal digits; `None` for other text and for more than a message has.
 fn hex_bytes(text: &str) -> Option<Vec<u8>> {
     let text = text.trim();
-    if !text.is_ascii() || text.len() % 2 != 0 || text.is_empty() || text.len() > 2 * 1785 {
+    if !text.is_ascii() || !text.len().is_multiple_of(2) || text.is_empty() || text.len() > 2 * 1785
+    {
         return None;
     }
     let byte = |at: usize| u8::from_str_radix(&text[at..at + 2], 16).ok();

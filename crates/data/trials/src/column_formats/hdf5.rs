@@ -83,15 +83,19 @@ impl Hdf5Columns {
     }
 
     fn add_dataset(&mut self, dataset: Dataset, path: &str) -> io::Result<()> {
+        // MATLAB's texts are numbers of two bytes, its cells references.
+        if text_attribute(&dataset, "MATLAB_class").is_some_and(|class| class == "char") {
+            return Ok(());
+        }
         let name = format!("{path}{}", dataset.name());
         let shape = dataset.shape().to_vec();
         let fields = number_fields(dataset.dtype());
         // MATLAB stores the transpose: its columns are the rows of the file.
-        let [rows, count] = match shape.as_slice() {
-            &[length] => [length, 1],
-            &[one, length] if one == 1 || length == 1 => [one.max(length), 1],
-            &[count, rows] if self.is_matlab => [rows, count],
-            &[rows, count] => [rows, count],
+        let [rows, count] = match *shape.as_slice() {
+            [length] => [length, 1],
+            [one, length] if one == 1 || length == 1 => [one.max(length), 1],
+            [count, rows] if self.is_matlab => [rows, count],
+            [rows, count] => [rows, count],
             _ => return Ok(()),
         };
         if rows < 2 || count > MAX_MATRIX_COLUMNS || fields.is_empty() {

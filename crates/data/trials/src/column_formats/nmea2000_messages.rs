@@ -37,7 +37,7 @@ impl MessageFields<'_> {
 
     /// Returns the lowest bits of a byte.
     fn low_bits(&self, at: usize, count: u32) -> Option<u8> {
-        self.0.get(at).map(|byte| byte & ((1_u8 << count) - 1))
+        self.0.get(at).map(|byte| byte & (u8::MAX >> (8 - count)))
     }
 }
 

@@ -174,11 +174,11 @@ fn nmea2000_log() -> String {
 fn frames_and_fast_packets_of_nmea_2000_become_columns_on_one_clock() {
     let (table, text) = read(ColumnFormat::Nmea2000, nmea2000_log().into_bytes());
     let rudder = column(&table, "delta_s_rad");
-    assert!(rudder.len() > 30 && (rudder[20] - 0.04).abs() < 1e-9, "{text}");
+    assert!(rudder.len() > 30 && (rudder[20] - 0.0402).abs() < 1e-9, "{text}");
     assert_eq!(column(&table, "delta_p_rad")[20], rudder[20]);
     assert!((column(&table, "latitude_deg")[0].to_degrees() - 51.0).abs() < 1e-9);
     assert!((column(&table, "longitude_deg")[0].to_degrees() - 3.5).abs() < 1e-9);
-    assert!((column(&table, "psi_rad")[20] - 0.0199).abs() < 1e-4);
+    assert!((column(&table, "psi_rad")[20] - 0.02).abs() < 1e-9);
     // A frame is lost: its packet is not used.
     let lost: String = nmea2000_log()
         .lines()
@@ -321,7 +321,7 @@ fn messages_of_mcap_become_columns_in_any_packing() {
 #[test]
 fn bombs_and_damaged_files_are_errors_at_worst() {
     let mut mapping = Mapping::with_canonical_names();
-    mapping.limits.unpacked_bytes = 4096;
+    mapping.limits.unpacked_bytes = 12_000;
     let mut bomb = McapBytes(b"\x89MCAP0\r\n".to_vec());
     bomb.chunk("zstd", 1 << 30, &zstd::stream::encode_all(&[0; 10_000][..], 3).unwrap());
     let text = read_with(ColumnFormat::Mcap, bomb.0, &mapping).1;
@@ -340,9 +340,9 @@ fn bombs_and_damaged_files_are_errors_at_worst() {
     });
     let plan = Hdf5Builder::new().dataset(wide).dataset(other).into_plan().unwrap();
     let bytes = plan.encode(WriteOptions::default()).unwrap();
-    assert!(bytes.len() < 4096);
+    assert!(bytes.len() < 12_000, "{}", bytes.len());
     let text = read_with(ColumnFormat::Hdf5, bytes, &mapping).1;
-    assert!(text.contains("HDF5 file cannot be read"), "{text}");
+    assert!(text.contains("more numbers than are read"), "{text}");
     mapping.limits = FileLimits::default();
     for (format, bytes) in [
         (ColumnFormat::Hdf5, hdf5_example()),
