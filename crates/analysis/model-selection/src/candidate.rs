@@ -9,7 +9,10 @@ use sistership_identification::refine::{Prior, RefinementSettings};
 use sistership_priors::transfer::{blank_model, trial_approach};
 
 /// General laws, which belong to no ship.
-const GENERAL: [&str; 3] = ["low-speed", "abkowitz", "abkowitz-roll"];
+const GENERAL: [&str; 4] = ["low-speed", "abkowitz", "abkowitz-roll", PHYSICAL_LAW];
+
+/// General law of few physical coefficients and parameters.
+pub(super) const PHYSICAL_LAW: &str = "modular";
 
 /// Law of the candidate with a prior from a population: the most general one without roll, on which
 /// few ships give information.
@@ -143,9 +146,12 @@ fn source_candidates(
     laws.map(one).collect()
 }
 
-/// Returns true if the trials record what a law needs: roll in every trial for a law with roll.
+/// Returns true if the trials record what a law needs: roll in every trial for a law with roll,
+/// revolutions for the slipstream of the physical law.
 fn is_measured(law: &Law, trials: &[&Trial]) -> bool {
-    !law.has_roll() || trials.iter().all(|trial| trial.channel(Channel::Phi).is_some())
+    let is_recorded = |channel| trials.iter().all(|trial| trial.channel(channel).is_some());
+    (!law.has_roll() || is_recorded(Channel::Phi))
+        && (law.name != PHYSICAL_LAW || is_recorded(Channel::N))
 }
 
 #[cfg(test)]
