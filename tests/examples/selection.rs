@@ -267,6 +267,7 @@ fn refined(zoo: &Zoo, case: &Case, seen: &[&Trial]) -> (Value, Model) {
         champions: &champions,
         trials: seen,
         settings: &settings,
+        preference: Default::default(),
     };
     let start = best_start(&asked, &|_, _| true).unwrap_or_else(|error| panic!("{error}"));
     if std::env::var_os("LADDER").is_some() {

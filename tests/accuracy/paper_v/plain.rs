@@ -36,6 +36,7 @@ pub fn refined(
         champions: &BTreeMap::new(),
         trials: &trials,
         settings: &RefinementSettings::default(),
+        preference: Default::default(),
     };
     let start = best_start(&asked, &|_, _| true).unwrap_or_else(|error| panic!("{error}"));
     let entrant = start.entrant;

@@ -61,6 +61,7 @@ fn row(zoo: &Zoo, stranger: &Stranger) -> Result<Row, String> {
         champions: &champions,
         trials: &trials,
         settings: &settings,
+        preference: Default::default(),
     };
     let start = best_start(&asked, &|_, _| true).map_err(|error| error.to_string())?;
     let (model, law) = (&start.refinement.model, &*start.entrant.law);

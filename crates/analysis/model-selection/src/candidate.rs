@@ -9,7 +9,11 @@ use sistership_identification::refine::{Prior, RefinementSettings};
 use sistership_priors::transfer::{blank_model, trial_approach};
 
 /// General laws, which belong to no ship.
-const GENERAL: [&str; 4] = ["low-speed", "abkowitz", "abkowitz-roll", "differential-thrust"];
+const GENERAL: [&str; 5] =
+    ["low-speed", "abkowitz", "abkowitz-roll", "differential-thrust", PHYSICAL_LAW];
+
+/// General law of few physical coefficients and parameters.
+pub(super) const PHYSICAL_LAW: &str = "modular";
 
 /// Law of the candidate with a prior from a population: the most general one without roll, on which
 /// few ships give information.
@@ -147,8 +151,9 @@ fn source_candidates(
     laws.map(one).collect()
 }
 
-/// Returns true if the trials record what a law needs: roll in every trial for a law with roll, and
-/// what steers. A law without a steering angle is one for ships whose trials have none.
+/// Returns true if the trials record what a law needs: roll in every trial for a law with roll,
+/// revolutions for the slipstream of the physical law, and what steers. A law without a steering
+/// angle is one for ships whose trials have none.
 fn is_measured(law: &Law, trials: &[&Trial]) -> bool {
     let everywhere = |channel: Channel| trials.iter().all(|trial| trial.channel(channel).is_some());
     let steers = match law.steers_by_difference() {
@@ -161,7 +166,9 @@ fn is_measured(law: &Law, trials: &[&Trial]) -> bool {
         }
         false => !law.follows_helm() || everywhere(Channel::Delta),
     };
-    steers && (!law.has_roll() || everywhere(Channel::Phi))
+    steers
+        && (!law.has_roll() || everywhere(Channel::Phi))
+        && (law.name != PHYSICAL_LAW || everywhere(Channel::N))
 }
 
 #[cfg(test)]

@@ -15,13 +15,13 @@ use sistership_assessment::uncertainty::student_quantile;
 const MIN_ERROR: f64 = 1e-9;
 
 /// Logarithm of a mean error, and the same without each trial.
-pub(crate) struct LogError {
-    pub all: f64,
-    pub without: Vec<f64>,
+struct LogError {
+    all: f64,
+    without: Vec<f64>,
 }
 
 impl LogError {
-    pub fn from_errors(each: &BTreeMap<String, f64>) -> Self {
+    fn from_errors(each: &BTreeMap<String, f64>) -> Self {
         let (sum, count) = (each.values().sum::<f64>(), each.len() as f64);
         let without = |error: &f64| ((sum - error).max(0.0) / (count - 1.0)).max(MIN_ERROR).ln();
         Self {
@@ -32,7 +32,7 @@ impl LogError {
 
     /// Standard error of the difference to another; `None` for a single trial, which has no
     /// scatter.
-    pub fn standard_error(&self, other: &[f64]) -> Option<f64> {
+    fn standard_error(&self, other: &[f64]) -> Option<f64> {
         let differences: Vec<f64> =
             self.without.iter().zip(other).map(|(one, other)| one - other).collect();
         let count = differences.len() as f64;

@@ -7,6 +7,7 @@ use sistership_model::trial::Trial;
 
 use crate::candidate::{CandidatePrior, SelectionCandidate};
 use crate::choice::choose_candidate;
+use crate::preference::{Preference, defensible_place};
 use crate::selection_report::SelectionStage;
 use crate::thresholds::SEARCH;
 use sistership_identification::refine::{
@@ -27,6 +28,8 @@ pub struct CandidateSearch<'a> {
     pub population: &'a [PopulationShip],
     /// Settings except the method.
     pub settings: &'a RefinementSettings,
+    /// Preference for the least error, or for few physical parameters.
+    pub preference: Preference,
 }
 
 impl<'a> CandidateSearch<'a> {
@@ -141,13 +144,30 @@ pub(super) fn chosen_place(
     search: &CandidateSearch<'_>,
     tried: &[EvaluatedCandidate],
 ) -> Option<usize> {
+    preferred_place(search, tried, search.preference)
+}
+
+/// Returns the place of the candidate that a preference chooses among those that were not refused.
+pub(super) fn preferred_place(
+    search: &CandidateSearch<'_>,
+    tried: &[EvaluatedCandidate],
+    preference: Preference,
+) -> Option<usize> {
     let is_held = |one: &EvaluatedCandidate| {
         search.entrants[one.entrant].held_by == CandidatePrior::Population
     };
     let left: Vec<(usize, &EvaluatedCandidate)> =
         tried.iter().enumerate().filter(|(_, one)| one.refusal.is_none()).collect();
     let all: Vec<_> = left.iter().map(|(_, one)| (&one.weighed, is_held(one))).collect();
-    choose_candidate(&all).map(|place| left[place].0)
+    let accurate = choose_candidate(&all)?;
+    let is_physical =
+        |one: &EvaluatedCandidate| search.entrants[one.entrant].law.parameter_priors().count() > 0;
+    let physical: Vec<_> = left.iter().map(|(_, one)| (&one.weighed, is_physical(one))).collect();
+    let defensible = match preference {
+        Preference::Accurate => None,
+        Preference::Defensible => defensible_place(&physical, accurate),
+    };
+    Some(left[defensible.unwrap_or(accurate)].0)
 }
 
 /// Family and strength of a candidate's last evaluation.

@@ -15,6 +15,7 @@ mod evaluation;
 mod extremes;
 mod foundation;
 mod population;
+mod preference;
 mod scatter;
 mod search;
 mod selection;
@@ -27,6 +28,7 @@ pub use candidate::{AdditionalPriors, CandidatePrior, SelectionCandidate, list_c
 pub use choice::{choose_candidate, standard_error};
 pub use evaluation::CandidateSearch;
 pub use population::similar_population;
+pub use preference::Preference;
 pub use search::{calibration_samples, search_candidates};
 pub use selection::SelectedCandidate;
 pub use selection_report::{ReportLine, SelectionReport, SelectionStage};

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::candidate::{CandidatePrior, SelectionCandidate};
+use crate::candidate::{CandidatePrior, PHYSICAL_LAW, SelectionCandidate};
 use crate::evaluation::{
     CandidateSearch, EvaluatedCandidate, candidate_request, chosen_place, evaluate_candidate,
     last_ridge, stage_evaluation, stage_settings,
@@ -273,16 +273,24 @@ fn leading_by_law(search: &CandidateSearch<'_>, tried: &[EvaluatedCandidate]) ->
 
 /// The leading candidates in weak form: trajectories seldom gain more than
 /// [`SEARCH`]`.trajectory_gain`. A population, which is near the least error wherever other ships
-/// determine the law, does not displace any of the others.
+/// determine the law, does not displace any of the others, nor does the best candidate of the physical
+/// law.
 fn leading_candidates(search: &CandidateSearch<'_>, tried: &[EvaluatedCandidate]) -> Vec<usize> {
-    let order = order_by_error(tried.iter().filter(|one| one.rung == SelectionStage::Weak));
-    let least = order.first().map_or(0.0, |(_, error)| *error);
-    let near = order.into_iter().filter(|(_, error)| *error <= SEARCH.trajectory_gain * least);
+    let fitted = order_by_error(tried.iter().filter(|one| one.rung == SelectionStage::Weak));
+    let least = fitted.first().map_or(0.0, |(_, error)| *error);
+    let near = fitted.iter().copied().filter(|(_, error)| *error <= SEARCH.trajectory_gain * least);
     let is_population =
         |entrant: &usize| search.entrants[*entrant].held_by == CandidatePrior::Population;
     let (population, others): (Vec<usize>, Vec<usize>) =
         near.map(|(entrant, _)| entrant).partition(is_population);
-    others.into_iter().take(SEARCH.trajectories).chain(population).collect()
+    let mut leading: Vec<usize> = others.into_iter().take(SEARCH.trajectories).collect();
+    // The weak form keeps the nonlinear parameters of the physical law at the means of their priors,
+    // so that its error does not show what trajectories gain.
+    let physical = |entrant: &usize| search.entrants[*entrant].law.name == PHYSICAL_LAW;
+    let first = fitted.iter().map(|(entrant, _)| *entrant).find(physical);
+    leading.extend(first.filter(|entrant| !leading.contains(entrant)));
+    leading.extend(population);
+    leading
 }
 
 #[cfg(test)]
@@ -292,6 +300,8 @@ mod tests {
     use sistership_identification::testing::{mariner_model, simulated_trials};
     use sistership_model::Zoo;
     use sistership_model::trial::Trial;
+
+    use crate::preference::Preference;
 
     #[test]
     fn whole_trials_are_simulated_where_they_are_held_out_whole() {
@@ -307,6 +317,7 @@ mod tests {
                 trials: &trials,
                 population: &[],
                 settings,
+                preference: Preference::default(),
             };
             let searched = search_settings(&search);
             (searched.restart_s.unwrap(), searched.longer_restarts_s)

@@ -10,8 +10,9 @@ use crate::candidate::CandidatePrior;
 use crate::choice::standard_error;
 use crate::evaluation::{
     CandidateSearch, EvaluatedCandidate, candidate_request, chosen_place, evaluate_candidate,
-    last_ridge, ridge_settings, stage_settings,
+    last_ridge, preferred_place, ridge_settings, stage_settings,
 };
+use crate::preference::Preference;
 use crate::selection_report::{ReportLine, SelectionReport, SelectionStage};
 use crate::simulation_check::{SimulationFault, simulation_fault};
 use crate::thresholds::SEARCH;
@@ -215,12 +216,35 @@ fn build_report(
     let left = tried.iter().filter(|one| one.refusal.is_none());
     let least = left.filter_map(|one| one.weighed.error).fold(f64::INFINITY, f64::min);
     let reference = reference_place(search, tried);
+    let accurate = preferred_place(search, tried, Preference::Accurate);
+    let price =
+        accurate.filter(|place| *place != best).map(|place| (place, price(tried, place, best)));
     let lines = tried.iter().enumerate();
-    let line = |(k, one)| ReportLine {
-        reference: reference == Some(k),
-        ..report_line(search, one, least, k == best)
+    let line = |(k, one)| {
+        let own = report_line(search, one, least, k == best);
+        let reason = match &price {
+            Some((_, price)) if k == best => price.clone(),
+            Some((place, _)) if k == *place => MOST_ACCURATE.to_owned(),
+            _ => own.reason,
+        };
+        ReportLine { reference: reference == Some(k), reason, ..own }
     };
     SelectionReport { lines: lines.map(line).collect(), branch: None }
+}
+
+/// Reason in the line of the model that the errors select, where another one is preferred.
+const MOST_ACCURATE: &str = "what the errors select; `--prefer accurate` uses it";
+
+/// Reason for a model of few parameters at a place, with what it costs and buys.
+fn price(tried: &[EvaluatedCandidate], accurate: usize, best: usize) -> String {
+    let error = |place: usize| tried[place].weighed.error.unwrap_or(f64::INFINITY);
+    format!(
+        "as good as what the errors select, with {} physical coefficients and parameters in place \
+         of {}: {:.2} times its error",
+        tried[best].weighed.coefficients,
+        tried[accurate].weighed.coefficients,
+        error(best) / error(accurate)
+    )
 }
 
 /// Place of the first fit of the reference.
@@ -254,6 +278,7 @@ fn report_line(
         law: entrant.law.name.clone(),
         rung: tried.rung,
         coefficients: tried.weighed.coefficients,
+        effective: tried.weighed.effective,
         error: tried.weighed.error,
         standard_error: standard_error(&tried.weighed),
         variance: tried.weighed.variance.filter(|variance| variance.is_finite()),
@@ -321,6 +346,7 @@ mod tests {
             trials: &[],
             population: &[],
             settings: &RefinementSettings::default(),
+            preference: Preference::default(),
         };
         let tried = |entrant, error, refusal: Option<&str>| EvaluatedCandidate {
             entrant,
@@ -372,6 +398,7 @@ mod tests {
             trials: &trials,
             population: &[],
             settings: &RefinementSettings::default(),
+            preference: Preference::default(),
         };
         let refused = |rung, lambda| {
             let ridge = Some((TermFamily::Own, lambda));

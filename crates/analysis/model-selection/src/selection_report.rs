@@ -36,8 +36,10 @@ pub struct ReportLine {
     pub law: String,
     /// Stage.
     pub rung: SelectionStage,
-    /// Coefficients fitted.
+    /// Coefficients and parameters fitted.
     pub coefficients: usize,
+    /// Effective number of these that the trials determine; none if it is not known.
+    pub effective: Option<f64>,
     /// Standardised mean squared error on held-out manoeuvres, the geometric mean over restart
     /// intervals; none if a simulation diverged at the shortest.
     pub error: Option<f64>,

@@ -10,6 +10,7 @@ use crate::correction_choice::choose_correction;
 use crate::evaluation::{CandidateSearch, candidate_request};
 use crate::foundation::CorrectionBase;
 use crate::population::{envelope_source, similar_population};
+use crate::preference::Preference;
 use crate::search::search_candidates;
 use crate::selection_report::SelectionReport;
 use crate::thresholds::SEARCH;
@@ -31,6 +32,8 @@ pub struct StartRequest<'a> {
     pub trials: &'a [&'a Trial],
     /// Settings except the method; trials that they hold out are not used.
     pub settings: &'a RefinementSettings,
+    /// Preference for the least error, or for few physical parameters.
+    pub preference: Preference,
 }
 
 /// The selected source, law and method, with the evidence for them.
@@ -59,7 +62,7 @@ pub fn best_start(
     asked: &StartRequest<'_>,
     progress: Progress<'_>,
 ) -> Result<StartSelection, RefineError> {
-    let StartRequest { zoo, target, champions, trials, settings } = *asked;
+    let StartRequest { zoo, target, champions, trials, settings, preference } = *asked;
     let held_out = &settings.held_out;
     let fitted: Vec<&Trial> =
         trials.iter().copied().filter(|trial| !held_out.contains(&trial.name)).collect();
@@ -72,8 +75,14 @@ pub fn best_start(
     };
     let entrants =
         list_candidates(zoo, target, (&source_models(asked, &similarity), beside), &fitted);
-    let all =
-        CandidateSearch { target, entrants: &entrants, trials, population: &population, settings };
+    let all = CandidateSearch {
+        target,
+        entrants: &entrants,
+        trials,
+        population: &population,
+        settings,
+        preference,
+    };
     let winner = search_candidates(&all, progress)?;
     let foundation = CorrectionBase {
         request: candidate_request(&all, winner.entrant, &winner.settings),

@@ -13,7 +13,7 @@ use sistership_identification::testing::{
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Model, Vessel, Zoo};
-use sistership_model_selection::{StartRequest, StartSelection, best_start};
+use sistership_model_selection::{Preference, StartRequest, StartSelection, best_start};
 use sistership_propulsion::{PropulsionFault, check_straight};
 use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
 use sistership_simulation::state::{RECORDED_CHANNELS, Trajectory, at, straight_state};
@@ -81,8 +81,14 @@ fn found(zoo: &Zoo, stranger: &Stranger) -> Result<StartSelection, String> {
     let trials: Vec<&Trial> = stranger.trials.iter().collect();
     let (champions, settings) = (BTreeMap::new(), RefinementSettings::default());
     let target = &stranger.vessel;
-    let asked =
-        StartRequest { zoo, target, champions: &champions, trials: &trials, settings: &settings };
+    let asked = StartRequest {
+        zoo,
+        target,
+        champions: &champions,
+        trials: &trials,
+        settings: &settings,
+        preference: Preference::default(),
+    };
     best_start(&asked, &|_, _| true).map_err(|error| error.to_string())
 }
 

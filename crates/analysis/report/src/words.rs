@@ -123,6 +123,7 @@ pub(crate) fn axis_words(axis: &str) -> &'static str {
         "Y" => "sway force Y",
         "K" => "roll moment K",
         "N" => "yaw moment N",
+        "parameters" => "parameters of the law",
         _ => "other",
     }
 }

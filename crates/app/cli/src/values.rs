@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::ValueEnum;
 use sistership_export::{FORMATS, ModelFormat, by_name};
 use sistership_identification::refine::{EstimationMethod, Prior};
+use sistership_model_selection::Preference;
 use sistership_priors::similarity::VectorDefinition;
 use sistership_simulation::Method as Integrator;
 
@@ -146,6 +147,12 @@ pub fn method(name: &str) -> Result<EstimationMethod, ValueError> {
 pub fn prior(name: &str) -> Result<Prior, ValueError> {
     let known = Prior::ALL.map(|prior| format!("`{}`", prior.name())).join(", ");
     Prior::by_name(name).ok_or(ValueError::UnknownName { known })
+}
+
+/// Returns the preference of a model selection with this name.
+pub fn preference(name: &str) -> Result<Preference, ValueError> {
+    let known = Preference::ALL.map(|preference| format!("`{}`", preference.name())).join(" and ");
+    Preference::by_name(name).ok_or(ValueError::UnknownName { known })
 }
 
 /// Returns the definition of the characteristic vector with this name.

@@ -10,7 +10,9 @@ use sistership_model::version::{
     sha256_hex,
 };
 use sistership_model::{Vessel, Zoo};
-use sistership_model_selection::{SelectionReport, StartRequest, best_start, similar_population};
+use sistership_model_selection::{
+    Preference, SelectionReport, StartRequest, best_start, similar_population,
+};
 use sistership_priors::source::{SimilarityRanking, best_ranked};
 use sistership_store::{Law, Ship, Version};
 
@@ -155,7 +157,14 @@ pub async fn select_start(
     let best = tokio::task::spawn_blocking(move || {
         let trials: Vec<&Trial> = trials.iter().collect();
         let (zoo, target, champions) = (&*zoo, &target, &known.champions);
-        let asked = StartRequest { zoo, target, champions, trials: &trials, settings: &settings };
+        let asked = StartRequest {
+            zoo,
+            target,
+            champions,
+            trials: &trials,
+            settings: &settings,
+            preference: Preference::default(),
+        };
         best_start(&asked, &|fraction, what| progress(fraction, what))
     })
     .await??;

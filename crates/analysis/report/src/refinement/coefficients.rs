@@ -32,6 +32,8 @@ pub(crate) struct CoefficientEntry<'a> {
     pub collinear_group: Option<usize>,
     /// True if the source's value is an estimate.
     pub source_estimated: bool,
+    /// False if the trials do not determine it, so that it is the prior's.
+    pub determined: bool,
 }
 
 impl<'a> CoefficientReport<'a> {
@@ -39,7 +41,7 @@ impl<'a> CoefficientReport<'a> {
     pub fn from_input(input: &RefinementInput<'a>) -> Self {
         let refinement = input.refinement;
         let mut axes: Vec<AxisChanges<'a>> = Vec::new();
-        for axis in ["X", "Y", "K", "N"] {
+        for axis in ["X", "Y", "K", "N", PARAMETERS] {
             let own = refinement.coefficients.iter().filter(|change| axis_of(&change.name) == axis);
             let coefficients: Vec<CoefficientEntry<'a>> =
                 own.map(|change| CoefficientEntry::from_change(input, change)).collect();
@@ -65,7 +67,9 @@ impl<'a> CoefficientReport<'a> {
         let mut sizes: Vec<f64> =
             self.all_entries().map(|c| c.change.source.abs()).filter(|size| *size > 0.0).collect();
         sizes.sort_by(f64::total_cmp);
-        let bare = self.all_entries().all(|c| c.change.unit == "1");
+        // Parameters are of the order of one whatever the coefficients are.
+        let bare = self.all_entries().all(|c| c.change.unit == "1")
+            && !self.axes.iter().any(|axis| axis.axis == PARAMETERS);
         // Judged by the median, as single coefficients may be large.
         let small = sizes.get(sizes.len() / 2).is_some_and(|median| *median < 0.02);
         if bare && small { -5 } else { 0 }
@@ -82,6 +86,7 @@ impl<'a> CoefficientEntry<'a> {
         let quantity = input.refinement.transferred.coefficients.get(&change.name);
         Self {
             change,
+            determined: change.is_determined(),
             moved_percent: (change.source != 0.0)
                 .then(|| 100.0 * (change.refined - change.source) / change.source.abs()),
             collinear_group: groups.iter().position(in_group).map(|index| index + 1),
@@ -91,6 +96,10 @@ impl<'a> CoefficientEntry<'a> {
     }
 }
 
+/// Heading of the nonlinear parameters of the law.
+const PARAMETERS: &str = "parameters";
+
 fn axis_of(name: &str) -> &str {
-    name.split_once('_').map_or("", |(axis, _)| axis)
+    let prefix = name.split_once('_').map_or("", |(axis, _)| axis);
+    if ["X", "Y", "K", "N"].contains(&prefix) { prefix } else { PARAMETERS }
 }

@@ -12,7 +12,7 @@ use sistership_identification::refine::{
 use sistership_jobs::derive::with_uncertainty;
 use sistership_model::estimated_particulars::{EstimatedParticular, estimated_particulars};
 use sistership_model::{Law, Model, Vessel, Zoo};
-use sistership_model_selection::{SelectionReport, similar_population};
+use sistership_model_selection::{Preference, SelectionReport, similar_population};
 use sistership_priors::similarity::RankedSource;
 use sistership_priors::source::{SimilarityRanking, best_source, rank_similar};
 use sistership_priors::transfer::{blank_model, trial_approach};
@@ -27,7 +27,7 @@ use crate::failure::{Failure, combine_results};
 use crate::output::{self, format_count, print_note};
 use crate::resolve;
 use crate::trials::{self, ReadTrial};
-use crate::values::{method, positive, prior};
+use crate::values::{method, positive, preference, prior};
 use crate::weights;
 
 const EXAMPLES: &str = "\
@@ -77,6 +77,10 @@ pub struct RefineArguments {
     /// estimate from particulars) or `population` (published models of other ships).
     #[arg(long, value_name = "NAME", value_parser = prior)]
     prior: Option<Prior>,
+    /// Preference of the model selection: `defensible` (the default; a model of few physical
+    /// parameters where it is no worse) or `accurate` (the model that the errors select).
+    #[arg(long, value_name = "NAME", value_parser = preference, default_value = "defensible")]
+    prefer: Preference,
     /// Settings of the refinement (YAML); flags override them.
     #[arg(long, value_name = "FILE.yaml")]
     settings: Option<PathBuf>,
@@ -243,7 +247,7 @@ fn refinement_start(
         (Some(source), law) => Ok(SelectedStart::from_named(source, law)),
         // A default call: sources, laws and estimators are compared.
         (None, None) if is_plain(arguments, settings) => {
-            let (start, explicit) = select_start(zoo, target, settings, read)?;
+            let (start, explicit) = select_start(zoo, target, (settings, arguments.prefer), read)?;
             *settings = explicit;
             Ok(start)
         }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use sistership_identification::refine::{Refinement, RefinementSettings};
 use sistership_model::{Law, Model, Vessel, Zoo};
-use sistership_model_selection::{SelectionReport, StartRequest, best_start};
+use sistership_model_selection::{Preference, SelectionReport, StartRequest, best_start};
 use sistership_priors::source::SimilarityRanking;
 
 use crate::failure::Failure;
@@ -47,12 +47,13 @@ impl SelectedStart {
 pub fn select_start(
     zoo: &Zoo,
     target: &Vessel,
-    settings: &RefinementSettings,
+    (settings, preference): (&RefinementSettings, Preference),
     read: &[ReadTrial],
 ) -> Result<(SelectedStart, RefinementSettings), Failure> {
     let trials = trials::trial_refs(read);
     let champions = BTreeMap::new();
-    let asked = StartRequest { zoo, target, champions: &champions, trials: &trials, settings };
+    let asked =
+        StartRequest { zoo, target, champions: &champions, trials: &trials, settings, preference };
     let (begun, last) = (Instant::now(), Mutex::new(None));
     let told = |fraction: f64, what: &str| {
         // Candidates run in parallel and all report their progress here.

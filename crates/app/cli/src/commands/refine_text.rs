@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use sistership_assessment::course::CourseFigure;
 use sistership_assessment::uncertainty::UncertaintyBand;
 use sistership_identification::refine::{
     CoefficientChange, HeldOut, Refinement, RefinementManoeuvres, StepOption,
@@ -68,12 +69,13 @@ pub fn format_refinement(
     );
     let coefficients = format!(
         "Coefficients (moved: in standard deviations of the prior)\n{}\n",
-        format_coefficients(&refinement.coefficients)
+        format_coefficients(&refinement.coefficients, &refinement.source)
     );
     let manoeuvres =
         format!("Standard manoeuvres\n{}\n", format_manoeuvres(&refinement.manoeuvres));
+    let course = format_course(&refinement.manoeuvres.course);
     format!(
-        "{ranked}{head}{errors}{options}{coefficients}{manoeuvres}{}",
+        "{ranked}{head}{course}{errors}{options}{coefficients}{manoeuvres}{}",
         format_remarks(refinement, files)
     )
 }
@@ -96,6 +98,7 @@ pub fn format_selection_report(ladder: &SelectionReport) -> String {
         "law",
         "stage",
         "fitted",
+        "effective",
         "error",
         "std. error",
         "elsewhere",
@@ -110,6 +113,8 @@ pub fn format_selection_report(ladder: &SelectionReport) -> String {
             SelectionStage::Weak => "weak",
             SelectionStage::Trajectory => "trajectory",
         };
+        let effective =
+            line.effective.map_or_else(|| "-".to_owned(), |count| format!("{count:.0}"));
         let figures = [line.error, line.standard_error, line.variance].map(format_optional);
         let taken = match (line.chosen, line.reference) {
             (true, _) => "yes",
@@ -118,7 +123,7 @@ pub fn format_selection_report(ladder: &SelectionReport) -> String {
         };
         let names = [source, line.law.clone(), rung.to_owned(), line.coefficients.to_string()];
         let end = [format!("{:.1}", line.cost_s), taken.to_owned(), line.reason.clone()];
-        table.add_row(names.into_iter().chain(figures).chain(end));
+        table.add_row(names.into_iter().chain([effective]).chain(figures).chain(end));
     }
     let what = "standardised squared error on held-out manoeuvres; elsewhere: variance outside \
                 the trials";
@@ -182,16 +187,34 @@ fn format_options(options: &[StepOption]) -> TextTable {
     table
 }
 
-fn format_coefficients(coefficients: &[CoefficientChange]) -> TextTable {
-    let mut table = TextTable::new(["name", "unit", "source", "refined", "std. error", "moved"]);
+fn format_coefficients(coefficients: &[CoefficientChange], source: &str) -> TextTable {
+    let head = ["name", "unit", "source", "refined", "std. error", "moved", "remark"];
+    let mut table = TextTable::new(head);
     for change in coefficients {
         let figures = [change.source, change.refined, change.standard_error].map(format_number);
         let moved = format!("{:.2}", change.moved_sd);
-        table.add_row(
-            [change.name.clone(), change.unit.clone()].into_iter().chain(figures).chain([moved]),
-        );
+        let remark = match change.is_determined() {
+            true => String::new(),
+            false => format!("not determined by these trials; kept from {source}"),
+        };
+        let names = [change.name.clone(), change.unit.clone()];
+        table.add_row(names.into_iter().chain(figures).chain([moved, remark]));
     }
     table
+}
+
+/// Formats the response on a straight course; empty if it is not known.
+fn format_course(figures: &[CourseFigure]) -> String {
+    if figures.is_empty() {
+        return String::new();
+    }
+    let mut table = TextTable::new(["straight course", "value", "95 %"]);
+    for figure in figures {
+        let width = figure.half_width.map(|half_width| format!("+- {}", format_number(half_width)));
+        let width = width.unwrap_or_else(|| "-".to_owned());
+        table.add_row([figure.name.clone(), format_number(figure.value), width]);
+    }
+    format!("{table}\n")
 }
 
 /// Figures of the standard manoeuvres in the table.

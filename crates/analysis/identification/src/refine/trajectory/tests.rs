@@ -3,7 +3,8 @@ use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
 
-use crate::refine::outcome::Refinement;
+use crate::refine::family::TermFamily;
+use crate::refine::outcome::{Refinement, StepOption};
 use crate::refine::request::RefinementSpec;
 use crate::refine::selection::refine;
 use crate::refine::settings::{EstimationMethod, RefinementSettings};
@@ -30,7 +31,9 @@ fn recorded_zigzags(model: &Model, law: &Law) -> Vec<Trial> {
 fn refined(source: &Model, law: &Law, trials: &[Trial], method: EstimationMethod) -> Refinement {
     let zoo = Zoo::load_embedded().unwrap();
     let trials: Vec<&Trial> = trials.iter().collect();
-    let settings = RefinementSettings { method, ..RefinementSettings::default() };
+    // Without asymmetric terms, which could take up a part of what is wrong.
+    let families = vec![TermFamily::Own];
+    let settings = RefinementSettings { method, families, ..RefinementSettings::default() };
     let request = RefinementSpec {
         target: zoo.vessel("kvlcc2-7m").unwrap(),
         source,
@@ -43,8 +46,8 @@ fn refined(source: &Model, law: &Law, trials: &[Trial], method: EstimationMethod
     refine(&request, &|_, _| true).unwrap()
 }
 
-fn least_error(refinement: &Refinement) -> f64 {
-    refinement.options.iter().find(|option| option.chosen).unwrap().error.unwrap()
+fn chosen_option(refinement: &Refinement) -> &StepOption {
+    refinement.options.iter().find(|option| option.chosen).unwrap()
 }
 
 #[test]
@@ -52,16 +55,14 @@ fn interaction_factors_are_fitted_within_their_range() {
     let zoo = Zoo::load_embedded().unwrap();
     let source = zoo.find_model("kvlcc2-7m").unwrap();
     let law = zoo.law(&source.law).unwrap();
-    let moved = [("w_P0", 0.3), ("gamma_R_plus", 0.5), ("gamma_R_minus", 0.5), ("a_H", 0.4)];
+    // More force by the same rudder, which no coefficient of the hull can give.
+    let moved = [("w_P0", 0.3), ("a_H", 0.6)];
     let trials = recorded_zigzags(&with_parameters(&source, &moved), law);
     let weak = refined(&source, law, &trials, EstimationMethod::Weak);
     let fitted = refined(&source, law, &trials, EstimationMethod::Trajectory);
-    assert!(
-        least_error(&fitted) < 0.8 * least_error(&weak),
-        "{} {}",
-        least_error(&fitted),
-        least_error(&weak)
-    );
+    let (before, after) = (chosen_option(&weak), chosen_option(&fitted));
+    assert!(after.step.starts_with("trajectory"), "{before:?} {after:?}");
+    assert!(after.error < before.error, "{before:?} {after:?}");
     assert_eq!(weak.model.parameters, weak.transferred.parameters);
     for (name, prior) in law.parameter_priors() {
         let change = fitted.coefficients.iter().find(|one| one.name == *name).unwrap();

@@ -41,12 +41,17 @@ fn coefficient_row(coefficient: &CoefficientEntry<'_>, exponent: i32) -> TableRo
         None => name,
     };
     let source = TableCell::new(value(change.source));
+    let error = TableCell::new(value(change.standard_error));
     TableRow::from_cells(vec![
         name,
         TableCell::new(&change.unit),
         if coefficient.source_estimated { source.with_mark("estimated", "warn") } else { source },
         TableCell::new(value(change.refined)),
-        TableCell::new(value(change.standard_error)),
+        if coefficient.determined {
+            error
+        } else {
+            error.with_mark("not determined by these trials; kept from the source", "note")
+        },
         TableCell::new(format_signed(change.moved_sd, 2)),
         TableCell::new(format_known(coefficient.moved_percent, |value| format_signed(value, 1))),
     ])
