@@ -93,7 +93,7 @@ impl ColumnSet {
             pair.settle_guesses(&mut self.guesses[self.sentences.len()..]);
             let columns = pair.columns.iter().map(|(name, one)| ((*name).to_owned(), one.clone()));
             self.columns.extend(columns);
-            self.notes.push(pair.note());
+            self.notes.push(pair.format_note());
             self.has_commands = true;
         }
         // The samples may be large, and are not needed any more.

@@ -38,9 +38,21 @@ impl ThrusterColumns {
             let header = found.columns.get(at)?.header.as_str();
             Some(ColumnMapping { reversed, ..ColumnMapping::new(header, unit) })
         };
-        let columns =
-            [("n_p", mapping(port, reversed[0])?), ("n_s", mapping(starboard, reversed[1])?)];
-        let other = if pair.is_opposed { ", one of which counts the other way" } else { "" };
+        // A ship turns away from the side of the stronger thrust: where it turns towards the one
+        // that is called port, the names of the sides are exchanged.
+        let away = if against_port { -pair.yaw_correlation } else { pair.yaw_correlation };
+        let is_exchanged = away < 0.0;
+        let channels = if is_exchanged { ["n_s", "n_p"] } else { ["n_p", "n_s"] };
+        let columns = [
+            (channels[0], mapping(port, reversed[0])?),
+            (channels[1], mapping(starboard, reversed[1])?),
+        ];
+        let other = match (pair.is_opposed, is_exchanged) {
+            (true, true) => ", one of which counts the other way, with their sides exchanged",
+            (true, false) => ", one of which counts the other way",
+            (false, true) => " with their sides exchanged",
+            (false, false) => "",
+        };
         let why = format!(
             "the commands of two thrusters{other}: the yaw rate follows one combination with a \
              correlation of {:.2}, the speed ahead the other with {:.2}",
@@ -65,14 +77,14 @@ impl ThrusterColumns {
         }
     }
 
-    /// Remark for readers.
-    pub(crate) fn note(&self) -> String {
-        let [port, starboard] = self.columns.each_ref().map(|(_, column)| &column.column);
+    /// Formats the remark for readers.
+    pub(crate) fn format_note(&self) -> String {
+        let [(first, one), (second, other)] = &self.columns;
         format!(
-            "`{port}` and `{starboard}` are {}. They are read as `n_p` and `n_s`, a full command as \
+            "`{}` and `{}` are {}. They are read as `{first}` and `{second}`, a full command as \
              {FULL_COMMAND_RPS} 1/s: correct `maximum` of n in the manifest where the revolutions \
              are known",
-            self.why
+            one.column, other.column, self.why
         )
     }
 }

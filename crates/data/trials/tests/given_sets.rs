@@ -111,8 +111,9 @@ fn a_catamaran_is_read_and_its_thrusters_are_named() {
     assert_eq!(channel(&proposal, "yaw_rate"), Some("r"));
     assert_eq!(channel(&proposal, "right_force"), None);
     assert!(proposal.notes[0].contains("thr_left") && proposal.notes[0].contains("maximum"));
-    assert_eq!(channel(&proposal, "thr_left"), Some("n_p"));
-    assert_eq!(channel(&proposal, "thr_right"), Some("n_s"));
+    // The ship turns towards the thruster that the file calls the left one.
+    assert_eq!(channel(&proposal, "thr_left"), Some("n_s"));
+    assert_eq!(channel(&proposal, "thr_right"), Some("n_p"));
     assert_eq!(&*proposal.manifest.manifest.columns["n_p"].unit, "pwm");
     assert_eq!(trials.len(), 8);
     for trial in trials {

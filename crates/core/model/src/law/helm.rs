@@ -5,7 +5,7 @@
 //! carry out every manoeuvre: two thrusters that steer by their difference have
 //! `n*(1 + delta/(35*pi/180))` to port and `n*(1 - delta/(35*pi/180))` to starboard.
 
-use super::definition::Law;
+use super::definition::{Law, LawInput};
 use crate::trial::{Channel, Trial};
 use sistership_formula::units::Dimension;
 use sistership_formula::{Expr, builtin_constant};
@@ -44,20 +44,23 @@ impl Law {
 
     /// Returns true if the helm acts on the law, as an input or by the formula of one.
     pub fn follows_helm(&self) -> bool {
-        self.follows(HELM)
+        self.follows_order(HELM)
     }
 
     /// Returns true if ordered revolutions act on the law, as an input or by the formula of one.
     pub fn follows_revolutions(&self) -> bool {
-        self.follows(REVOLUTIONS)
+        self.follows_order(REVOLUTIONS)
     }
 
     /// Returns true if the difference of actuators steers and no angle does.
     pub fn steers_by_difference(&self) -> bool {
-        !self.inputs.contains_key(HELM) && self.follows_helm()
+        let is_angle = |(name, input): (&String, &LawInput)| {
+            name == HELM || input.helm.is_some() && input.dimension == Dimension::NONE
+        };
+        self.follows_helm() && !self.inputs.iter().any(is_angle)
     }
 
-    fn follows(&self, order: &str) -> bool {
+    fn follows_order(&self, order: &str) -> bool {
         let mut helms = self.helm_inputs();
         self.inputs.contains_key(order)
             || helms.any(|(_, _, helm)| helm.mentioned_names().contains(order))
@@ -105,6 +108,8 @@ mod tests {
         let law = zoo.law("low-speed").unwrap();
         assert!(law.follows_helm() && !law.steers_by_difference());
         assert_eq!(law.helm_inputs().count(), 0);
+        let pair = zoo.law("hybrid-vectwin").unwrap();
+        assert!(pair.follows_helm() && !pair.steers_by_difference(), "two rudders");
     }
 
     #[test]
