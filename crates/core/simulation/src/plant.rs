@@ -29,7 +29,8 @@ pub struct Plant {
     /// Accelerations per unit force on each axis, where masses do not change.
     mobility: Option<Matrix4<f64>>,
     input_names: Vec<String>,
-    /// Coefficients that are given with each state; all others are folded into the tape.
+    /// Coefficients, parameters and particulars that are given with each state; all others are
+    /// folded into the tape.
     open: Vec<String>,
     input_defaults: Vec<Option<f64>>,
     lags_s: Vec<(usize, f64)>,
@@ -92,10 +93,13 @@ impl Plant {
     ) -> Result<Self, PlantError> {
         let (model, law) = (equations.model(), equations.law());
         check_inputs(law)?;
-        let open: Vec<String> = match coefficients {
+        let mut open: Vec<String> = match coefficients {
             CoefficientBinding::Values => Vec::new(),
-            CoefficientBinding::Names => model.coefficients.keys().cloned().collect(),
+            _ => model.coefficients.keys().cloned().collect(),
         };
+        if coefficients == CoefficientBinding::AllNames {
+            open.extend(equations.constant_names());
+        }
         // Open coefficients follow the inputs of the law on the tape.
         let names: Vec<String> =
             equations.tape_input_names().into_iter().chain(open.iter().cloned()).collect();
@@ -128,7 +132,8 @@ impl Plant {
         &self.input_names
     }
 
-    /// Names of the coefficients that are given with each state, in order.
+    /// Names of the coefficients, parameters and particulars that are given with each state, in
+    /// order.
     pub fn open_coefficients(&self) -> &[String] {
         &self.open
     }
