@@ -19,9 +19,9 @@ fn folder() -> (tempfile::TempDir, String) {
 fn a_model_is_written_down_for_other_tools() {
     let (folder, _) = folder();
     let path = |name: &str| folder.path().join(name).display().to_string();
-    for (format, begins) in
-        [("c", "/*"), ("python", "# Model"), ("matlab", "function"), ("fmu2", "PK"), ("fmu3", "PK")]
-    {
+    let begins = [("c", "/*"), ("python", "# Model"), ("matlab", "function")];
+    let archives = ["fmu2", "fmu3", "ssp"].map(|format| (format, "PK"));
+    for (format, begins) in begins.into_iter().chain(archives) {
         let out = path(format);
         let done = binary::run(&["export", "sr108", "--format", format, "--out", &out]);
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));

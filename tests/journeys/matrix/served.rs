@@ -70,7 +70,7 @@ async fn asked(server: &TestServer, version: i64, trial: &str) {
     let model = format!("{NAME}/{version}");
     read(server, &format!("/v1/compare?version={model}&version=mariner&trial={trial}")).await;
     read(server, &format!("/v1/models/{NAME}/versions/{version}/validation")).await;
-    for format in ["c", "python", "matlab", "modelica", "fmu2", "fmu3"] {
+    for format in ["c", "python", "matlab", "modelica", "fmu2", "fmu3", "ssp"] {
         let path = format!("/v1/models/{NAME}/versions/{version}/export?format={format}");
         let answer = server.request(Method::GET, &path).send().await.expect("an answer");
         assert_eq!(answer.status(), 200, "{model}: {format}");

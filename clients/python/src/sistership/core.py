@@ -387,7 +387,7 @@ class Core:
         """Get the document of a version, byte for byte as it was hashed."""
         return self.http.json('GET', f'/v1/models/{model}/versions/{number}/document', headers={'If-None-Match': if_none_match})
 
-    def get_models_model_versions_number_export(self, model: str, number: int, *, format: Optional[Literal['c', 'python', 'matlab', 'modelica', 'fmu2', 'fmu3']] = None) -> bytes:
+    def get_models_model_versions_number_export(self, model: str, number: int, *, format: Optional[Literal['c', 'python', 'matlab', 'modelica', 'fmu2', 'fmu3', 'ssp']] = None) -> bytes:
         """Export a version as a file for another tool."""
         return self.http.bytes('GET', f'/v1/models/{model}/versions/{number}/export', query={'format': format})
 

@@ -54,7 +54,7 @@ class Version(ExportedModel):
         return UnderWay(self.core, self.core.post_sessions(request))
 
     def export(self, format: str) -> bytes:
-        """The version for another tool: `c`, `python`, `matlab`, `modelica`, `fmu2`, `fmu3`."""
+        """The version for another tool: `c`, `python`, `matlab`, `modelica`, `fmu2`, `fmu3`, `ssp`."""
         return self.core.get_models_model_versions_number_export(
             self.ship, self.number, format=format)  # type: ignore[arg-type]
 

@@ -29,8 +29,8 @@ pub struct Plant {
     /// Accelerations per unit force on each axis, where masses do not change.
     mobility: Option<Matrix4<f64>>,
     input_names: Vec<String>,
-    /// Coefficients, and parameters that trials determine, that are given with each state; all
-    /// others are folded into the tape.
+    /// Coefficients, parameters and particulars that are given with each state; all others are
+    /// folded into the tape.
     open: Vec<String>,
     input_defaults: Vec<Option<f64>>,
     lags_s: Vec<(usize, f64)>,
@@ -93,10 +93,15 @@ impl Plant {
     ) -> Result<Self, PlantError> {
         let (model, law) = (equations.model(), equations.law());
         check_inputs(law)?;
-        let open: Vec<String> = match coefficients {
+        let mut open: Vec<String> = match coefficients {
             CoefficientBinding::Values => Vec::new(),
-            CoefficientBinding::Names => open_names(model, law),
+            _ => open_names(model, law),
         };
+        if coefficients == CoefficientBinding::AllNames {
+            let constants = equations.constant_names().into_iter();
+            let others: Vec<String> = constants.filter(|name| !open.contains(name)).collect();
+            open.extend(others);
+        }
         // Open coefficients follow the inputs of the law on the tape.
         let names: Vec<String> =
             equations.tape_input_names().into_iter().chain(open.iter().cloned()).collect();
@@ -129,7 +134,8 @@ impl Plant {
         &self.input_names
     }
 
-    /// Names of the coefficients and parameters that are given with each state, in order.
+    /// Names of the coefficients, parameters and particulars that are given with each state, in
+    /// order.
     pub fn open_coefficients(&self) -> &[String] {
         &self.open
     }

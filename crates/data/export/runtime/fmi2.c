@@ -39,6 +39,11 @@ static char *path_of(const char *uri, const char *added)
             break;
         }
     }
+#ifdef _WIN32
+    /* The slash before a drive is the URI's: file:///C:/Users. */
+    if (uri[0] == '/' && uri[1] != '\0' && uri[2] == ':')
+        uri++;
+#endif
     char *path = malloc(strlen(uri) + strlen(added) + 2);
     size_t n = 0;
     if (!path)
@@ -127,8 +132,9 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c)
 fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {
     instance *i = c;
+    const char *why = model_refusal(i->model);
     i->stale = 1;
-    return model_longest(i->model) > 0.0 ? fmi2OK : tell(i, fmi2Error, "step_s is not above 0");
+    return why ? tell(i, fmi2Error, why) : fmi2OK;
 }
 
 fmi2Status fmi2Terminate(fmi2Component c)
@@ -170,11 +176,10 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
 {
     instance *i = c;
     for (size_t k = 0; k < n; k++) {
-        if (vr[k] >= i->model->variables || model_follows(i->model, vr[k]))
+        i->stale = 1;
+        if (!model_set(i->model, vr[k], value[k]))
             return tell(i, fmi2Error, "no such variable can be set");
-        i->model->value[vr[k]] = value[k];
     }
-    i->stale = 1;
     return fmi2OK;
 }
 
@@ -216,7 +221,7 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state)
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state)
 {
     instance *i = c;
-    memcpy(i->model->value, state, state_size(i));
+    model_restore(i->model, state);
     i->stale = 1;
     return fmi2OK;
 }

@@ -108,8 +108,9 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has_tolerance
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c)
 {
     instance *i = c;
+    const char *why = model_refusal(i->model);
     i->stale = 1;
-    return model_longest(i->model) > 0.0 ? fmi3OK : tell(i, fmi3Error, "step_s is not above 0");
+    return why ? tell(i, fmi3Error, why) : fmi3OK;
 }
 
 fmi3Status fmi3Reset(fmi3Instance c)
@@ -166,11 +167,10 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t 
     if (values != n)
         return tell(i, fmi3Error, "every variable is a scalar");
     for (size_t k = 0; k < n; k++) {
-        if (vr[k] >= i->model->variables || model_follows(i->model, vr[k]))
+        i->stale = 1;
+        if (!model_set(i->model, vr[k], value[k]))
             return tell(i, fmi3Error, "no such variable can be set");
-        i->model->value[vr[k]] = value[k];
     }
-    i->stale = 1;
     return fmi3OK;
 }
 
@@ -261,7 +261,7 @@ fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state)
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state)
 {
     instance *i = c;
-    memcpy(i->model->value, state, state_size(i));
+    model_restore(i->model, state);
     i->stale = 1;
     return fmi3OK;
 }

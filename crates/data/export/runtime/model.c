@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* So that the library loads beside older C libraries than that of the machine which built it. */
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(SISTERSHIP_OLD_GLIBC)
-__asm__(".symver exp,exp@GLIBC_2.2.5");
-__asm__(".symver log,log@GLIBC_2.2.5");
-__asm__(".symver pow,pow@GLIBC_2.2.5");
+#ifdef _WIN32
+/* Without what windows draw: its names are those of operations here. */
+#define NOUSER
+#define WIN32_LEAN_AND_MEAN
+#include <windows.h>
 #endif
 
 enum {
@@ -48,24 +48,26 @@ static int whole(FILE *file, int32_t *out, size_t count)
 
 static int sizes(FILE *file, model *m)
 {
-    int32_t of[4];
-    if (fscanf(file, "sistership-fmu-2 %79s", m->token) != 1 || !whole(file, of, 4))
+    int32_t of[5];
+    if (fscanf(file, "sistership-fmu-3 %79s", m->token) != 1 || !whole(file, of, 5))
         return 0;
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 5; k++)
         if (of[k] < 0 || of[k] > 10000000)
             return 0;
-    if (of[0] < OUTSIDE + 1 || of[3] > STATES)
+    if (of[0] < OUTSIDE + 1 || of[3] > STATES || of[4] < OUTSIDE)
         return 0;
     m->variables = (size_t)of[0];
     m->instructions = (size_t)of[1];
     m->terms = (size_t)of[2];
     m->states = (size_t)of[3];
+    m->parameters = of[4];
     m->value = calloc(m->variables, sizeof *m->value);
     m->start = calloc(m->variables, sizeof *m->start);
     m->result = calloc(m->instructions + 1, sizeof *m->result);
     m->program = calloc(m->instructions + 1, sizeof *m->program);
     m->term = calloc(2*m->terms + 1, sizeof *m->term);
-    return m->value && m->start && m->result && m->program && m->term;
+    m->order = calloc(m->instructions + 1, sizeof *m->order);
+    return m->value && m->start && m->result && m->program && m->term && m->order;
 }
 
 static int within(int32_t place, size_t count)
@@ -110,7 +112,6 @@ static int all_within(const int32_t *place, size_t count, size_t most)
 
 static int contents(FILE *file, model *m)
 {
-    double figures[7];
     if (!whole(file, m->moving, m->states) || !numbers(file, m->start, m->variables))
         return 0;
     for (size_t k = 0; k < m->states; k++)
@@ -140,23 +141,76 @@ static int contents(FILE *file, model *m)
     if (!whole(file, &m->has_gear, 1) || !whole(file, &m->has_roll, 1)
         || !whole(file, &m->has_mobility, 1))
         return 0;
-    if (!numbers(file, m->mobility, 16) || !numbers(file, figures, 7))
+    if (!whole(file, m->gear, FIGURES))
         return 0;
-    m->limit_rad = figures[0];
-    m->rate_rad_s = figures[1];
-    m->time_constant_s = figures[2];
-    m->most_speed = figures[3];
-    m->most_yaw = figures[4];
-    m->most_roll = figures[5];
-    m->band_rad = figures[6];
+    for (int k = 0; m->has_gear && k < FIGURES; k++)
+        if (!within(m->gear[k], m->variables))
+            return 0;
+    return numbers(file, m->mobility, 16) && number(file, &m->most_speed)
+        && number(file, &m->most_yaw) && number(file, &m->most_roll);
+}
+
+/* Whether an operation changes with time, states or inputs; `moves` holds that of earlier ones. */
+static int moves_with(const model *m, const instruction *one, const char *moves)
+{
+    int operands = one->code >= LESS && one->code <= GREATER_OR_EQUAL ? 4 : 2;
+    if (one->code == CONSTANT)
+        return 0;
+    if (one->code == INPUT)
+        return one->operand[0] < m->parameters;
+    if (one->code == PRODUCTS) {
+        for (int32_t k = 2*one->operand[1]; k < 2*one->operand[2]; k++)
+            if (moves[m->term[k]])
+                return 1;
+        operands = 1;
+    }
+    for (int k = 0; k < operands; k++)
+        if (moves[one->operand[k]])
+            return 1;
+    return 0;
+}
+
+/* Puts the operations in order: first what need be calculated only when a parameter is set. */
+static int ordered(model *m)
+{
+    char *moves = calloc(m->instructions + 1, 1);
+    size_t next = 0;
+    if (!moves)
+        return 0;
+    for (size_t k = 0; k < m->instructions; k++) {
+        moves[k] = (char)moves_with(m, m->program + k, moves);
+        if (!moves[k])
+            m->order[next++] = k;
+    }
+    m->settled = next;
+    for (size_t k = 0; k < m->instructions; k++)
+        if (moves[k])
+            m->order[next++] = k;
+    free(moves);
     return 1;
+}
+
+static FILE *opened(const char *path)
+{
+#ifdef _WIN32
+    /* Windows takes a path in UTF-16; one that is no UTF-8 is in the code page of the machine. */
+    const int length = MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, NULL, 0);
+    wchar_t *wide = length > 0 ? malloc((size_t)length*sizeof *wide) : NULL;
+    if (wide) {
+        MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, wide, length);
+        FILE *file = _wfopen(wide, L"rb");
+        free(wide);
+        return file;
+    }
+#endif
+    return fopen(path, "rb");
 }
 
 model *model_read(const char *path, char *why, size_t room)
 {
-    FILE *file = fopen(path, "rb");
+    FILE *file = opened(path);
     model *m = calloc(1, sizeof *m);
-    int read = file && m && sizes(file, m) && contents(file, m);
+    int read = file && m && sizes(file, m) && contents(file, m) && ordered(m);
     if (file)
         fclose(file);
     if (!read) {
@@ -177,12 +231,19 @@ void model_free(model *m)
     free(m->result);
     free(m->program);
     free(m->term);
+    free(m->order);
     free(m);
 }
 
 void model_reset(model *m)
 {
-    memcpy(m->value, m->start, m->variables*sizeof *m->value);
+    model_restore(m, m->start);
+}
+
+void model_restore(model *m, const double *values)
+{
+    memcpy(m->value, values, m->variables*sizeof *m->value);
+    m->unsettled = 1;
 }
 
 double model_longest(const model *m)
@@ -239,15 +300,17 @@ static double evaluated(const model *m, const instruction *one)
 
 static void run(model *m)
 {
-    for (size_t k = 0; k < m->instructions; k++) {
-        const instruction *one = m->program + k;
+    for (size_t k = m->unsettled ? 0 : m->settled; k < m->instructions; k++) {
+        const instruction *one = m->program + m->order[k];
+        double *result = m->result + m->order[k];
         switch (one->code) {
-        case CONSTANT: m->result[k] = one->constant; break;
-        case INPUT: m->result[k] = m->value[one->operand[0]]; break;
-        case PRODUCTS: m->result[k] = products(m, one); break;
-        default: m->result[k] = evaluated(m, one);
+        case CONSTANT: *result = one->constant; break;
+        case INPUT: *result = m->value[one->operand[0]]; break;
+        case PRODUCTS: *result = products(m, one); break;
+        default: *result = evaluated(m, one);
         }
     }
+    m->unsettled = 0;
 }
 
 static double at(const model *m, int32_t place, double otherwise)
@@ -311,11 +374,13 @@ static double rudder_rate(const model *m, double step_s)
 {
     if (!m->has_gear)
         return 0.0;
+    double gear[FIGURES];
+    for (int k = 0; k < FIGURES; k++)
+        gear[k] = m->value[m->gear[k]];
     const double angle = m->value[STATE + DELTA];
-    const double ordered = limited(m->value[ORDER], m->limit_rad);
-    const double order = fmin(fmax(angle, ordered - m->band_rad), ordered + m->band_rad);
-    const double time = fmax(m->time_constant_s, step_s);
-    return limited((order - angle)/time, m->rate_rad_s);
+    const double wanted = limited(m->value[ORDER], gear[LIMIT]);
+    const double order = fmin(fmax(angle, wanted - gear[BAND]), wanted + gear[BAND]);
+    return limited((order - angle)/fmax(gear[LAG], step_s), gear[SPEED]);
 }
 
 void model_rates(model *m, double step_s)
@@ -343,6 +408,33 @@ int model_follows(const model *m, size_t variable)
 {
     const int is_distance = m->distance[1] >= 0 && variable == (size_t)m->distance[1];
     return (variable >= RATE && variable < ORDER) || is_distance;
+}
+
+int model_set(model *m, size_t variable, double value)
+{
+    if (variable >= m->variables || model_follows(m, variable))
+        return 0;
+    m->value[variable] = value;
+    if (variable >= (size_t)m->parameters)
+        m->unsettled = 1;
+    return 1;
+}
+
+const char *model_refusal(model *m)
+{
+    /* Written so that a step that is no number is refused, too. */
+    if (!(model_longest(m) > 0.0))
+        return "step_s is not above 0";
+    for (int k = 0; m->has_gear && k < FIGURES; k++)
+        if (!(m->value[m->gear[k]] >= 0.0))
+            return "the figures of the steering gear (rudder_limit, rudder_rate, "
+                "rudder_time_constant, rudder_dead_band) are not all 0 or above";
+    model_rates(m, model_longest(m));
+    for (int k = 0; k < STATES; k++)
+        if (!isfinite(m->value[RATE + k]))
+            return "these parameters, states and inputs give no accelerations: masses, lengths "
+                "and densities are above 0, and every value is a number";
+    return NULL;
 }
 
 static const char *check(const model *m)

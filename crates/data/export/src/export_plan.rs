@@ -12,30 +12,15 @@ use sistership_simulation::equations::{CoefficientBinding, EquationsOfMotion};
 use sistership_simulation::gear::SteeringGear;
 use sistership_simulation::plant::PlantListing;
 use sistership_simulation::validity::distance_formula;
-use sistership_simulation::{Plant, PlantError, Ship};
+use sistership_simulation::{Plant, Ship};
 
+use crate::coefficients::{ExportCoefficient, export_coefficients};
 use crate::correction::with_correction;
 use crate::error::ExportError;
 use crate::external_input::{CURRENT, ExternalInput};
-use crate::identifier::{to_identifier, unique_identifiers};
+use crate::identifier::to_identifier;
+use crate::states::{DELTA, STATES};
 use crate::subject::ExportSubject;
-
-/// Coefficient of the model.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ExportCoefficient {
-    /// Name in the law.
-    pub name: String,
-    /// Identifier in exported programs.
-    pub identifier: String,
-    /// Value.
-    pub value: f64,
-    /// SI unit; `1` in a prime system.
-    pub unit: String,
-    /// Key of the source.
-    pub source: String,
-    /// Standard error, if it is known.
-    pub standard_error: Option<f64>,
-}
 
 /// Kind of an input of the tape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,22 +32,6 @@ pub enum TapeOperand {
     /// Coefficient, by its index in the list of the plan.
     Coefficient(usize),
 }
-
-/// States with name, unit and meaning, in the order of the state vector.
-pub const STATES: [(&str, &str, &str); 9] = [
-    ("u", "m/s", "surge velocity over the ground"),
-    ("v", "m/s", "sway velocity over the ground, to starboard"),
-    ("r", "rad/s", "yaw rate, to starboard"),
-    ("p", "rad/s", "roll rate, to starboard"),
-    ("phi", "rad", "roll angle, to starboard"),
-    ("psi", "rad", "heading, clockwise from north"),
-    ("x", "m", "position north"),
-    ("y", "m", "position east"),
-    ("delta", "rad", "rudder angle, positive turns the ship to starboard"),
-];
-
-/// Index of the rudder in the state vector.
-pub const DELTA: usize = 8;
 
 /// Equations of motion of a model, ready for export.
 #[derive(Debug)]
@@ -77,7 +46,7 @@ pub struct ExportPlan {
     pub sha256: String,
     /// External inputs, except the ordered rudder.
     pub outside: Vec<ExternalInput>,
-    /// Coefficients of the model.
+    /// Coefficients of the model, then the parameters and particulars that can be set.
     pub coefficients: Vec<ExportCoefficient>,
     /// Kinds of the inputs of the tape.
     pub operands: Vec<TapeOperand>,
@@ -97,18 +66,22 @@ pub struct ExportPlan {
 }
 
 impl ExportPlan {
-    /// Creates the plan of a model, with a current as an additional input.
+    /// Creates the plan of a model, with a current as an additional input; `names` says what can be
+    /// set by name: [`CoefficientBinding::Names`] or [`CoefficientBinding::AllNames`].
     ///
     /// # Errors
     /// Returns an error with the reason why the model cannot be exported.
-    pub fn new(subject: &ExportSubject<'_>) -> Result<Self, ExportError> {
+    pub fn new(
+        subject: &ExportSubject<'_>,
+        names: CoefficientBinding,
+    ) -> Result<Self, ExportError> {
         let model = with_current(subject.model)?;
         let law = with_correction(&model, law_with_effects(&model, subject.law)?)?;
         let equations = EquationsOfMotion::from_law(&model, Cow::Borrowed(&law));
         let known = equations.tape_input_names();
         let is_known = |name: &str| known.iter().any(|known| known == name);
         let distance = model.validity.as_ref().map(|region| distance_formula(region, &is_known));
-        let plant = Plant::with_distance(&equations, CoefficientBinding::Names, distance.as_ref())?;
+        let plant = Plant::with_distance(&equations, names, distance.as_ref())?;
         // The ship of the original model: gear and envelope do not depend on the current.
         let ship = Ship::new(subject.model, subject.law)?;
         let delta = law.inputs.get_index_of("delta");
@@ -116,8 +89,8 @@ impl ExportPlan {
         let band = plant.dead_bands().iter().find(|(place, _)| Some(*place) == delta);
         // The distance to the trials' range is part of the tape, so its inputs are kept, too.
         let outside = external_inputs(&model, &law, &plant);
-        let coefficients = export_coefficients(&model, subject.law)?;
-        let operands = tape_operands(&law, &outside, coefficients.len());
+        let coefficients = export_coefficients(&equations, &plant, &outside)?;
+        let operands = tape_operands(&law, &plant, (&outside, &coefficients));
         Ok(Self {
             name: model.name.clone(),
             identifier: to_identifier(&model.name),
@@ -208,13 +181,9 @@ fn law_with_effects(model: &Model, law: &Law) -> Result<Law, ExportError> {
 
 /// Inputs of the law except the rudder; inputs that no operation reads are omitted.
 fn external_inputs(model: &Model, law: &Law, plant: &Plant) -> Vec<ExternalInput> {
-    use sistership_simulation::tape::{TapeInstruction, TapeOp};
+    // Inputs of the tape are the states, then the inputs of the law.
     let first = sistership_model::law::STATES.len();
-    let reads = |place: usize| {
-        // Inputs of the tape are the states, then the inputs of the law.
-        let input = TapeInstruction::Op(TapeOp::Input((first + place) as u32));
-        plant.to_listing().tape.instructions().contains(&input)
-    };
+    let reads = |place: usize| plant.reads_input(first + place);
     let inputs = law.inputs.iter().enumerate();
     inputs
         .filter(|(place, (name, _))| name.as_str() != "delta" && reads(*place))
@@ -223,32 +192,23 @@ fn external_inputs(model: &Model, law: &Law, plant: &Plant) -> Vec<ExternalInput
 }
 
 /// Kind of each input of the tape. An input that no operation reads gets an arbitrary operand.
-fn tape_operands(law: &Law, outside: &[ExternalInput], coefficients: usize) -> Vec<TapeOperand> {
+fn tape_operands(
+    law: &Law,
+    plant: &Plant,
+    (outside, coefficients): (&[ExternalInput], &[ExportCoefficient]),
+) -> Vec<TapeOperand> {
     let states = sistership_model::law::STATES.len();
     let of_input = |name: &String| match outside.iter().position(|known| known.name == *name) {
         Some(place) => TapeOperand::Outside(place),
         None => TapeOperand::State(DELTA),
     };
+    let of_open = |name: &String| match coefficients.iter().position(|one| one.name == *name) {
+        Some(place) => TapeOperand::Coefficient(place),
+        None => TapeOperand::State(DELTA),
+    };
     (0..states)
         .map(TapeOperand::State)
         .chain(law.inputs.keys().map(of_input))
-        .chain((0..coefficients).map(TapeOperand::Coefficient))
+        .chain(plant.open_coefficients().iter().map(of_open))
         .collect()
-}
-
-/// Coefficients of the model, with identifiers and units.
-fn export_coefficients(model: &Model, law: &Law) -> Result<Vec<ExportCoefficient>, ExportError> {
-    let names = unique_identifiers(model.coefficients.keys().map(String::as_str));
-    let one = |((name, quantity), identifier): ((&String, &Quantity), String)| {
-        let unit = law.coefficient_dimension(name).map_err(PlantError::from)?.to_string();
-        Ok(ExportCoefficient {
-            name: name.clone(),
-            identifier,
-            value: quantity.value,
-            unit,
-            source: quantity.source.clone(),
-            standard_error: quantity.standard_error,
-        })
-    };
-    model.coefficients.iter().zip(names).map(one).collect()
 }

@@ -3,7 +3,8 @@
 use sistership_formula::{Comparison, Function};
 use sistership_simulation::tape::{ResultSlot, TapeInstruction, TapeOp};
 
-use crate::export_plan::{ExportCoefficient, ExportPlan, TapeOperand};
+use crate::coefficients::ExportCoefficient;
+use crate::export_plan::{ExportPlan, TapeOperand};
 use crate::external_input::ExternalInput;
 
 /// Syntax of a language for the operations of a tape. Operands are names or numbers, never sums.

@@ -6,10 +6,11 @@ use crate::format::ModelFormat;
 use crate::matlab::MatlabFormat;
 use crate::modelica::ModelicaFormat;
 use crate::python::PythonFormat;
+use crate::ssp::SspFormat;
 
 /// All formats.
-pub const FORMATS: [&dyn ModelFormat; 6] =
-    [&CFormat, &PythonFormat, &MatlabFormat, &ModelicaFormat, &Fmi2Format, &Fmi3Format];
+pub const FORMATS: [&dyn ModelFormat; 7] =
+    [&CFormat, &PythonFormat, &MatlabFormat, &ModelicaFormat, &Fmi2Format, &Fmi3Format, &SspFormat];
 
 /// Returns the format of a name.
 pub fn by_name(name: &str) -> Option<&'static dyn ModelFormat> {

@@ -1,8 +1,10 @@
 //! Header of every export: provenance, units, signs and sources.
 
-use crate::export_plan::{ExportCoefficient, ExportPlan, STATES};
+use crate::coefficients::ExportCoefficient;
+use crate::export_plan::ExportPlan;
 use crate::external_input::ExternalInput;
 use crate::quoting::single_line;
+use crate::states::STATES;
 
 /// Lines that a reader needs before the code: provenance, units, signs, inputs, coefficients.
 pub fn header_lines(plan: &ExportPlan) -> Vec<String> {

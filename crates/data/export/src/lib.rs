@@ -4,6 +4,7 @@
 //! zoo, with the effects of a model, can be exported, and gives the same results in other tools.
 
 mod c;
+mod coefficients;
 mod correction;
 mod error;
 mod export_plan;
@@ -21,10 +22,13 @@ mod python;
 mod quoting;
 mod range;
 mod rates;
+mod ssp;
+mod states;
 mod subject;
 
+pub use coefficients::ExportCoefficient;
 pub use error::ExportError;
-pub use export_plan::{ExportCoefficient, ExportPlan};
+pub use export_plan::ExportPlan;
 pub use external_input::ExternalInput;
 pub use format::ModelFormat;
 pub use formats::{FORMATS, by_name};

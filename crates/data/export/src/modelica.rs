@@ -2,12 +2,14 @@
 
 use sistership_formula::Function;
 
+use crate::coefficients::ExportCoefficient;
 use crate::error::ExportError;
-use crate::export_plan::{ExportCoefficient, ExportPlan, STATES};
+use crate::export_plan::ExportPlan;
 use crate::expression::{TargetLanguage, function_name};
 use crate::external_input::ExternalInput;
 use crate::format::ModelFormat;
 use crate::quoting::escape_modelica;
+use crate::states::STATES;
 use crate::{header, line_wrapping, range, rates};
 
 /// Model file for Modelica 3.4, without any library.

@@ -3,11 +3,13 @@
 
 use sistership_formula::Function;
 
+use crate::coefficients::ExportCoefficient;
 use crate::error::ExportError;
-use crate::export_plan::{ExportCoefficient, ExportPlan, STATES};
+use crate::export_plan::ExportPlan;
 use crate::expression::{TargetLanguage, function_name};
 use crate::external_input::ExternalInput;
 use crate::format::ModelFormat;
+use crate::states::STATES;
 use crate::{header, line_wrapping, range, rates};
 
 /// Module for Python 3.8 and later.

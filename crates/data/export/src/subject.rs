@@ -40,7 +40,6 @@ impl ExportSubject<'_> {
                 values.map(|(name, quantity)| format!("{name} {}", quantity.value)).collect();
             format!("Effect {} ({}): {}", effect.name, effect.form.name, values.join(", "))
         }));
-        // Parameters are constants of the tape; they are listed here with their sources.
         let folded = model.parameters.iter().map(|(name, quantity)| {
             let known = law.parameters.get(name);
             let about = known
@@ -50,7 +49,7 @@ impl ExportSubject<'_> {
         let stated = model.particulars.iter();
         let stated = stated
             .map(|(name, quantity)| format!("  {name} = {}, {}", quantity.value, quantity.source));
-        lines.push("Particulars and parameters, as numbers in the code below:".to_owned());
+        lines.push("Particulars and parameters:".to_owned());
         lines.extend(stated.chain(folded));
         lines.extend(describe_estimates(&model.particulars).map(|words| format!("Note: {words}")));
         lines.extend(trials_environment(model).map(|words| format!("Note: {words}")));

@@ -7,14 +7,14 @@ mod shared;
 
 use std::process::Command;
 
-use sistership_export::{ExportPlan, ExportSubject, FORMATS, by_name};
+use sistership_export::{ExportSubject, FORMATS, by_name};
 use sistership_learned::attach;
 use sistership_model::branch::{CorrectionMode, Learner};
 use sistership_model::{Model, Zoo};
 
 use foundation::{Foundation, learners, training};
 use shared::programs::{by_c, run};
-use shared::{Circle, Track, largest, plan, sailed};
+use shared::{Circle, Track, largest, sailed, written};
 
 const MOST: f64 = 1e-6;
 
@@ -29,7 +29,7 @@ fn sails_alike(name: &str, learner: Learner, mode: CorrectionMode) {
     let what = format!("{name} {} {mode:?}", learner.name());
     let (model, circle) = (corrected(name, learner, mode), Circle::of(&zoo, name, 10.0));
     let own = sailed(&shared::ship(&zoo, &model), &circle);
-    let code = by_name("c").unwrap().write(&plan(&zoo, &model)).unwrap();
+    let code = written(&zoo, &model, "c");
     let folder = tempfile::tempdir().unwrap();
     let difference = largest(&circle, &by_c(folder.path(), &code, &circle.arguments()), &own);
     println!("{what}: {difference:.1e}");
@@ -61,8 +61,8 @@ fn every_format_writes_it() {
     let [forest, ..] = learners();
     let model = corrected("mariner", forest, CorrectionMode::Parallel);
     for format in FORMATS {
-        let own = format.write(&plan(&zoo, &model)).unwrap().len();
-        let alone = format.write(&plan(&zoo, &model.without_correction())).unwrap().len();
+        let own = written(&zoo, &model, format.name()).len();
+        let alone = written(&zoo, &model.without_correction(), format.name()).len();
         assert!(own > alone + 1000, "{}: {own} bytes, {alone} without it", format.name());
     }
 }
@@ -80,7 +80,7 @@ fn python_sails_it_as_we_do() {
     let circle = Circle::of(&zoo, "mariner", 4.0);
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("model.py");
-    let code = by_name("python").unwrap().write(&plan(&zoo, &model)).unwrap();
+    let code = written(&zoo, &model, "python");
     std::fs::write(&file, code).unwrap();
     let found = Track::read(&run(Command::new("python3").arg(&file).args(circle.arguments())));
     let own = sailed(&shared::ship(&zoo, &model), &circle);
@@ -95,7 +95,7 @@ fn a_correction_without_its_weights_is_refused_by_their_hash() {
         Foundation::of("mariner").trained(&training(boosted, CorrectionMode::Parallel));
     let law = zoo.law(&model.law).unwrap();
     let subject = ExportSubject { model: &model, law, version: None, sha256: String::new() };
-    let refused = ExportPlan::new(&subject).unwrap_err().to_string();
+    let refused = by_name("fmu2").unwrap().prepare(&subject).unwrap_err().to_string();
     let hash = &model.branch.as_ref().unwrap().weights_sha256;
     assert!(refused.contains(hash), "{refused}");
 }

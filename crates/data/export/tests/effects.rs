@@ -3,7 +3,7 @@
 
 mod shared;
 
-use sistership_export::{ExportError, ExportPlan, ExportSubject, by_name};
+use sistership_export::{ExportError, ExportSubject, by_name};
 use sistership_model::effect::AppliedEffect;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Model, Zoo};
@@ -12,7 +12,7 @@ use sistership_simulation::state::{at, straight_state};
 use sistership_simulation::{Method, Ship};
 
 use shared::programs::by_c;
-use shared::{Circle, Track, largest, plan};
+use shared::{Circle, Track, largest, written};
 
 const MOST: f64 = 1e-6;
 
@@ -63,7 +63,7 @@ fn own(ship: &Ship, circle: &Circle, given: &[(&str, f64)]) -> Track {
 
 /// The C export with inputs set by the names that programs use.
 fn exported(model: &Model, zoo: &Zoo, circle: &Circle, given: &[(&str, f64)]) -> Track {
-    let code = String::from_utf8(by_name("c").unwrap().write(&plan(zoo, model)).unwrap()).unwrap();
+    let code = String::from_utf8(written(zoo, model, "c")).unwrap();
     let set: String =
         given.iter().map(|(name, value)| format!("in.{name} = {value:?};\n")).collect();
     let order = "in.delta_order = rudder_deg";
@@ -120,6 +120,6 @@ fn what_cannot_be_exported_says_why() {
     model.effects[0].form.lags = [("n".to_owned(), "time_constant_s".to_owned())].into();
     let law = zoo.law(&model.law).unwrap();
     let subject = ExportSubject { model: &model, law, version: None, sha256: String::new() };
-    let refused = ExportPlan::new(&subject).unwrap_err();
+    let refused = by_name("c").unwrap().prepare(&subject).unwrap_err();
     assert!(matches!(&refused, ExportError::Lag { input, .. } if input == "n"), "{refused}");
 }

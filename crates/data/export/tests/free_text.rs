@@ -3,7 +3,6 @@
 
 mod shared;
 
-use sistership_export::by_name;
 use sistership_model::Zoo;
 
 const NAME: &str = "o'neill \"two\" \\ */\nimport os";
@@ -16,7 +15,7 @@ fn exported(format: &str) -> String {
     model.name = NAME.to_owned();
     let quantities = model.coefficients.values_mut().chain(model.parameters.values_mut());
     quantities.chain(model.particulars.values_mut()).for_each(|one| one.source = SOURCE.to_owned());
-    let bytes = by_name(format).unwrap().write(&shared::plan(&zoo, &model)).unwrap();
+    let bytes = shared::written(&zoo, &model, format);
     String::from_utf8(bytes).unwrap()
 }
 

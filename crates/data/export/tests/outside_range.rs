@@ -3,16 +3,14 @@
 
 mod shared;
 
-use std::io::Read;
-use std::path::Path;
 use std::process::Command;
 
-use sistership_export::by_name;
 use sistership_model::validity::Region;
 use sistership_model::{Model, Zoo};
 
 use shared::plan;
 use shared::programs::{compiled, run};
+use shared::units::{LINUX, reference, unpack};
 
 /// A model whose trials ran from 5 to 8 m/s at 1.4 to 1.6 revolutions a second.
 fn model(zoo: &Zoo) -> Model {
@@ -26,7 +24,7 @@ fn model(zoo: &Zoo) -> Model {
 }
 
 fn written(zoo: &Zoo, format: &str) -> Vec<u8> {
-    by_name(format).unwrap().write(&plan(zoo, &model(zoo))).unwrap()
+    shared::written(zoo, &model(zoo), format)
 }
 
 /// Speeds and revolutions, and how far outside they are.
@@ -44,7 +42,7 @@ fn check(printed: &str) {
 #[test]
 fn c_says_how_far_outside_it_is() {
     let (zoo, folder) = (Zoo::load_embedded().unwrap(), tempfile::tempdir().unwrap());
-    let name = plan(&zoo, &model(&zoo)).identifier;
+    let name = plan(&zoo, &model(&zoo), "c").identifier;
     let points: String = POINTS
         .iter()
         .map(|([u, n], _)| format!("    s.u = {u:?}; in.n = {n:?};\n    say();\n"))
@@ -86,27 +84,8 @@ fn texts_name_the_output_where_a_range_is_known() {
     assert!(modelica.contains("  output Real outside_range(unit = \"1\")"));
     assert_eq!(modelica.matches("\n  outside_range = ").count(), 1);
     let published = zoo.find_model("kvlcc2").unwrap();
-    let modelica = by_name("modelica").unwrap().write(&plan(&zoo, &published)).unwrap();
+    let modelica = shared::written(&zoo, &published, "modelica");
     assert!(!String::from_utf8(modelica).unwrap().contains("outside_range"));
-}
-
-fn unpacked(bytes: &[u8], folder: &Path) {
-    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
-    for index in 0..archive.len() {
-        let mut file = archive.by_index(index).unwrap();
-        let place = folder.join(file.enclosed_name().unwrap());
-        std::fs::create_dir_all(place.parent().unwrap()).unwrap();
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).unwrap();
-        std::fs::write(place, bytes).unwrap();
-    }
-}
-
-/// The value reference of a variable in a description.
-fn reference(description: &str, name: &str) -> u32 {
-    let variable = description.lines().find(|line| line.contains(&format!("name=\"{name}\"")));
-    let after = variable.unwrap().split("valueReference=\"").nth(1).unwrap();
-    after.split('"').next().unwrap().parse().unwrap()
 }
 
 #[test]
@@ -114,38 +93,17 @@ fn fmus_have_it_as_an_output() {
     let (zoo, folder) = (Zoo::load_embedded().unwrap(), tempfile::tempdir().unwrap());
     for format in ["fmu2", "fmu3"] {
         let place = folder.path().join(format);
-        unpacked(&written(&zoo, format), &place);
+        unpack(&written(&zoo, format), &place);
         let description = std::fs::read_to_string(place.join("modelDescription.xml")).unwrap();
         let line =
             description.lines().find(|line| line.contains("name=\"outside_range\"")).unwrap();
         assert!(line.contains("causality=\"output\""), "{line}");
-        let [u, n, distance] =
-            ["u", "n", "outside_range"].map(|name| reference(&description, name).to_string());
-        let library = if format == "fmu2" { "linux64" } else { "x86_64-linux" };
-        let library = place.join("binaries").join(library).join("kvlcc2_mmg.so");
-        if !library.exists() {
-            eprintln!("skipped: FMUs made on this machine carry no library");
-            return;
-        }
-        let program = importer(folder.path(), format);
-        let mut command = Command::new(program);
-        command.arg(library).arg(&place).args(["0".repeat(64), u, n, distance]);
+        let references = ["u", "n", "outside_range"].map(|name| reference(&place, name));
+        let option = format!("-D{}", format.to_uppercase());
+        let program = LINUX.importer("outside_range", folder.path(), &[&option]);
+        let mut command = LINUX.command(&program, &format.replace("fmu", "fmi"), &place);
+        command.arg("0".repeat(64)).args(references);
         let points = POINTS.iter().flat_map(|(at, _)| at.map(|value| format!("{value:?}")));
         check(&run(command.args(points)));
     }
-}
-
-fn importer(folder: &Path, format: &str) -> std::path::PathBuf {
-    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let program = folder.join(format!("importer-{format}"));
-    let output = Command::new("cc")
-        .args(["-std=gnu99", "-Wall", "-Wextra", "-Werror", "-O1", "-I"])
-        .arg(manifest.join("runtime"))
-        .arg(format!("-D{}", format.to_uppercase()))
-        .arg(manifest.join("tests/importer/outside_range.c"))
-        .args([Path::new("-o"), &program, Path::new("-ldl")])
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    program
 }

@@ -23,7 +23,9 @@ fn by_python(folder: &Path, code: &[u8], circle: &Circle) -> Option<Track> {
         eprintln!("skipped: no python3");
         return None;
     }
-    Some(Track::read(&run(Command::new("python3").arg(&file).args(circle.arguments()))))
+    // Isolated and without site packages: numpy is not needed.
+    let mut python = Command::new("python3");
+    Some(Track::read(&run(python.args(["-I", "-S"]).arg(&file).args(circle.arguments()))))
 }
 
 fn by_octave(folder: &Path, model: &str, code: &[u8], circle: &Circle) -> Option<Track> {

@@ -1,7 +1,7 @@
 //! Export of versions to other tools.
 
 use serde::Deserialize;
-use sistership_export::{ExportError, ExportPlan, ExportSubject, by_name};
+use sistership_export::{ExportError, ExportSubject, by_name};
 use sistership_model::{Law, Model};
 use sistership_store::Version;
 use utoipa::ToSchema;
@@ -23,6 +23,8 @@ pub enum ExportFormat {
     Fmu2,
     /// A functional mock-up unit of FMI 3.0.
     Fmu3,
+    /// A package of SSP 1.0: a functional mock-up unit of FMI 2.0 with its parameter values.
+    Ssp,
 }
 
 /// Exported version.
@@ -44,6 +46,7 @@ impl ExportFormat {
             Self::Modelica => "modelica",
             Self::Fmu2 => "fmu2",
             Self::Fmu3 => "fmu3",
+            Self::Ssp => "ssp",
         }
     }
 
@@ -61,8 +64,9 @@ impl ExportFormat {
         let line = format!("{}/{}", version.head.model, version.head.number);
         let sha256 = version.head.sha256.clone();
         // The exported file names the version and its hash, so that it can be traced.
-        let plan = ExportPlan::new(&ExportSubject { model, law, version: Some(line), sha256 })?;
         let format = by_name(self.name()).ok_or_else(missing)?;
+        let subject = ExportSubject { model, law, version: Some(line), sha256 };
+        let plan = format.prepare(&subject)?;
         let file = format!("{}.{}", plan.identifier, format.extension());
         Ok(ExportedFile { file, bytes: format.write(&plan)? })
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use sistership_export::{ExportPlan, ExportSubject};
+use sistership_export::ExportSubject;
 use sistership_jobs::bundle::{BundleError, SigningKey, collect_bundle};
 use sistership_model::version::sha256_hex;
 use sistership_model::{Model, Zoo};
@@ -21,11 +21,14 @@ Examples:
   sistership export my-model.yaml --format python --out my_model.py
   sistership export kvlcc2 --format matlab --out kvlcc2_mmg.m
   sistership export kvlcc2 --format fmu2 --out kvlcc2.fmu
+  sistership export kvlcc2 --format ssp --out kvlcc2.ssp
   sistership export my-ship --format bundle --sign-key key.pem --data-dir here --out my-ship.bundle
   sistership import --bundle my-ship.bundle --signed-by key.pub.pem --data-dir there
 
 The export contains what `sistership manoeuvre` simulates: the law with the effects and the learned
-correction of the model, the steering gear, and a current as an input.
+correction of the model, the steering gear, and a current as an input. An FMU (fmu2, fmu3) runs on
+Linux, Windows and macOS without a compiler; coefficients, parameters and particulars are its
+parameters. A package of SSP (ssp) holds an FMU with a file of parameter values to vary.
 
 A bundle holds a ship of a store: its versions with all inputs, trials and reports. Another store
 imports it with all hashes and the whole lineage.";
@@ -71,7 +74,7 @@ pub fn run(zoo: &Zoo, asked: &ExportArguments) -> Result<(), Failure> {
     // The hash identifies the model in the exported file; a model outside a store has no version.
     let sha256 = model_hash(&model)?;
     let subject = ExportSubject { model: &model, law: &law, version: None, sha256 };
-    let plan = ExportPlan::new(&subject).map_err(|error| refused(&error))?;
+    let plan = format.prepare(&subject).map_err(|error| refused(&error))?;
     file.write(&format.write(&plan).map_err(|error| refused(&error))?)?;
     output::print_note(&format!("{} as {}: {}", model.name, format.name(), asked.out.display()));
     Ok(())

@@ -2,6 +2,7 @@
 //! law and `a` the accelerations that effects add, and the kinematics.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 use sistership_formula::{Expr, parse};
 use sistership_model::Model;
@@ -27,6 +28,8 @@ pub enum CoefficientBinding {
     Values,
     /// The name of each coefficient of the model, as an input of the tape.
     Names,
+    /// The names of coefficients, parameters and particulars, each as an input of the tape.
+    AllNames,
 }
 
 /// Attitude of the ship's axes in kinematics that the law does not define.
@@ -128,6 +131,19 @@ impl<'a> EquationsOfMotion<'a> {
             .map(NameBinding::Constant)
     }
 
+    /// Names of the parameters of effects and of the model, and of its particulars, that formulas
+    /// can read as numbers.
+    pub fn constant_names(&self) -> Vec<String> {
+        let parameters = self.law.dressing.parameters.keys().chain(self.model.parameters.keys());
+        let particulars = particulars::particular_names().map(str::to_owned);
+        let names: BTreeSet<String> = parameters.cloned().chain(particulars).collect();
+        let is_constant = |name: &String| {
+            let known = self.law.inputs.contains_key(name);
+            !known && matches!(self.name_binding(name), Some(NameBinding::Constant(_)))
+        };
+        names.into_iter().filter(is_constant).collect()
+    }
+
     /// Names of the coefficients that the model has on an axis.
     pub fn axis_coefficients(&self, axis: Axis) -> impl Iterator<Item = &'a String> + use<'a> {
         let prefix = format!("{axis}_");
@@ -167,7 +183,9 @@ impl<'a> EquationsOfMotion<'a> {
                 // Zero coefficients are left out, which keeps the tape short.
                 CoefficientBinding::Values if quantity.value == 0.0 => continue,
                 CoefficientBinding::Values => Expr::Number(quantity.value),
-                CoefficientBinding::Names => Expr::Name(name.clone()),
+                CoefficientBinding::Names | CoefficientBinding::AllNames => {
+                    Expr::Name(name.clone())
+                }
             };
             let (acts_on, term) = self.law.unscaled_regressor(name)?;
             if acts_on == axis {

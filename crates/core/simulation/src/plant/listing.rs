@@ -1,14 +1,14 @@
 //! Listing of a plant for exports: the operations, and the meaning of their results.
 
 use super::Plant;
-use crate::tape::{ResultSlot, Tape};
+use crate::tape::{ResultSlot, Tape, TapeInstruction, TapeOp};
 
 /// Right-hand side of the equations of motion as a list of operations. Axes are in the order X, Y,
 /// K, N; a result is given by the place of its instruction on the tape.
 #[derive(Debug, Clone)]
 pub struct PlantListing<'a> {
     /// The operations. Inputs are the states `u, v, r, p, phi, psi`, the inputs of the law, and the
-    /// coefficients that are left open.
+    /// coefficients, parameters and particulars that are left open.
     pub tape: &'a Tape,
     /// Forces, N, and moments, N m; `None` for an axis that the law does not have.
     pub forces: [Option<ResultSlot>; 4],
@@ -26,6 +26,12 @@ pub struct PlantListing<'a> {
 }
 
 impl Plant {
+    /// Returns true if an operation reads an input of the tape, by its place among the inputs.
+    pub fn reads_input(&self, place: usize) -> bool {
+        let input = TapeInstruction::Op(TapeOp::Input(place as u32));
+        self.tape.instructions().contains(&input)
+    }
+
     /// Returns the listing of the plant.
     pub fn to_listing(&self) -> PlantListing<'_> {
         let slot = |output: Option<usize>| output.map(|output| self.tape.output_slot(output));

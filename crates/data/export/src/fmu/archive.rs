@@ -52,7 +52,7 @@ pub fn pack_archive(entries: &[ArchiveEntry]) -> Result<Vec<u8>, ExportError> {
         let plain = SimpleFileOptions::default().last_modified_time(time).unix_permissions(0o644);
         for ArchiveEntry { place, bytes } in entries {
             // Shared libraries are executable.
-            let mode = if place.ends_with(".so") { 0o755 } else { 0o644 };
+            let mode = if place.contains("binaries/") { 0o755 } else { 0o644 };
             writer.start_file(place.as_ref(), plain.unix_permissions(mode))?;
             writer.write_all(bytes)?;
         }

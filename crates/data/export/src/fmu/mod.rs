@@ -1,20 +1,24 @@
 //! Functional mock-up units: FMI 2.0 and 3.0, for co-simulation and model exchange.
 //!
 //! An FMU is an archive with a description (FMI 2.0.4, Sec. 2.2; FMI 3.0.1, Sec. 2.4), a library
-//! for Linux on x86-64, which is the same for every model, the operations of the model as a
-//! resource, and the sources of the library for other machines.
+//! for each kind of machine, which is the same for every model, the operations of the model as a
+//! resource, and the sources of the library.
 
-mod archive;
+pub(crate) mod archive;
+mod library;
 mod resource;
-mod variables;
+pub(crate) mod variables;
 mod version2;
 mod version3;
-mod xml;
+pub(crate) mod xml;
+
+use sistership_simulation::equations::CoefficientBinding;
 
 use crate::error::ExportError;
 use crate::export_plan::ExportPlan;
 use crate::format::ModelFormat;
 use archive::{ArchiveEntry, SOURCES, pack_archive};
+use library::{FmiVersion, library_entries};
 
 /// FMU for FMI 2.0.
 #[derive(Debug)]
@@ -23,9 +27,6 @@ pub struct Fmi2Format;
 /// FMU for FMI 3.0.
 #[derive(Debug)]
 pub struct Fmi3Format;
-
-static LIBRARY_2: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/fmi2.so"));
-static LIBRARY_3: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/fmi3.so"));
 
 impl ModelFormat for Fmi2Format {
     fn name(&self) -> &'static str {
@@ -36,13 +37,13 @@ impl ModelFormat for Fmi2Format {
         "fmu"
     }
 
+    fn settable_names(&self) -> CoefficientBinding {
+        CoefficientBinding::AllNames
+    }
+
     fn write(&self, plan: &ExportPlan) -> Result<Vec<u8>, ExportError> {
         let mut entries = common_entries(plan, version2::model_description(plan));
-        // Empty for other targets: such an FMU has only the sources of its library.
-        if !LIBRARY_2.is_empty() {
-            let place = format!("binaries/linux64/{}.so", plan.identifier);
-            entries.push(ArchiveEntry::new(place, LIBRARY_2));
-        }
+        entries.extend(library_entries(FmiVersion::Two, &plan.identifier));
         entries.extend(
             SOURCES
                 .iter()
@@ -62,12 +63,13 @@ impl ModelFormat for Fmi3Format {
         "fmu"
     }
 
+    fn settable_names(&self) -> CoefficientBinding {
+        CoefficientBinding::AllNames
+    }
+
     fn write(&self, plan: &ExportPlan) -> Result<Vec<u8>, ExportError> {
         let mut entries = common_entries(plan, version3::model_description(plan));
-        if !LIBRARY_3.is_empty() {
-            let place = format!("binaries/x86_64-linux/{}.so", plan.identifier);
-            entries.push(ArchiveEntry::new(place, LIBRARY_3));
-        }
+        entries.extend(library_entries(FmiVersion::Three, &plan.identifier));
         entries.extend(
             SOURCES
                 .iter()
@@ -104,9 +106,9 @@ mod tests {
         let model = zoo.find_model("kvlcc2").unwrap();
         let law = zoo.law(&model.law).unwrap();
         let sha256 = "0".repeat(64);
-        let plan =
-            ExportPlan::new(&ExportSubject { model: &model, law, version: None, sha256 }).unwrap();
+        let subject = ExportSubject { model: &model, law, version: None, sha256 };
         for format in [&Fmi2Format as &dyn ModelFormat, &Fmi3Format] {
+            let plan = format.prepare(&subject).unwrap();
             let bytes = format.write(&plan).unwrap();
             assert!(bytes.len() > 10_000 && bytes == format.write(&plan).unwrap());
         }

@@ -5,7 +5,9 @@ use std::fmt::Write;
 use sistership_formula::{Comparison, Function};
 use sistership_simulation::tape::{ResultSlot, TapeInstruction, TapeOp};
 
-use super::variables::{self, FIRST_OUTSIDE, FIRST_STATE, distance_reference};
+use super::variables::{
+    self, FIRST_OUTSIDE, FIRST_STATE, distance_reference, first_parameter, gear_references,
+};
 use crate::export_plan::{ExportPlan, TapeOperand};
 
 /// Content of the file: whole numbers, and the bits of doubles.
@@ -14,9 +16,10 @@ pub fn resource_text(plan: &ExportPlan) -> String {
     let (tape, moving) = (listed.tape, plan.moving_states().collect::<Vec<_>>());
     let starts = variables::start_values(plan);
     // The sizes come first, so that the library can allocate its memory.
-    let counts = [starts.len(), tape.len(), tape.product_terms().len(), moving.len()];
+    let parameters = first_parameter(plan) as usize;
+    let counts = [starts.len(), tape.len(), tape.product_terms().len(), moving.len(), parameters];
     let mut lines = vec![
-        format!("sistership-fmu-2 {}", plan.sha256),
+        format!("sistership-fmu-3 {}", plan.sha256),
         join_integers(counts),
         join_integers(moving),
     ];
@@ -31,19 +34,11 @@ pub fn resource_text(plan: &ExportPlan) -> String {
     // Gear, roll and constant mass matrix.
     let flags = [plan.gear.is_some(), plan.has_roll, listed.mobility.is_some()];
     lines.push(join_integers(flags.map(usize::from)));
+    lines.push(slot_numbers(&gear_references(plan)));
     lines.push(double_bits(listed.mobility.unwrap_or_default().as_flattened()));
-    lines.push(double_bits(&gear_and_limits(plan)));
-    lines.join("\n") + "\n"
-}
-
-/// Figures of the steering gear and of the physical range, in the order of `runtime/model.c`.
-fn gear_and_limits(plan: &ExportPlan) -> [f64; 7] {
-    let gear = plan
-        .gear
-        .map_or([0.0; 3], |gear| [gear.limit_rad(), gear.rate_rad_s(), gear.time_constant_s()]);
     let most = &plan.envelope;
-    let most = [most.speed_m_s(), most.yaw_rate_rad_s(), most.roll_rad()];
-    [gear[0], gear[1], gear[2], most[0], most[1], most[2], plan.band_rad]
+    lines.push(double_bits(&[most.speed_m_s(), most.yaw_rate_rad_s(), most.roll_rad()]));
+    lines.join("\n") + "\n"
 }
 
 fn join_integers<T: ToString>(numbers: impl IntoIterator<Item = T>) -> String {

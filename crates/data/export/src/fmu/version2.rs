@@ -41,7 +41,7 @@ pub fn model_description(plan: &ExportPlan) -> String {
          </fmiModelDescription>\n",
         guid = plan.sha256,
         tool = code_revision(),
-        units = unit_elements(),
+        units = unit_elements(""),
         step = plan.step_s(),
     )
 }
@@ -54,7 +54,7 @@ fn variable_element(variable: &FmuVariable, all: &[FmuVariable]) -> String {
         }
         VariableRole::Input => "causality=\"input\" variability=\"continuous\"",
         VariableRole::Parameter => {
-            "causality=\"parameter\" variability=\"fixed\" initial=\"exact\""
+            "causality=\"parameter\" variability=\"tunable\" initial=\"exact\""
         }
         VariableRole::Output => {
             "causality=\"output\" variability=\"continuous\" initial=\"calculated\""

@@ -35,7 +35,7 @@ pub fn model_description(plan: &ExportPlan) -> String {
          </fmiModelDescription>\n",
         token = plan.sha256,
         tool = code_revision(),
-        units = unit_elements(),
+        units = unit_elements(""),
         step = plan.step_s(),
         outputs = structure(&[VariableRole::State, VariableRole::Output], "Output"),
         rates = structure(&[VariableRole::Rate], "ContinuousStateDerivative"),
@@ -51,7 +51,7 @@ fn variable_element(variable: &FmuVariable, all: &[FmuVariable]) -> String {
         }
         VariableRole::Input => "causality=\"input\" variability=\"continuous\"",
         VariableRole::Parameter => {
-            "causality=\"parameter\" variability=\"fixed\" initial=\"exact\""
+            "causality=\"parameter\" variability=\"tunable\" initial=\"exact\""
         }
         VariableRole::Output => {
             "causality=\"output\" variability=\"continuous\" initial=\"calculated\""

@@ -12,13 +12,13 @@ pub fn escape_xml(text: &str) -> String {
     single_line(&marked.replace('"', "&quot;"))
 }
 
-/// Elements of the units, with their base units.
-pub fn unit_elements() -> String {
+/// Elements of the units, with their base units; `space` is the prefix of their namespace.
+pub fn unit_elements(space: &str) -> String {
     let unit = |(name, exponents): (&str, [i32; 4])| {
         let of = ["kg", "m", "s", "rad"].into_iter().zip(exponents);
         let of: String =
             of.filter(|(_, n)| *n != 0).map(|(base, n)| format!(" {base}=\"{n}\"")).collect();
-        format!("    <Unit name=\"{name}\"><BaseUnit{of}/></Unit>\n")
+        format!("    <{space}Unit name=\"{name}\"><{space}BaseUnit{of}/></{space}Unit>\n")
     };
     UNITS.into_iter().map(unit).collect()
 }

@@ -18,7 +18,7 @@ if problems:
     sys.exit(2)
 known = {v.name for v in read_model_description(file, validate=True).modelVariables}
 states = [name for name in STATES if name in known]
-order = numpy.array([(0.0, math.radians(rudder_deg))], dtype=[("t", "f8"), ("delta_order", "f8")])
+order = numpy.array([(0.0, math.radians(rudder_deg))], dtype=[("time", "f8"), ("delta_order", "f8")])
 # FMPy says on standard output which inputs are left at their starts.
 with contextlib.redirect_stdout(sys.stderr):
     result = simulate_fmu(file, stop_time=duration_s, step_size=step_s, output_interval=step_s,

@@ -1,6 +1,7 @@
-/* Sails an FMU of FMI 2.0 under a rudder order, as an importer would, and prints its states. */
-#include <dlfcn.h>
+/* Sails an FMU of FMI 2.0 under a rudder order, as an importer would, and prints its states:
+ * LIBRARY FOLDER RUDDER_DEG DURATION_S STEP_S TOKEN EXCHANGE [REFERENCE VALUE]... */
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,35 +10,29 @@
 
 #include "headers/fmi2FunctionTypes.h"
 
+#include "dynamic.h"
+
 static void logged(void *environment, const char *name, fmi2Status status, const char *category,
     const char *message, ...)
 {
+    va_list given;
     (void)environment, (void)category;
-    fprintf(stderr, "%s: %d %s\n", name, status, message);
+    fprintf(stderr, "%s: %d ", name, status);
+    va_start(given, message);
+    vfprintf(stderr, message, given);
+    va_end(given);
+    fprintf(stderr, "\n");
 }
 
-static void *found(void *library, const char *name)
-{
-    void *function = dlsym(library, name);
-    if (!function) {
-        fprintf(stderr, "no %s\n", name);
-        exit(3);
-    }
-    return function;
-}
-
-#define FIND(name) name##TYPE *name##_ = found(library, #name)
 #define MUST(call) if ((call) != fmi2OK) return 4
 
 int main(int argc, char **argv)
 {
-    if (argc != 8)
+    if (argc < 8)
         return 5;
-    void *library = dlopen(argv[1], RTLD_NOW);
-    if (!library) {
-        fprintf(stderr, "%s\n", dlerror());
+    void *library = loaded(argv[1]);
+    if (!library)
         return 6;
-    }
     FIND(fmi2Instantiate);
     FIND(fmi2SetupExperiment);
     FIND(fmi2EnterInitializationMode);
@@ -66,6 +61,11 @@ int main(int argc, char **argv)
     MUST(fmi2SetupExperiment_(c, fmi2False, 0.0, 0.0, fmi2False, 0.0));
     MUST(fmi2EnterInitializationMode_(c));
     MUST(fmi2SetReal_(c, rudder, 1, &order));
+    for (int k = 8; k + 1 < argc; k += 2) {
+        const fmi2ValueReference reference = (fmi2ValueReference)atoi(argv[k]);
+        const double value = atof(argv[k + 1]);
+        MUST(fmi2SetReal_(c, &reference, 1, &value));
+    }
     MUST(fmi2ExitInitializationMode_(c));
     size_t n = 9;
     double x[9], k[4][9], at[9];

@@ -1,5 +1,5 @@
-/* Sails an FMU of FMI 3.0 under a rudder order, as an importer would, and prints its states. */
-#include <dlfcn.h>
+/* Sails an FMU of FMI 3.0 under a rudder order, as an importer would, and prints its states:
+ * LIBRARY FOLDER RUDDER_DEG DURATION_S STEP_S TOKEN EXCHANGE [REFERENCE VALUE]... */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,6 +9,8 @@
 
 #include "headers/fmi3FunctionTypes.h"
 
+#include "dynamic.h"
+
 static void logged(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category,
     fmi3String message)
 {
@@ -16,28 +18,15 @@ static void logged(fmi3InstanceEnvironment environment, fmi3Status status, fmi3S
     fprintf(stderr, "%d %s\n", status, message);
 }
 
-static void *found(void *library, const char *name)
-{
-    void *function = dlsym(library, name);
-    if (!function) {
-        fprintf(stderr, "no %s\n", name);
-        exit(3);
-    }
-    return function;
-}
-
-#define FIND(name) name##TYPE *name##_ = found(library, #name)
 #define MUST(call) if ((call) != fmi3OK) return 4
 
 int main(int argc, char **argv)
 {
-    if (argc != 8)
+    if (argc < 8)
         return 5;
-    void *library = dlopen(argv[1], RTLD_NOW);
-    if (!library) {
-        fprintf(stderr, "%s\n", dlerror());
+    void *library = loaded(argv[1]);
+    if (!library)
         return 6;
-    }
     FIND(fmi3InstantiateCoSimulation);
     FIND(fmi3InstantiateModelExchange);
     FIND(fmi3EnterInitializationMode);
@@ -66,6 +55,11 @@ int main(int argc, char **argv)
     const fmi3ValueReference rudder[] = {19}, states[] = {1, 2, 3, 4, 5, 6, 7, 8, 9};
     MUST(fmi3EnterInitializationMode_(c, fmi3False, 0.0, 0.0, fmi3False, 0.0));
     MUST(fmi3SetFloat64_(c, rudder, 1, &order, 1));
+    for (int k = 8; k + 1 < argc; k += 2) {
+        const fmi3ValueReference reference = (fmi3ValueReference)atoi(argv[k]);
+        const double value = atof(argv[k + 1]);
+        MUST(fmi3SetFloat64_(c, &reference, 1, &value, 1));
+    }
     MUST(fmi3ExitInitializationMode_(c));
     size_t n = 9;
     double x[9], k[4][9], at[9];

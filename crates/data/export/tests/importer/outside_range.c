@@ -1,5 +1,4 @@
 /* Sets speeds and revolutions of an FMU, of FMI 2.0 or 3.0, and prints an output at each. */
-#include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -13,17 +12,8 @@
 #include "headers/fmi3FunctionTypes.h"
 #endif
 
-static void *found(void *library, const char *name)
-{
-    void *function = dlsym(library, name);
-    if (!function) {
-        fprintf(stderr, "no %s\n", name);
-        exit(3);
-    }
-    return function;
-}
+#include "dynamic.h"
 
-#define FIND(name) name##TYPE *name##_ = found(library, #name)
 /* Zero is the status of what went well in both versions. */
 #define MUST(call) if ((call) != 0) return 4
 
@@ -31,11 +21,9 @@ int main(int argc, char **argv)
 {
     if (argc < 9)
         return 5;
-    void *library = dlopen(argv[1], RTLD_NOW);
-    if (!library) {
-        fprintf(stderr, "%s\n", dlerror());
+    void *library = loaded(argv[1]);
+    if (!library)
         return 6;
-    }
     char path[4096];
 #ifdef FMU2
     FIND(fmi2Instantiate);

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, dead_code)]
 
 pub mod programs;
+pub mod units;
 
 use sistership_export::{ExportPlan, ExportSubject, by_name};
 use sistership_model::{Model, Zoo};
@@ -67,17 +68,22 @@ pub fn ship(zoo: &Zoo, model: &Model) -> Ship {
     Ship::new(model, zoo.law(&model.law).unwrap()).unwrap()
 }
 
-pub fn plan(zoo: &Zoo, model: &Model) -> ExportPlan {
+pub fn plan(zoo: &Zoo, model: &Model, format: &str) -> ExportPlan {
     let law = zoo.law(&model.law).unwrap();
-    ExportPlan::new(&ExportSubject { model, law, version: None, sha256: "0".repeat(64) }).unwrap()
+    let subject = ExportSubject { model, law, version: None, sha256: "0".repeat(64) };
+    by_name(format).unwrap().prepare(&subject).unwrap()
+}
+
+pub fn written(zoo: &Zoo, model: &Model, format: &str) -> Vec<u8> {
+    by_name(format).unwrap().write(&plan(zoo, model, format)).unwrap()
 }
 
 pub fn identifier(zoo: &Zoo, name: &str) -> String {
-    plan(zoo, &zoo.find_model(name).unwrap()).identifier
+    plan(zoo, &zoo.find_model(name).unwrap(), "c").identifier
 }
 
 pub fn exported(zoo: &Zoo, name: &str, format: &str) -> Vec<u8> {
-    by_name(format).unwrap().write(&plan(zoo, &zoo.find_model(name).unwrap())).unwrap()
+    written(zoo, &zoo.find_model(name).unwrap(), format)
 }
 
 /// Our own simulation of it; what was sailed until it left the physical range.
