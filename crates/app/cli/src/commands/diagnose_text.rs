@@ -180,19 +180,20 @@ fn format_errors(diagnosis: &Diagnosis) -> TextTable {
 }
 
 fn format_hypotheses(hypotheses: &[HypothesisReport]) -> TextTable {
-    let mut table = TextTable::new(["hypothesis", "evidence", "held-out", "selected"]);
+    let mut table = TextTable::new(["hypothesis", "evidence", "held-out", "accepted"]);
     for hypothesis in distinct_hypotheses(hypotheses).into_iter().take(MAX_HYPOTHESES) {
         let name = if hypothesis.effects.is_empty() {
             "no effect".to_owned()
         } else {
             hypothesis.effects.join(" + ")
         };
-        let taken = if hypothesis.taken { "yes" } else { "" };
+        let refused = || format!("no: {}", hypothesis.refused.as_deref().unwrap_or("-"));
+        let taken = if hypothesis.taken { "yes".to_owned() } else { refused() };
         table.add_row([
             name,
             format_number(hypothesis.evidence),
             format_optional(hypothesis.held_out),
-            taken.to_owned(),
+            taken,
         ]);
     }
     table
