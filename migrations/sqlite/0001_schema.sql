@@ -143,7 +143,7 @@ CREATE TABLE idempotency_keys (
 CREATE INDEX idempotency_keys_by_age ON idempotency_keys (created_us);
 
 -- `fence` rises with each claim, so that a worker that lost the job cannot change it; `lost_workers` counts leases that
--- expired without a report, as that of a process does which has ended.
+-- expired without a report, as that of a process does which has ended. `small` jobs precede large ones of the same share.
 CREATE TABLE jobs (
     id               TEXT NOT NULL PRIMARY KEY,
     kind             TEXT NOT NULL,
@@ -163,12 +163,15 @@ CREATE TABLE jobs (
     finished_us      INTEGER,
     cancel_requested INTEGER NOT NULL CHECK (cancel_requested IN (0, 1)),
     lost_workers     INTEGER NOT NULL DEFAULT 0,
-    author           TEXT NOT NULL
+    author           TEXT NOT NULL,
+    small            INTEGER NOT NULL DEFAULT 0 CHECK (small IN (0, 1))
 ) STRICT;
 CREATE INDEX jobs_by_ship ON jobs (ship, id);
 CREATE INDEX jobs_to_claim ON jobs (id) WHERE state IN ('queued', 'running');
 CREATE INDEX jobs_by_kind ON jobs (kind, state, created_us);
 CREATE INDEX jobs_by_state ON jobs (state, id);
+CREATE INDEX jobs_by_author ON jobs (author, started_us);
+CREATE INDEX jobs_by_share ON jobs (author, ship, started_us);
 
 -- Report of a job, as data and as a page.
 CREATE TABLE reports (
@@ -390,7 +393,8 @@ CREATE TABLE settings (
     changed_us INTEGER NOT NULL
 ) STRICT;
 
--- Audit: every change with its author. The hash of an entry is over its fields and the hash of the entry before it. Notes
+-- Audit: every change with its author. The hash of an entry is over its fields and the hash of the entry before it;
+-- `row_sha256` is that of the protected columns of its subject. Notes
 -- on ships are entries, too, with an index of their own.
 CREATE TABLE audit (
     number          INTEGER NOT NULL PRIMARY KEY CHECK (number > 0),
@@ -401,6 +405,7 @@ CREATE TABLE audit (
     subject         TEXT NOT NULL,
     state_before    TEXT,
     state_after     TEXT,
+    row_sha256      TEXT,
     previous_sha256 TEXT NOT NULL,
     sha256          TEXT NOT NULL
 ) STRICT;
@@ -454,5 +459,5 @@ CREATE TABLE deliveries (
     delivered_us INTEGER,
     answer       TEXT
 ) STRICT;
-CREATE INDEX deliveries_due ON deliveries (due_us);
+CREATE INDEX deliveries_due ON deliveries (webhook, due_us);
 CREATE INDEX deliveries_by_webhook ON deliveries (webhook, id);

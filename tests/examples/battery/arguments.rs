@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::attack::Attack;
 use crate::place::Database;
 
 /// What the battery is told.
@@ -48,8 +49,11 @@ impl Arguments {
     }
 
     /// Whether an attack was asked for.
-    pub fn takes(&self, attack: &str) -> bool {
-        self.only.is_empty() || self.only.iter().any(|name| name == attack)
+    pub fn takes(&self, attack: &dyn Attack) -> bool {
+        match self.only.is_empty() {
+            true => self.minutes >= attack.least_minutes(),
+            false => self.only.iter().any(|name| name == attack.name()),
+        }
     }
 
     fn set(&mut self, flag: &str, value: &str) -> Result<(), String> {

@@ -29,6 +29,11 @@ pub trait Attack {
         1.0
     }
 
+    /// Minutes of a run from which it is part of it where no attack is named.
+    fn least_minutes(&self) -> f64 {
+        0.0
+    }
+
     /// Whether its processes work on jobs, which have a memory budget of their own.
     fn works(&self) -> bool {
         false

@@ -13,6 +13,7 @@ mod attacks;
 mod client;
 mod documents;
 mod faults;
+mod gate;
 mod ledger;
 mod place;
 mod process;
@@ -64,7 +65,7 @@ async fn run(arguments: Arguments) -> Result<bool, Failure> {
     for &database in &arguments.databases {
         let mut left = Duration::from_secs_f64(60.0 * arguments.minutes);
         let attacks: Vec<_> =
-            attacks::all().into_iter().filter(|attack| arguments.takes(attack.name())).collect();
+            attacks::all().into_iter().filter(|attack| arguments.takes(attack.as_ref())).collect();
         for (place, attack) in attacks.iter().enumerate() {
             let shares: f64 = attacks[place..].iter().map(|attack| attack.share()).sum();
             let part = left.mul_f64(attack.share() / shares);

@@ -52,6 +52,12 @@ pub struct Place {
     pub data: PathBuf,
     /// Where it counts.
     pub tally: Arc<Tally>,
+    /// The URL of the database: its own, or that of a gate before it.
+    pub url: String,
+    /// Arguments that name a bucket; empty for objects in the data folder.
+    pub objects: Vec<OsString>,
+    /// The environment of every process.
+    pub environment: Vec<(&'static str, &'static str)>,
 }
 
 /// What a command of the program came to.
@@ -76,7 +82,8 @@ impl Place {
     /// A store on a database, with its data in the database's folder.
     pub fn of(database: TestDatabase, tally: Arc<Tally>) -> Self {
         let data = database.folder.path().join("data");
-        Self { database, data, tally }
+        let url = database.url.clone();
+        Self { database, data, tally, url, objects: Vec::new(), environment: Vec::new() }
     }
 
     /// A folder that goes with the store.
@@ -87,6 +94,7 @@ impl Place {
     /// How a server of it is started.
     pub fn start(&self) -> Start {
         Start::new(self.store_arguments(), self.folder().to_owned(), Arc::clone(&self.tally))
+            .environment(self.environment.iter().copied())
     }
 
     /// A server of it that leaves jobs alone.
@@ -107,8 +115,9 @@ impl Place {
 
     /// Arguments by which any command opens it.
     pub fn store_arguments(&self) -> Vec<OsString> {
-        let url = self.database.url.clone();
-        vec!["--database-url".into(), url.into(), "--data-dir".into(), self.data.clone().into()]
+        let url = self.url.clone().into();
+        let store = ["--database-url".into(), url, "--data-dir".into(), self.data.clone().into()];
+        store.into_iter().chain(self.objects.iter().cloned()).collect()
     }
 
     /// Runs a command on it to its end.
@@ -118,6 +127,7 @@ impl Place {
     pub async fn command(&self, words: &[&str]) -> Result<Outcome, Failure> {
         let mut command = tokio::process::Command::new(crate::process::program());
         command.args(words).arg("--json").args(self.store_arguments()).env_remove("SISTERSHIP_ZOO");
+        command.envs(self.environment.iter().copied());
         let output = command.kill_on_drop(true).output().await?;
         let json = serde_json::from_slice(&output.stdout).unwrap_or(Value::Null);
         let errors = String::from_utf8_lossy(&output.stderr).trim().to_owned();

@@ -24,6 +24,7 @@ BulkRefinementRequest = TypedDict('BulkRefinementRequest', {'chunk_ships': 'Unio
 BulkSettings = TypedDict('BulkSettings', {'difference_s': 'Union[float, None]', 'lambda_count': 'int', 'lambda_max': 'float', 'lambda_min': 'float'}, total=False)
 BulkStanding = TypedDict('BulkStanding', {'chunks': 'Dict[str, int]', 'done': 'int', 'left_s': 'Union[float, None]', 'outcomes': 'Dict[str, int]', 'progress': 'float', 'ships': 'int', 'ships_per_s': 'Union[float, None]', 'state': 'str'}, total=False)
 BulkView = Any  # A refinement of all members of a family.
+CancelledJobs = TypedDict('CancelledJobs', {'cancelled': 'List[str]'}, total=True)
 Champion = TypedDict('Champion', {'model': 'Dict[str, Any]', 'ship': 'str', 'version': 'VersionHead'}, total=True)
 Channel = Any  # A quantity that a trial may record besides time. Ship-fixed velocities
 CmaEs = TypedDict('CmaEs', {'absolute': 'float', 'box_width': 'float', 'cpu_s': 'Union[float, None]', 'deviation': 'float', 'evaluations': 'int', 'fold_share': 'float', 'integration': 'IntegrationMethod', 'largest_population': 'int', 'population': 'int', 'seed': 'int', 'spread': 'float', 'wall_s': 'Union[float, None]'}, total=False)
@@ -48,7 +49,7 @@ Discrepancy = TypedDict('Discrepancy', {'deviation': 'float', 'time_s': 'float',
 Drift = TypedDict('Drift', {'ratio': 'Dict[str, float]', 'reason': 'Union[str, None]', 'ship': 'str', 'trials': 'List[TrialResidual]', 'version': 'int', 'worst': 'Union[float, None]'}, total=False)
 EffectLibraryHead = TypedDict('EffectLibraryHead', {'created_us': 'int', 'sha256': 'str'}, total=True)
 EffectParameterFile = TypedDict('EffectParameterFile', {'absent': 'float', 'bounds': 'List[float]', 'meaning': 'str', 'mirror': 'Mirror', 'prior': 'PriorFile', 'shape': 'bool', 'start': 'Union[float, None]', 'unit': 'str'}, total=False)
-EntryView = TypedDict('EntryView', {'action': 'str', 'actor': 'str', 'after': 'Union[Dict[str, Any], None]', 'at_us': 'int', 'before': 'Union[Dict[str, Any], None]', 'number': 'int', 'origin': 'str', 'previous_sha256': 'str', 'sha256': 'str', 'subject': 'str'}, total=False)
+EntryView = TypedDict('EntryView', {'action': 'str', 'actor': 'str', 'after': 'Union[Dict[str, Any], None]', 'at_us': 'int', 'before': 'Union[Dict[str, Any], None]', 'number': 'int', 'origin': 'str', 'previous_sha256': 'str', 'row_sha256': 'Union[str, None]', 'sha256': 'str', 'subject': 'str'}, total=False)
 Estimate = TypedDict('Estimate', {'standard_error': 'Union[float, None]', 'value': 'float'}, total=False)
 Estimator = Any  # The estimator.
 FalseAlarmLevel = TypedDict('FalseAlarmLevel', {'each': 'float', 'together': 'float'}, total=True)
@@ -70,7 +71,7 @@ InitialState = TypedDict('InitialState', {'p_rad_s': 'float', 'phi_rad': 'float'
 InputsRequest = TypedDict('InputsRequest', {'delta_rad': 'List[float]', 'n_rps': 'Union[List[float], None]', 'start': 'InitialState', 't_s': 'List[float]'}, total=False)
 InstrumentFit = TypedDict('InstrumentFit', {'deviation_by_scatter': 'float', 'drift': 'float'}, total=True)
 IntegrationMethod = Any  # An integration method.
-JobView = TypedDict('JobView', {'attempt': 'int', 'cancel_requested': 'bool', 'created_us': 'int', 'error': 'Union[str, None]', 'finished_us': 'Union[int, None]', 'id': 'str', 'kind': 'str', 'message': 'str', 'progress': 'float', 'request': 'Dict[str, Any]', 'result': 'Union[Dict[str, Any], None]', 'ship': 'Union[str, None]', 'started_us': 'Union[int, None]', 'state': 'str'}, total=False)
+JobView = TypedDict('JobView', {'attempt': 'int', 'author': 'str', 'cancel_requested': 'bool', 'created_us': 'int', 'error': 'Union[str, None]', 'finished_us': 'Union[int, None]', 'id': 'str', 'kind': 'str', 'message': 'str', 'place': 'Union[int, None]', 'progress': 'float', 'request': 'Dict[str, Any]', 'result': 'Union[Dict[str, Any], None]', 'ship': 'Union[str, None]', 'started_us': 'Union[int, None]', 'state': 'str'}, total=False)
 KeyRequest = TypedDict('KeyRequest', {'expires_us': 'Union[int, None]', 'roles': 'List[RoleRequest]', 'title': 'str', 'user': 'Union[str, None]'}, total=False)
 KeyView = TypedDict('KeyView', {'created_us': 'int', 'expires_us': 'Union[int, None]', 'last_used_us': 'Union[int, None]', 'prefix': 'str', 'revoked_us': 'Union[int, None]', 'roles': 'List[RoleView]', 'title': 'str', 'user': 'Union[str, None]'}, total=False)
 LawHead = TypedDict('LawHead', {'created_us': 'int', 'name': 'str', 'sha256': 'str'}, total=True)
@@ -298,6 +299,10 @@ class Core:
     def post_families_family_refinements(self, family: str, body: BulkRefinementRequest, *, idempotency_key: Optional[str] = None) -> BulkView:
         """Refine every member of a family from the statistics of its trials."""
         return self.http.json('POST', f'/v1/families/{family}/refinements', headers={'Idempotency-Key': idempotency_key}, json=body)
+
+    def delete_jobs(self, *, ship: Optional[str] = None) -> CancelledJobs:
+        """Cancel all of the caller's jobs that wait or run, of one ship if it is named."""
+        return self.http.json('DELETE', '/v1/jobs', query={'ship': ship})
 
     def get_jobs(self, *, ship: Optional[str] = None, state: Optional[Literal['queued', 'running', 'succeeded', 'failed', 'cancelled']] = None, limit: Optional[int] = None, after: Optional[str] = None) -> Listing_JobView:
         """List the jobs, the latest first."""

@@ -4,21 +4,23 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use sistership_model::{Law, Vessel, Zoo};
-use sistership_store::{ObjectStorage, Store};
-use tokio::sync::{RwLock, Semaphore};
+use sistership_store::{Actor, ObjectStorage, Store};
+use tokio::sync::RwLock;
 
 use crate::accounts::{Accounts, Credentials};
+use crate::compute_pool::ComputePool;
 use crate::config::{Config, LeaseSettings, Limits};
 use crate::metrics::ServerMetrics;
 use crate::problem::{Problem, Result};
 use sistership_auth::openid::OpenIdProvider;
 use sistership_jobs::archive::Archive;
-use sistership_jobs::budget::{self, MemoryBudget, RequestMemory};
+use sistership_jobs::budget::{MemoryBudget, RequestMemory};
 use sistership_jobs::catalogue::{KnownLaw, MAX_COMPARED_SHIPS, ZooCache};
 use sistership_jobs::predictions::session::SessionTable;
 use sistership_listener::{KeyThrottle, StopSignal, TrustedProxies};
 use sistership_pages::ship::SIMILAR;
 use sistership_pages::version::ManoeuvreCache;
+use sistership_web_support::acting::current_actor;
 use sistership_web_support::answers::AnswerCache;
 use sistership_web_support::api_key::FormToken;
 use sistership_web_support::drafts::DraftTable;
@@ -42,7 +44,8 @@ struct SharedState {
     leases: LeaseSettings,
     spool: Arc<SpoolFolder>,
     no_room: AtomicBool,
-    seats: Arc<Semaphore>,
+    numerics: ComputePool,
+    files: ComputePool,
     turns: Arc<RwLock<()>>,
     metrics: ServerMetrics,
     answers: AnswerCache,
@@ -73,13 +76,10 @@ impl App {
         catalogue: ZooCache,
         stopping: StopSignal,
     ) -> sistership_auth::openid::Result<Self> {
-        // As many numerical tasks and password hashes run at a time as there are cores; both take
-        // their permits from the same semaphore.
-        let seats = std::thread::available_parallelism().map_or(2, std::num::NonZero::get);
-        let seats = Arc::new(Semaphore::new(seats));
+        let cores = std::thread::available_parallelism().map_or(2, std::num::NonZero::get);
         let provider = config.openid.clone().map(OpenIdProvider::new).transpose()?;
         let (key, people) = (config.api_key.as_deref(), config.accounts);
-        let credentials = Credentials::new(key, people, provider, Arc::clone(&seats));
+        let credentials = Credentials::new(key, people, provider);
         let inner = SharedState {
             catalogue,
             form_token: FormToken::from_key(credentials.server_key()),
@@ -92,7 +92,9 @@ impl App {
             leases: config.leases,
             spool: Arc::new(SpoolFolder::with_root(config.data_dir.join("uploads"))),
             no_room: AtomicBool::new(false),
-            seats,
+            numerics: ComputePool::new(cores),
+            // Reading a file may take seconds; it leaves half of the cores to other requests.
+            files: ComputePool::new(cores.div_ceil(2)),
             turns: Arc::default(),
             metrics: ServerMetrics::default(),
             answers: AnswerCache::default(),
@@ -253,12 +255,19 @@ impl App {
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T> {
-        let seat = Arc::clone(&self.0.seats).acquire_owned().await.map_err(Problem::internal)?;
-        let task = tokio::task::spawn_blocking(budget::with_request_memory(move || {
-            // Held until the work ends, also if the request that waits for it is dropped.
-            let _seat = seat;
-            work()
-        }));
-        task.await.map_err(Problem::internal)
+        self.0.numerics.run(&caller_name(), work).await
     }
+
+    /// Reads uploaded files on a blocking thread.
+    pub(crate) async fn read_files<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> Result<T> {
+        self.0.files.run(&caller_name(), work).await
+    }
+}
+
+/// Name under which a task waits for its turn: that of the caller, or of the author of the job.
+fn caller_name() -> String {
+    current_actor().map_or_else(|| Actor::current().name, |acting| acting.principal.name.clone())
 }

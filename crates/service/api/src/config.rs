@@ -44,7 +44,8 @@ pub struct Config {
     pub limits: Limits,
     /// Timing of the leases by which workers hold jobs.
     pub leases: LeaseSettings,
-    /// Number of jobs that this process runs at a time; 0 leaves them to other processes.
+    /// Number of jobs that this process runs at a time, and one small one besides; 0 leaves them to
+    /// other processes.
     pub workers: usize,
 }
 
@@ -82,6 +83,8 @@ pub struct Limits {
     pub sessions: SessionLimits,
     /// Number of trials of one refinement.
     pub refinement_trials: usize,
+    /// Number of jobs of one person that wait or run at a time.
+    pub jobs_per_person: u32,
     /// Time that a stopping server waits for work in progress.
     pub stop_time: Duration,
     /// Size of a YAML document, bytes: its tree is nearly a hundred times as large, see
@@ -210,6 +213,7 @@ impl Default for Limits {
             prediction_samples: 200_000,
             sessions: SessionLimits::default(),
             refinement_trials: 1000,
+            jobs_per_person: 1000,
             stop_time: connections.stop_time,
             yaml_bytes: 1 << 20,
             request_memory: 256 << 20,

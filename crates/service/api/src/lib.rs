@@ -6,6 +6,7 @@
 
 mod accounts;
 mod app;
+mod compute_pool;
 mod config;
 mod jobs;
 #[cfg(test)]

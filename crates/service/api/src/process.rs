@@ -8,7 +8,7 @@ use tokio::task::JoinSet;
 
 use crate::app::App;
 use crate::config::Config;
-use crate::jobs::Worker;
+use crate::jobs::{JobClass, Worker};
 use crate::search_index;
 use crate::start_error::StartError;
 use crate::tidy;
@@ -17,6 +17,9 @@ use sistership_jobs::catalogue::ZooCache;
 use sistership_jobs::seed;
 use sistership_jobs::webhooks::DeliverySettings;
 use sistership_listener::StopSignal;
+
+/// Time that the start waits for the maintenance.
+const TIDY_TIME: Duration = Duration::from_secs(5);
 
 /// A process that runs until it is [stopped](Self::stop) or dropped.
 #[derive(Debug)]
@@ -37,7 +40,11 @@ impl Process {
         seed::seed_zoo(&archive.store, &catalogue).await?;
         let (stop, stopping) = StopSignal::new();
         let app = App::new(config, archive.clone(), catalogue, stopping)?;
-        tidy::run_once(&app).await;
+        // What does not answer in time is left to the next run: the server answers all that it can
+        // without it.
+        if tokio::time::timeout(TIDY_TIME, tidy::run_once(&app)).await.is_err() {
+            tracing::warn!("the maintenance at the start did not end in time");
+        }
         let mut tasks = JoinSet::new();
         tasks.spawn(tidy::run_loop(app.clone()));
         if indexes {
@@ -45,7 +52,11 @@ impl Process {
             tasks.spawn(deliver_webhooks(app.clone()));
         }
         for _ in 0..config.workers {
-            tasks.spawn(Worker::new(app.clone()).run());
+            tasks.spawn(Worker::new(app.clone(), JobClass::Any).run());
+        }
+        // Small jobs have a worker that no large one can occupy.
+        if config.workers > 0 {
+            tasks.spawn(Worker::new(app.clone(), JobClass::Small).run());
         }
         Ok((Self { archive, tasks, stop, bound: config.stop_deadline() }, app))
     }

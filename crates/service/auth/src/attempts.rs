@@ -89,6 +89,11 @@ impl FailedAttempts {
         tables.known.insert(pair_key(attempt), now);
     }
 
+    /// Returns true if the name has signed in from the client before.
+    pub fn is_known(&self, attempt: SignInAttempt<'_>) -> bool {
+        self.lock_tables().known.contains_key(&pair_key(attempt))
+    }
+
     fn lock_tables(&self) -> MutexGuard<'_, AttemptTables> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -18,7 +18,7 @@ macro_rules! entries {
     ($which:literal) => {
         same(concat!(
             "SELECT number, at_us, actor, origin, action, subject, state_before, state_after, \
-             previous_sha256, sha256 FROM audit WHERE ",
+             row_sha256, previous_sha256, sha256 FROM audit WHERE ",
             $which
         ))
     };
@@ -89,8 +89,13 @@ impl AuditLog<'_> {
     }
 
     /// Verifies the hash chain: finds entries that were changed, removed, inserted, or cut off at
-    /// the end. Entries may be added meanwhile. Returns also the number of entries.
-    pub async fn find_faults(&self) -> Result<(i64, Vec<IntegrityFault>)> {
+    /// the end. Entries may be added meanwhile. `kept` is a head that was kept elsewhere: its entry
+    /// must be there unchanged, which also detects a chain that was computed anew or cut with its
+    /// head. Returns also the number of entries.
+    pub async fn find_faults(
+        &self,
+        kept: Option<&AuditHead>,
+    ) -> Result<(i64, Vec<IntegrityFault>)> {
         let head = self.chain_head().await?;
         let (mut faults, mut last) = (Vec::new(), AuditHead { number: 0, sha256: String::new() });
         loop {
@@ -106,9 +111,15 @@ impl AuditLog<'_> {
                     entry_fault(&last, &entry).map(|message| chain_fault(entry.number, message)),
                 );
                 last = AuditHead { number: entry.number, sha256: entry.sha256 };
+                if let Some(kept) = kept.filter(|kept| kept.number == last.number) {
+                    faults.extend(kept_fault(kept, &last));
+                }
             }
         }
         faults.extend(self.check_end(&head, &last).await?);
+        if let Some(kept) = kept.filter(|kept| kept.number > last.number) {
+            faults.extend(kept_fault(kept, &last));
+        }
         Ok((head.number, faults))
     }
 
@@ -156,6 +167,16 @@ fn entry_fault(last: &AuditHead, entry: &AuditEntry) -> Option<String> {
             entry.sha256
         )
     })
+}
+
+/// Returns the fault of a chain that does not have the entry of a head that was kept elsewhere.
+fn kept_fault(kept: &AuditHead, last: &AuditHead) -> Option<IntegrityFault> {
+    let message = match (kept.number > last.number, kept.sha256 == last.sha256) {
+        (true, _) => format!("is missing: the last entry is number {}", last.number),
+        (false, false) => "is not the one whose hash was kept".to_owned(),
+        (false, true) => return None,
+    };
+    Some(IntegrityFault::new("audit-head", format!("audit entry {}", kept.number), message))
 }
 
 fn chain_fault(number: i64, message: String) -> IntegrityFault {

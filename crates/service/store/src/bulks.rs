@@ -164,7 +164,8 @@ impl BulkRepository<'_> {
             created_us: self.0.now_us()];
         let bulk: FamilyRefinement = tx.fetch_one(INSERT, values).await?;
         for (number, ships) in (1..).zip(chunks) {
-            let new = NewJob { kind: kind.to_owned(), ship: None, request: chunk(&id, ships) };
+            let request = chunk(&id, ships);
+            let new = NewJob { kind: kind.to_owned(), ship: None, request, small: false };
             let job = jobs::insert_job(self.0, &mut tx, &new).await?;
             tx.execute(CHUNK, args![bulk: &id, number: number, job: &job.id]).await?;
         }

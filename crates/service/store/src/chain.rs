@@ -7,6 +7,7 @@ use crate::connections::DatabaseTransaction;
 use crate::entry::NewAuditEntry;
 use crate::error::Result;
 use crate::record::record;
+use crate::row_seal;
 use crate::statements::{same, statements};
 
 statements! {
@@ -14,7 +15,8 @@ statements! {
     TAKE = same("INSERT INTO audit_head (one, number, sha256) VALUES (1, $1, '') \
         ON CONFLICT (one) DO UPDATE SET number = audit_head.number + $1 RETURNING number, sha256");
     ENTER = same("INSERT INTO audit (number, at_us, actor, origin, action, subject, state_before, \
-        state_after, previous_sha256, sha256) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)");
+        state_after, row_sha256, previous_sha256, sha256) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, \
+        $9, $10, $11)");
     LAST = same("UPDATE audit_head SET sha256 = $1 WHERE one = 1");
 }
 
@@ -40,11 +42,13 @@ pub(crate) async fn append_entries(
     let AuditHead { number, mut sha256 } = tx.fetch_one(TAKE, args![count: count]).await?;
     // `number` is the last one reserved; the first one of this transaction is `number - count + 1`.
     for (number, entry) in (number - count + 1..).zip(entries) {
-        let entry = entry.with_number(number, sha256);
+        // Under the lock of the head, so that seals follow each other as the changes do.
+        let seal = row_seal::seal_subject(tx, &entry.subject).await?;
+        let entry = entry.with_number(number, seal, sha256);
         let values = args![number: number, at_us: entry.at_us, actor: &entry.actor,
             origin: &entry.origin,
             action: &entry.action, subject: &entry.subject, state_before: &entry.state_before,
-            state_after: &entry.state_after, previous_sha256: &entry.previous_sha256,
+            state_after: &entry.state_after, row_sha256: &entry.row_sha256, previous_sha256: &entry.previous_sha256,
             sha256: &entry.sha256];
         tx.execute(ENTER, values).await?;
         // The next entry refers to this hash.

@@ -36,6 +36,9 @@ record! {
         pub state_before: Option<String>,
         /// State of the subject after, JSON; none if it no longer exists.
         pub state_after: Option<String>,
+        /// SHA-256 of the protected columns of the subject after the change, see
+        /// [`crate::row_seal`].
+        pub row_sha256: Option<String>,
         /// The hash of the entry before; empty for the first.
         pub previous_sha256: String,
         /// The hash of the fields above.
@@ -57,8 +60,13 @@ impl NewAuditEntry {
         Self { at_us, actor: Actor::current(), action, subject, before, after }
     }
 
-    /// Returns the entry with its number, the hash of its predecessor, and its own hash.
-    pub(crate) fn with_number(self, number: i64, previous_sha256: String) -> AuditEntry {
+    /// Returns the entry with its number, the seal of its row, the hash of its predecessor, and its own hash.
+    pub(crate) fn with_number(
+        self,
+        number: i64,
+        row_sha256: Option<String>,
+        previous_sha256: String,
+    ) -> AuditEntry {
         let mut entry = AuditEntry {
             number,
             at_us: self.at_us,
@@ -68,6 +76,7 @@ impl NewAuditEntry {
             subject: self.subject,
             state_before: self.before,
             state_after: self.after,
+            row_sha256,
             previous_sha256,
             sha256: String::new(),
         };
@@ -90,6 +99,7 @@ impl AuditEntry {
             self.subject,
             self.state_before,
             self.state_after,
+            self.row_sha256,
             self.previous_sha256,
         ]);
         sha256_hex(fields.to_string().as_bytes())
@@ -104,9 +114,9 @@ mod tests {
     fn every_field_is_in_the_hash() {
         let after = Some(serde_json::json!({ "version": 2 }));
         let entry = NewAuditEntry::new(7, "alias.move", "alias:a/b".into(), None, after);
-        let entry = entry.with_number(3, "x".into());
+        let entry = entry.with_number(3, None, "x".into());
         assert_eq!(entry.sha256, entry.content_hash());
-        let changes: [fn(&mut AuditEntry); 9] = [
+        let changes: [fn(&mut AuditEntry); 10] = [
             |entry| entry.number += 1,
             |entry| entry.at_us += 1,
             |entry| entry.actor.push('a'),
@@ -115,6 +125,7 @@ mod tests {
             |entry| entry.subject.push('a'),
             |entry| entry.state_before = Some(String::new()),
             |entry| entry.state_after = None,
+            |entry| entry.row_sha256 = Some(String::new()),
             |entry| entry.previous_sha256.push('a'),
         ];
         for change in changes {

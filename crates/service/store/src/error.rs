@@ -35,6 +35,12 @@ pub enum StoreError {
         /// Reason of the refusal, and the role that is allowed to do it.
         message: String,
     },
+    /// The present actor has as many of these as it may have (429).
+    #[error("{message}")]
+    QuotaExceeded {
+        /// The number, the limit, and how to get below it.
+        message: String,
+    },
     /// The caller has seen an older state than the present one (412).
     #[error(
         "{kind} `{id}` is at {}, which is not the revision that the request expects",

@@ -13,7 +13,7 @@ macro_rules! job {
             $before,
             " id, kind, ship, request, state, progress, message, result, error, attempt, fence, \
              lease_until_us, worker, created_us, started_us, finished_us, cancel_requested, \
-             lost_workers, author ",
+             lost_workers, author, small ",
             $after
         )
     };
@@ -121,6 +121,8 @@ record! {
         pub lost_workers: i64,
         /// Author of the request, as the audit names it.
         pub author: String,
+        /// True for a job of seconds, which precedes large ones of its author.
+        pub small: bool,
     }
 }
 
@@ -147,6 +149,8 @@ pub struct NewJob {
     pub ship: Option<String>,
     /// Request, JSON.
     pub request: String,
+    /// True for a job of seconds, which precedes large ones of its author.
+    pub small: bool,
 }
 
 /// Selection of jobs.

@@ -1,6 +1,6 @@
 //! Jobs from the side of the requester; `work.rs` has the side of the workers.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::actor::Actor;
 use crate::arguments::{StatementArgs, args};
@@ -10,13 +10,14 @@ use crate::error::{Result, StoreError};
 use crate::job::{Job, JobCount, JobFilter, JobState, NewJob, job};
 use crate::page::{ListPage, PageRequest};
 use crate::queue_signal::QueueWatch;
-use crate::statements::{Statement, same, statements};
+use crate::record::RowCount;
+use crate::statements::{Statement, pair, same, statements};
 use crate::store::Store;
 
 statements! {
     INSERT = same(job!("INSERT INTO jobs (id, kind, ship, request, state, progress, message, \
-        attempt, fence, created_us, cancel_requested, author) VALUES ($1, $2, $3, $4, 'queued', 0, \
-        '', 0, 0, $5, 0, $6) RETURNING", ""));
+        attempt, fence, created_us, cancel_requested, author, small) VALUES ($1, $2, $3, $4, \
+        'queued', 0, '', 0, 0, $5, 0, $6, $7) RETURNING", ""));
     GET = same(job!("SELECT", "FROM jobs WHERE id = $1"));
     LIST = same(job!("SELECT", "FROM jobs WHERE id < COALESCE($1, '~') ORDER BY id DESC LIMIT $2"));
     // The cast gives PostgreSQL the type of a parameter that is only compared with NULL.
@@ -31,6 +32,17 @@ statements! {
         finished_us = CASE WHEN state = 'queued' THEN $2 ELSE finished_us END, \
         state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END \
         WHERE id = $1 AND state IN ('queued', 'running') RETURNING", ""));
+    CANCEL_ALL = same(job!("UPDATE jobs SET cancel_requested = 1, \
+        finished_us = CASE WHEN state = 'queued' THEN $2 ELSE finished_us END, \
+        state = CASE WHEN state = 'queued' THEN 'cancelled' ELSE state END \
+        WHERE state IN ('queued', 'running') AND author = $1 \
+        AND (CAST($3 AS TEXT) IS NULL OR ship = $3) RETURNING", ""));
+    // The jobs of an author are counted one request after the other; on SQLite the write lock of
+    // the transaction does so.
+    LOCK_AUTHOR = pair("SELECT 1 AS rows WHERE $1 IS NULL",
+        "SELECT 1::BIGINT AS rows FROM (SELECT pg_advisory_xact_lock(hashtextextended($1, 0))) AS held");
+    PENDING = same("SELECT COUNT(*) AS rows FROM jobs WHERE state IN ('queued', 'running') \
+        AND author = $1 AND ship IS NOT NULL");
     // Attempts and lost workers are reset, as for a new job; the fence stays and keeps old workers
     // out.
     RETRY = same(job!("UPDATE jobs SET state = 'queued', attempt = 0, lost_workers = 0, progress = \
@@ -62,6 +74,41 @@ impl JobRepository<'_> {
         let job = insert_job(self.0, &mut tx, new).await?;
         tx.commit().await?;
         Ok(job)
+    }
+
+    /// Queues a job of a ship, unless its author has `most` jobs already that wait or run.
+    pub async fn enqueue_within(&self, new: &NewJob, most: i64) -> Result<Job> {
+        let mut tx = self.0.begin().await?;
+        let author = Actor::current().name;
+        tx.fetch_optional::<RowCount>(LOCK_AUTHOR, args![author: &author]).await?;
+        let pending: RowCount = tx.fetch_one(PENDING, args![author: &author]).await?;
+        if pending.rows >= most {
+            return Err(StoreError::QuotaExceeded {
+                message: format!(
+                    "{} jobs of `{author}` wait or run, and no more than {most} may; wait until \
+                     some have ended, or cancel them: DELETE /v1/jobs cancels all of yours",
+                    pending.rows
+                ),
+            });
+        }
+        let job = insert_job(self.0, &mut tx, new).await?;
+        tx.commit().await?;
+        Ok(job)
+    }
+
+    /// Cancels the present author's jobs, of one ship if it is given; returns those that waited or
+    /// ran.
+    pub async fn cancel_own(&self, ship: Option<&str>) -> Result<Vec<Job>> {
+        let (author, now) = (Actor::current().name, self.0.now_us());
+        let mut tx = self.0.begin().await?;
+        let values = args![author: &author, finished_us: now, ship: ship];
+        let jobs: Vec<Job> = tx.fetch_all(CANCEL_ALL, values).await?;
+        for job in &jobs {
+            let after = audit_state(job);
+            tx.record_audit_event(now, "job.cancel", audit_subject(&job.id), None, Some(after));
+        }
+        tx.commit().await?;
+        Ok(jobs)
     }
 
     /// Returns the job of an id.
@@ -138,8 +185,7 @@ impl JobRepository<'_> {
             let state = find_job(&mut tx, id).await?.state;
             return Err(StoreError::conflict("job", id, format!("is {state}; {rule}")));
         };
-        let after =
-            json!({ "state": job.state.as_str(), "cancel_requested": job.cancel_requested });
+        let after = audit_state(&job);
         tx.record_audit_event(self.0.now_us(), action, audit_subject(id), None, Some(after));
         if job.state == JobState::Queued {
             tx.mark_queued();
@@ -147,6 +193,11 @@ impl JobRepository<'_> {
         tx.commit().await?;
         Ok(job)
     }
+}
+
+/// Returns the state of a job as audit entries have it.
+fn audit_state(job: &Job) -> Value {
+    json!({ "state": job.state.as_str(), "cancel_requested": job.cancel_requested })
 }
 
 /// Returns the subject of audit entries about a job.
@@ -164,7 +215,7 @@ pub(crate) async fn insert_job(
     checks::check_json("request", &new.request)?;
     let (id, now, author) = (store.new_id(), store.now_us(), Actor::current().name);
     let values = args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request,
-        created_us: now, author: &author];
+        created_us: now, author: &author, small: i64::from(new.small)];
     let job = tx.fetch_one(INSERT, values).await?;
     tx.mark_queued();
     let after = json!({ "kind": new.kind, "ship": new.ship });

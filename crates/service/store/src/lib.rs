@@ -49,10 +49,13 @@ mod objects_place;
 mod overviews;
 mod page;
 mod postgres_pool;
+mod queue_order;
 mod queue_signal;
 mod record;
 mod reports;
 mod reserve;
+mod row_seal;
+mod seal_check;
 mod search;
 mod search_index;
 mod sessions;
@@ -109,6 +112,7 @@ pub use objects_error::ObjectsError;
 pub use objects_place::{ObjectsPlace, S3Place, provide_cryptography};
 pub use overviews::ShipOverview;
 pub use page::{ListPage, MAX_LIMIT, PageRequest, read_all_pages, visit_pages};
+pub use queue_order::QueuePlace;
 pub use queue_signal::QueueWatch;
 pub use reports::{NewReport, Report, ReportHead, ReportRepository};
 pub use search::{
@@ -133,4 +137,4 @@ pub use webhooks::{
     CHAMPION_MOVED, DIAGNOSIS_FAILED, DRIFT, Delivery, EVENTS, NewWebhook, Webhook,
     WebhookRepository,
 };
-pub use work::{JobClaim, MAX_LOST_WORKERS};
+pub use work::{JobClaim, MAX_LOST_WORKERS, WorkerClaim};

@@ -51,14 +51,15 @@ impl ObjectStorage {
     /// Writes the marker that [`health`](Self::health) looks for, unless it exists: a folder that
     /// is no longer mounted does not have it.
     pub async fn write_marker(&self) -> Result<()> {
-        if self.store.head(&ObjectPath::from(MARKER)).await.is_ok() {
-            return Ok(());
-        }
-        let about = PutPayload::from_static(
-            b"The objects of a Sistership store, named by the SHA-256 of their bytes.\n",
-        );
-        self.store.put(&ObjectPath::from(MARKER), about).await.map_err(ObjectsError::from)?;
-        Ok(())
+        let (mark, about) = (ObjectPath::from(MARKER), PutPayload::from_static(ABOUT));
+        let written = async {
+            match self.store.head(&mark).await {
+                Ok(_) => Ok(()),
+                Err(_) => self.store.put(&mark, about).await.map(drop),
+            }
+        };
+        let written = tokio::time::timeout(MARKER_WRITE_TIMEOUT, written).await;
+        Ok(written.map_err(ObjectsError::from)?.map_err(ObjectsError::from)?)
     }
 
     /// Checks that the store answers in time and is the one that was [marked](Self::mark).
@@ -87,8 +88,8 @@ impl ObjectStorage {
     pub async fn get(&self, key: &str) -> Result<Bytes> {
         let at = object_path(key)?;
         // Two deadlines: for the head of the answer, then for the bytes by their number.
-        let found = tokio::time::timeout(ANSWER_TIMEOUT, self.store.get(&at)).await;
-        let found = found.map_err(ObjectsError::from)?.map_err(|error| object_error(key, error))?;
+        let found = answer_in_time(self.store.get(&at)).await?;
+        let found = found.map_err(|error| object_error(key, error))?;
         let size = usize::try_from(found.meta.size).unwrap_or(usize::MAX);
         let bytes = tokio::time::timeout(transfer_timeout(size), found.bytes()).await;
         let bytes = bytes.map_err(ObjectsError::from)?.map_err(|error| object_error(key, error))?;
@@ -105,8 +106,8 @@ impl ObjectStorage {
     /// # Errors
     /// Returns an error if there is no such object, or the store fails.
     pub async fn get_stream(&self, key: &str) -> Result<(u64, BoxStream<'static, Result<Bytes>>)> {
-        let found =
-            self.store.get(&object_path(key)?).await.map_err(|error| object_error(key, error))?;
+        let found = answer_in_time(self.store.get(&object_path(key)?)).await?;
+        let found = found.map_err(|error| object_error(key, error))?;
         let (size, key) = (found.meta.size, key.to_owned());
         Ok((size, found.into_stream().map_err(move |error| object_error(&key, error)).boxed()))
     }
@@ -114,7 +115,7 @@ impl ObjectStorage {
     /// Removes the object of a key, if it exists. The caller must be sure that no row refers to it,
     /// see [`crate::Store::remove_unreferred`].
     pub(crate) async fn remove_object(&self, key: String) -> Result<()> {
-        match self.store.delete(&object_path(&key)?).await {
+        match answer_in_time(self.store.delete(&object_path(&key)?)).await? {
             // Idempotent: another process may have removed it.
             Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
             Err(error) => Err(ObjectsError::from(error).into()),
@@ -123,17 +124,13 @@ impl ObjectStorage {
 
     /// Returns the size of the object of a key, bytes.
     pub async fn object_size(&self, key: &str) -> Result<u64> {
-        Ok(self
-            .store
-            .head(&object_path(key)?)
-            .await
-            .map_err(|error| object_error(key, error))?
-            .size)
+        let head = answer_in_time(self.store.head(&object_path(key)?)).await?;
+        Ok(head.map_err(|error| object_error(key, error))?.size)
     }
 
     /// Returns true if there is an object of this key.
     pub async fn exists(&self, key: &str) -> Result<bool> {
-        match self.store.head(&object_path(key)?).await {
+        match answer_in_time(self.store.head(&object_path(key)?)).await? {
             Ok(_) => Ok(true),
             Err(object_store::Error::NotFound { .. }) => Ok(false),
             Err(error) => Err(ObjectsError::from(error).into()),
@@ -158,6 +155,8 @@ async fn hash_bytes(bytes: Bytes) -> Result<String, ObjectsError> {
 
 /// Maximum time for the check of the marker: a readiness probe waits for it.
 const MARKER_TIMEOUT: Duration = Duration::from_millis(800);
+/// Maximum time for writing the marker: the start of a process waits for it.
+const MARKER_WRITE_TIMEOUT: Duration = Duration::from_secs(3);
 /// Maximum time for the answer of the store, including retries.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(20);
 /// Minimum rate of transfer of an object, bytes per second, below any link in use.
@@ -168,6 +167,15 @@ fn transfer_timeout(size: usize) -> Duration {
     ANSWER_TIMEOUT + Duration::from_secs_f64(size as f64 / LEAST_RATE)
 }
 
+/// Waits for the answer of the store, but not for ever: a bucket may stall without an error.
+async fn answer_in_time<T>(
+    answer: impl Future<Output = object_store::Result<T>>,
+) -> Result<object_store::Result<T>> {
+    Ok(tokio::time::timeout(ANSWER_TIMEOUT, answer).await.map_err(ObjectsError::from)?)
+}
+
+/// Content of the marker.
+const ABOUT: &[u8] = b"The objects of a Sistership store, named by the SHA-256 of their bytes.\n";
 /// Name of the marker of a store, next to its objects.
 const MARKER: &str = "about.txt";
 /// The folder of all objects.

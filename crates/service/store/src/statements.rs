@@ -43,9 +43,9 @@ mod prepare {
     use crate::store::Store;
     use crate::{
         aliases, audit, bulks, chain, current, diagnoses, effects, families, free_space, garbage,
-        grants, idempotency, identities, integrity, jobs, keys, laws, notes, overviews, reports,
-        search, search_index, sessions, settings, ships, statistics, store, tags, trials, users,
-        version, versions, webhooks, work,
+        grants, idempotency, identities, integrity, jobs, keys, laws, notes, overviews,
+        queue_order, reports, row_seal, seal_check, search, search_index, sessions, settings,
+        ships, statistics, store, tags, trials, users, version, versions, webhooks, work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
@@ -68,8 +68,11 @@ mod prepare {
         ("keys", keys::STATEMENTS),
         ("laws", laws::STATEMENTS),
         ("notes", notes::STATEMENTS),
+        ("queue_order", queue_order::STATEMENTS),
         ("reports", reports::STATEMENTS),
         ("room", free_space::STATEMENTS),
+        ("row_seal", row_seal::STATEMENTS),
+        ("seal_check", seal_check::STATEMENTS),
         ("search", search::STATEMENTS),
         ("search_index", search_index::STATEMENTS),
         ("sessions", sessions::STATEMENTS),

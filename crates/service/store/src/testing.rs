@@ -9,7 +9,7 @@ use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{AssertSqlSafe, ConnectOptions as _, Connection as _, Executor as _, PgConnection};
 use tempfile::TempDir;
 
-pub use s3::TestS3;
+pub use s3::{FaultyBucket, TestS3};
 
 use crate::backup::TABLES;
 use crate::clock::ManualClock;

@@ -63,12 +63,16 @@ statements! {
         VALUES ($1, $2, $3, $4, $5, 0, $5)");
     // On PostgreSQL, a row that another worker has locked is skipped instead of waited for.
     DUE = pair(
-        delivery!("SELECT", "FROM deliveries WHERE due_us <= $1 ORDER BY due_us LIMIT 1"),
-        delivery!("SELECT", "FROM deliveries WHERE due_us <= $1 ORDER BY due_us LIMIT 1 FOR UPDATE \
-            SKIP LOCKED"),
+        delivery!("SELECT", "FROM deliveries WHERE webhook = $2 AND due_us <= $1 ORDER BY due_us \
+            LIMIT 1"),
+        delivery!("SELECT", "FROM deliveries WHERE webhook = $2 AND due_us <= $1 ORDER BY due_us \
+            LIMIT 1 FOR UPDATE SKIP LOCKED"),
     );
     // A read without a transaction, so that polling does not take the write lock.
-    DUE_NOW = same(delivery!("SELECT", "FROM deliveries WHERE due_us <= $1 ORDER BY due_us LIMIT 1"));
+    DUE_NOW = same(delivery!("SELECT", "FROM deliveries WHERE webhook = $2 AND due_us <= $1 ORDER BY \
+        due_us LIMIT 1"));
+    RECEIVERS = same("SELECT w.id AS word FROM webhooks w WHERE EXISTS (SELECT 1 FROM deliveries d \
+        WHERE d.webhook = w.id AND d.due_us <= $1) ORDER BY w.id");
     // The new due time is the end of the lease: without a result until then it is sent again.
     TAKE = same(delivery!("UPDATE deliveries SET attempts = attempts + 1, due_us = $2 WHERE id = \
         $1 RETURNING", ""));
@@ -247,18 +251,29 @@ impl WebhookRepository<'_> {
         Ok(page.build_page(deliveries, |delivery: &Delivery| delivery.id.clone()))
     }
 
-    /// Takes the delivery that is due first, if there is one, until `until_us`: then it is due
-    /// again.
-    pub async fn take_due(&self, until_us: i64) -> Result<Option<(Delivery, Webhook)>> {
-        let due: Option<Delivery> =
-            self.0.database().fetch_optional(DUE_NOW, args![due_us: self.0.now_us()]).await?;
+    /// Returns the ids of the webhooks for which a delivery is due.
+    pub async fn due_receivers(&self) -> Result<Vec<String>> {
+        let words: Vec<WebhookWord> =
+            self.0.database().fetch_all(RECEIVERS, args![due_us: self.0.now_us()]).await?;
+        Ok(words.into_iter().map(|webhook| webhook.word).collect())
+    }
+
+    /// Takes the delivery to a webhook that is due first, if there is one, until `until_us`: then
+    /// it is due again.
+    pub async fn take_due(
+        &self,
+        webhook: &str,
+        until_us: i64,
+    ) -> Result<Option<(Delivery, Webhook)>> {
+        let values = args![due_us: self.0.now_us(), webhook: webhook];
+        let due: Option<Delivery> = self.0.database().fetch_optional(DUE_NOW, values).await?;
         // The common case of polling: nothing is due, and no transaction is needed.
         if due.is_none() {
             return Ok(None);
         }
         let mut tx = self.0.begin().await?;
         // Read again under the lock; on PostgreSQL, rows that other workers hold are skipped.
-        let due: Option<Delivery> = tx.fetch_optional(DUE, args![due_us: self.0.now_us()]).await?;
+        let due: Option<Delivery> = tx.fetch_optional(DUE, values).await?;
         let Some(due) = due else { return Ok(None) };
         let taken: Delivery = tx.fetch_one(TAKE, args![id: &due.id, due_us: until_us]).await?;
         let webhook = tx.fetch_one(GET, args![id: &taken.webhook]).await?;

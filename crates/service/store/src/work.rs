@@ -10,6 +10,7 @@ use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::job::{Job, JobState, job};
 use crate::jobs::{JobRepository, find_job};
+use crate::queue_order::QueuePlace;
 use crate::statements::{Statement, pair, same, statements};
 
 /// Number of lost workers from which a job counts as the cause of their death, and is not restarted
@@ -17,13 +18,13 @@ use crate::statements::{Statement, pair, same, statements};
 pub const MAX_LOST_WORKERS: i64 = 2;
 
 statements! {
-    // Queued jobs, and running ones whose lease has expired; on PostgreSQL, rows that other workers
-    // have locked are skipped.
-    NEXT = pair(
-        job!("SELECT", "FROM jobs WHERE state IN ('queued', 'running') AND (state = 'queued' OR \
-            lease_until_us < $1) ORDER BY id LIMIT 1"),
-        job!("SELECT", "FROM jobs WHERE state IN ('queued', 'running') AND (state = 'queued' OR \
-            lease_until_us < $1) ORDER BY id LIMIT 1 FOR UPDATE SKIP LOCKED"),
+    // A job that waits, or that runs under a lease that has run out; on PostgreSQL, a row that
+    // another worker has locked is skipped.
+    WAITING = pair(
+        job!("SELECT", "FROM jobs WHERE id = $2 AND (state = 'queued' OR (state = 'running' AND \
+            lease_until_us < $1))"),
+        job!("SELECT", "FROM jobs WHERE id = $2 AND (state = 'queued' OR (state = 'running' AND \
+            lease_until_us < $1)) FOR UPDATE SKIP LOCKED"),
     );
     START = same(job!("UPDATE jobs SET state = 'running', attempt = attempt + 1, fence = fence + \
         1, worker = $2, lease_until_us = $3, started_us = COALESCE(started_us, $4), lost_workers = \
@@ -41,6 +42,19 @@ statements! {
     // The attempt was not completed and is not counted.
     RELEASE = same(job!("UPDATE jobs SET state = 'queued', attempt = attempt - 1, lease_until_us = \
         NULL, worker = NULL WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING", ""));
+}
+
+/// Request of a worker for a job.
+#[derive(Debug, Clone, Copy)]
+pub struct WorkerClaim<'a> {
+    /// Name of the worker.
+    pub worker: &'a str,
+    /// Time without a heartbeat after which another worker may take the job.
+    pub lease: Duration,
+    /// True if the worker's process does nothing else until the job ends.
+    pub alone: bool,
+    /// True if the worker takes small jobs only.
+    pub small: bool,
 }
 
 /// Result of a worker's request for a job.
@@ -63,32 +77,53 @@ enum JobEnd<'a> {
 }
 
 impl JobRepository<'_> {
-    /// Claims the oldest job that is queued, or whose lease has run out. A job that has lost
+    /// Claims the job whose turn it is, see [`crate::queue_order`]. A job that has lost
     /// [`MAX_LOST_WORKERS`] workers ends as failed; one that was to be cancelled when its worker
-    /// died is cancelled. `alone` says that the worker's process does nothing else until the job
-    /// ends.
-    pub async fn claim_next(&self, worker: &str, lease: Duration, alone: bool) -> Result<JobClaim> {
-        let mut tx = self.0.begin().await?;
+    /// died is cancelled.
+    pub async fn claim_next(&self, claim: &WorkerClaim<'_>) -> Result<JobClaim> {
+        loop {
+            // Read before the transaction, so that nobody waits while the queue is put in order.
+            let line = self.first_in_line(claim.small).await?;
+            if line.is_empty() {
+                return Ok(JobClaim::Nothing);
+            }
+            let mut tx = self.0.begin().await?;
+            let claimed = self.claim_first(&mut tx, claim, &line).await?;
+            tx.commit().await?;
+            // Without a claim, other workers were faster with all of them.
+            if let Some(claimed) = claimed {
+                return Ok(claimed);
+            }
+        }
+    }
+
+    /// Claims the first of these jobs that still waits.
+    async fn claim_first(
+        &self,
+        tx: &mut AuditedTransaction,
+        claim: &WorkerClaim<'_>,
+        line: &[QueuePlace],
+    ) -> Result<Option<JobClaim>> {
         let now = self.0.now_us();
-        let claimed = loop {
-            let Some(job) = tx.fetch_optional::<Job>(NEXT, args![now_us: now]).await? else {
-                break JobClaim::Nothing;
+        for QueuePlace { id, .. } in line {
+            let Some(job) = tx.fetch_optional::<Job>(WAITING, args![now_us: now, id: id]).await?
+            else {
+                continue;
             };
             // A running job is returned only with an expired lease: its worker counts as lost.
             let lost = job.lost_workers + i64::from(job.state == JobState::Running);
-            if end_abandoned(&mut tx, &job, lost, now).await? {
+            if end_abandoned(tx, &job, lost, now).await? {
                 continue;
             }
             // The job may have killed its process: it runs only where no other job could be blamed.
-            if lost > 0 && !alone {
-                break JobClaim::Alone;
+            if lost > 0 && !claim.alone {
+                return Ok(Some(JobClaim::Alone));
             }
-            let values = args![id: &job.id, worker: worker, lease_until_us: lease_end(now, lease),
-                started_us: now, lost_workers: lost];
-            break JobClaim::Job(Box::new(tx.fetch_one(START, values).await?));
-        };
-        tx.commit().await?;
-        Ok(claimed)
+            let values = args![id: id, worker: claim.worker,
+                lease_until_us: lease_end(now, claim.lease), started_us: now, lost_workers: lost];
+            return Ok(Some(JobClaim::Job(Box::new(tx.fetch_one(START, values).await?))));
+        }
+        Ok(None)
     }
 
     /// Reports that the worker which held a job under `fence` is alive: it lost the job by a late

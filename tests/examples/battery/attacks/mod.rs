@@ -6,8 +6,12 @@ mod full_disk;
 mod hostile;
 mod kills;
 mod memory;
+mod neighbours;
+mod outages;
 mod races;
+mod rights;
 mod slow;
+mod soak;
 mod workers;
 
 use crate::attack::Attack;
@@ -24,5 +28,9 @@ pub fn all() -> Vec<Box<dyn Attack>> {
         Box::new(races::Races),
         Box::new(workers::Workers),
         Box::new(backups::Backups),
+        Box::new(outages::Outages),
+        Box::new(neighbours::Neighbours),
+        Box::new(rights::Rights),
+        Box::new(soak::Soak),
     ]
 }

@@ -35,6 +35,8 @@ pub struct ConfigFile {
     pub oidc: OpenIdArguments,
     /// `--workers`
     pub workers: Option<u16>,
+    /// `--jobs-per-person`
+    pub jobs_per_person: Option<u32>,
     /// `--connections`
     pub connections: Option<u32>,
     /// `--connections-per-address`

@@ -1,20 +1,26 @@
 //! `sistership fsck`: integrity check of a store.
 
+use std::path::{Path, PathBuf};
+
 use clap::Args;
-use sistership_jobs::upkeep::{self, CheckCounts, Findings, IntegrityFault};
+use serde::Deserialize;
+use sistership_jobs::upkeep::{self, AuditHead, CheckCounts, Findings, IntegrityFault};
 
 use super::store::{StoreArguments, with_archive};
-use crate::failure::Failure;
+use crate::failure::{Failure, about_file};
 use crate::output::{self, format_count};
+use crate::zoo::read_text_file;
 
 const EXAMPLES: &str = "\
 Examples:
   sistership fsck --data-dir /var/lib/sistership
+  sistership fsck --data-dir /var/lib/sistership --head head.json
   sistership fsck --database-url postgres://user@host/sistership --data-dir /var/lib/sistership --json
 
 Checks the hash of every law, version, object and entry of the audit, and every reference between
-ships, trials, versions, aliases, jobs, reports, diagnoses and objects. It changes nothing; servers
-and workers may keep running. Exit status 1 if there are faults.";
+ships, trials, versions, aliases, jobs, reports, diagnoses and objects; and that users, roles,
+keys, ships, trials, laws, families, webhooks and settings are as the audit states. It changes nothing;
+servers and workers may keep running. Exit status 1 if there are faults.";
 
 /// Check every hash and every reference of a store.
 #[derive(Debug, Args)]
@@ -22,6 +28,10 @@ and workers may keep running. Exit status 1 if there are faults.";
 pub struct FsckArguments {
     #[command(flatten)]
     store: StoreArguments,
+    /// File with a head of the audit that was kept elsewhere, as `GET /v1/audit/head` returns it:
+    /// its entry must be there unchanged.
+    #[arg(long, value_name = "FILE")]
+    head: Option<PathBuf>,
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
@@ -32,9 +42,26 @@ pub struct FsckArguments {
 /// # Errors
 /// Returns an error if the store does not exist, does not answer, or has faults.
 pub fn run(fsck: &FsckArguments) -> Result<(), Failure> {
-    let findings = with_archive(&fsck.store, async |archive| upkeep::check_archive(archive).await)?;
+    let kept = fsck.head.as_deref().map(read_head).transpose()?;
+    let findings = with_archive(&fsck.store, async |archive| {
+        upkeep::check_against_head(archive, kept.as_ref()).await
+    })?;
     output::print_result(fsck.json, &findings, || format_findings(&findings))?;
     if findings.clean { Ok(()) } else { Err(Failure::Told) }
+}
+
+/// Head of the audit in a file.
+#[derive(Deserialize)]
+struct HeadFile {
+    number: i64,
+    sha256: String,
+}
+
+fn read_head(file: &Path) -> Result<AuditHead, Failure> {
+    let text = read_text_file(file)?;
+    let HeadFile { number, sha256 } =
+        serde_json::from_str(&text).map_err(|error| about_file(file, error))?;
+    Ok(AuditHead { number, sha256 })
 }
 
 fn format_findings(findings: &Findings) -> String {

@@ -48,7 +48,7 @@ pub struct ServeArguments {
     /// Require users to sign in with name and password (`sistership users`) or a key.
     #[arg(long, env = "SISTERSHIP_ACCOUNTS")]
     accounts: bool,
-    /// Number of concurrent jobs, 0 to 64; with 0 jobs are left to other processes on the same
+    /// Number of concurrent jobs, 0 to 64, and one small job besides; with 0 jobs are left to other processes on the same
     /// database (`sistership work`) [default: 1].
     #[arg(long, value_name = "N", env = "SISTERSHIP_WORKERS")]
     workers: Option<u16>,
@@ -62,6 +62,10 @@ pub struct ServeArguments {
     /// Memory for all jobs together, MB, at least 32 [default: 1024].
     #[arg(long, value_name = "MB", env = "SISTERSHIP_JOB_MEMORY_MB")]
     job_memory_mb: Option<u64>,
+    /// Largest number of jobs of one person that wait or run at a time, 1 to 1000000 [default:
+    /// 1000].
+    #[arg(long, value_name = "N", env = "SISTERSHIP_JOBS_PER_PERSON")]
+    jobs_per_person: Option<u32>,
     /// Largest number of connections, 16 to 65536 [default: 1024].
     #[arg(long, value_name = "N", env = "SISTERSHIP_CONNECTIONS")]
     connections: Option<u32>,
@@ -124,7 +128,7 @@ fn server_config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Fa
     // Flags and environment variables come before the file.
     config.workers = if serve.no_worker { 0 } else { worker_count(serve.workers, file, 0)? };
     config.leases = serve.lease.lease_settings(file)?;
-    config.limits = connection_limits(serve, file)?;
+    config.limits = numeric_limits(serve, file)?;
     let limits = &mut config.limits;
     limits.request_memory = memory_bytes(
         "request_memory_mb",
@@ -163,8 +167,8 @@ fn trusted_proxies(serve: &ServeArguments, file: &ConfigFile) -> Result<TrustedP
     })
 }
 
-/// Returns the limits of connections.
-fn connection_limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> {
+/// Returns the limits of connections and of jobs.
+fn numeric_limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, Failure> {
     // Checked here, with the name of the setting; the server takes the numbers as they are.
     let within = |name: &str, value: u32, least: u32, most: u32| match (least..=most)
         .contains(&value)
@@ -177,6 +181,9 @@ fn connection_limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits
         limits.connections = within("connections", connections, 16, 1 << 16)?;
         // The default of one address follows the total, unless it is set below.
         limits.connections_per_address = limits.connections / 2;
+    }
+    if let Some(jobs) = serve.jobs_per_person.or(file.jobs_per_person) {
+        limits.jobs_per_person = within("jobs_per_person", jobs, 1, 1_000_000)? as u32;
     }
     if let Some(share) = serve.connections_per_address.or(file.connections_per_address) {
         limits.connections_per_address =

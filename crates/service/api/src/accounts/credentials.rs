@@ -1,15 +1,17 @@
 //! Credentials that a process holds, apart from its store.
 
-use std::sync::Arc;
-
-use sistership_auth::FailedAttempts;
 use sistership_auth::openid::OpenIdProvider;
+use sistership_auth::{FailedAttempts, SignInAttempt};
 use sistership_jobs::budget;
 use sistership_store::Store;
 use sistership_web_support::api_key::ApiKey;
 use sistership_web_support::credential_cache::CredentialCache;
-use sistership_web_support::problem::{Problem, Result};
-use tokio::sync::Semaphore;
+use sistership_web_support::problem::Result;
+
+use crate::compute_pool::ComputePool;
+
+/// Memory for hashing one password, bytes.
+const HASH_BYTES: u64 = 19 << 20;
 
 /// Credentials that a process holds, apart from its store.
 pub struct Credentials {
@@ -18,8 +20,14 @@ pub struct Credentials {
     provider: Option<OpenIdProvider>,
     pub(crate) known: CredentialCache,
     pub(crate) attempts: FailedAttempts,
-    /// Permits for the passwords that are hashed at a time.
-    seats: Arc<Semaphore>,
+    passwords: PasswordPools,
+}
+
+/// Pools in which passwords are hashed: guesses wait for each other, not for people who sign in
+/// where they have before.
+struct PasswordPools {
+    trusted: ComputePool,
+    unknown: ComputePool,
 }
 
 /// The accounts of a store, as a process knows them.
@@ -31,16 +39,13 @@ pub struct Accounts<'a> {
 
 impl Credentials {
     /// Returns the credentials of a server with its one key or without, which lets `people` sign in
-    /// or not, also at a provider if there is one. Passwords are hashed under permits of `seats`.
-    pub fn new(
-        key: Option<&str>,
-        people: bool,
-        provider: Option<OpenIdProvider>,
-        seats: Arc<Semaphore>,
-    ) -> Self {
+    /// or not, also at a provider if there is one.
+    pub fn new(key: Option<&str>, people: bool, provider: Option<OpenIdProvider>) -> Self {
         let key = key.map(ApiKey::new);
         let (known, attempts) = (CredentialCache::default(), FailedAttempts::default());
-        Self { key, people, provider, known, attempts, seats }
+        let passwords =
+            PasswordPools { trusted: ComputePool::new(1), unknown: ComputePool::new(1) };
+        Self { key, people, provider, known, attempts, passwords }
     }
 
     /// Returns the accounts of a store.
@@ -68,19 +73,38 @@ impl Credentials {
         self.provider.as_ref()
     }
 
-    /// Computes a hash on a blocking thread.
-    pub(crate) async fn run_blocking<T: Send + 'static>(
+    /// Compares a password in the turn of its client.
+    pub(crate) async fn compare_password<T: Send + 'static>(
+        &self,
+        attempt: SignInAttempt<'_>,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> Result<T> {
+        let pool = match self.attempts.is_known(attempt) {
+            true => &self.passwords.trusted,
+            false => &self.passwords.unknown,
+        };
+        hash_in_turn(pool, attempt.from, work).await
+    }
+
+    /// Hashes a password that a signed-in user sets.
+    pub(crate) async fn hash_password<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T> {
-        // A request that is dropped while it waits gives its place up.
-        let seat = Arc::clone(&self.seats).acquire_owned().await.map_err(Problem::internal)?;
-        let task = tokio::task::spawn_blocking(budget::with_request_memory(move || {
-            let _seat = seat;
-            work()
-        }));
-        task.await.map_err(Problem::internal)
+        hash_in_turn(&self.passwords.trusted, "", work).await
     }
+}
+
+/// Waits for a turn before memory is reserved, so that requests that wait hold none.
+async fn hash_in_turn<T: Send + 'static>(
+    pool: &ComputePool,
+    client: &str,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Result<T> {
+    let turn = pool.wait_turn(client).await?;
+    // Argon2 takes a fixed amount of memory for each hash.
+    budget::reserve_for_request(HASH_BYTES).await?;
+    turn.run(work).await
 }
 
 impl Accounts<'_> {

@@ -7,7 +7,6 @@ use sistership_auth::{
     Grant, KeyText, SignInAttempt, check_name, check_password, hash_password, hash_text,
     random_secret, to_hex, verify_password, verify_unknown,
 };
-use sistership_jobs::budget;
 use sistership_store::{KeyRow, NewKey, User};
 use sistership_web_support::problem::{Problem, Result};
 
@@ -16,8 +15,6 @@ use crate::accounts::grants::grant_rows;
 
 /// Duration of a session in a browser.
 pub const SESSION_LIFETIME: Duration = Duration::from_secs(12 * 3600);
-/// Memory for hashing one password, bytes.
-const HASH_BYTES: u64 = 19 << 20;
 
 impl Accounts<'_> {
     /// Creates a user.
@@ -84,11 +81,9 @@ impl Accounts<'_> {
 
     async fn hash_new_password(&self, password: &str) -> Result<String> {
         check_password(password).map_err(|message| Problem::invalid("password", message))?;
-        // Argon2 takes a fixed amount of memory for each hash.
-        budget::reserve_for_request(HASH_BYTES).await?;
         let password = password.to_owned();
         self.credentials
-            .run_blocking(move || hash_password(&password))
+            .hash_password(move || hash_password(&password))
             .await?
             .map_err(Problem::internal)
     }
@@ -115,7 +110,7 @@ impl Accounts<'_> {
             let why = format!("too many wrong passwords; try again in {wait} s");
             Problem::new(StatusCode::TOO_MANY_REQUESTS, why)
         })?;
-        match self.is_password_correct(name, password).await {
+        match self.is_password_correct(attempt, password).await {
             Ok(true) => attempts.record_success(attempt, Instant::now()),
             Ok(false) => {
                 tracing::warn!(name, from, "wrong password");
@@ -130,10 +125,13 @@ impl Accounts<'_> {
         Ok(())
     }
 
-    async fn is_password_correct(&self, name: &str, password: &str) -> Result<bool> {
-        let user = self.store.users().find(name).await?.filter(User::is_enabled);
+    async fn is_password_correct(
+        &self,
+        attempt: SignInAttempt<'_>,
+        password: &str,
+    ) -> Result<bool> {
+        let user = self.store.users().find(attempt.name).await?.filter(User::is_enabled);
         let hash = user.and_then(|user| user.password_hash);
-        budget::reserve_for_request(HASH_BYTES).await?;
         let password = password.to_owned();
         // A user that does not exist takes as long as a wrong password, so that names cannot be
         // found out.
@@ -144,6 +142,6 @@ impl Accounts<'_> {
                 false
             }
         };
-        self.credentials.run_blocking(compare).await
+        self.credentials.compare_password(attempt, compare).await
     }
 }

@@ -159,7 +159,12 @@ impl PendingVersion {
         let settings = BranchSettings::default().with_kind(kind);
         let asked = BranchJob { ship: ship.clone(), number, trials, settings };
         let request = serde_json::to_string(&asked).map_err(permanent_failure)?;
-        Ok(Some(NewJob { kind: BRANCH_JOB_KIND.to_owned(), ship: Some(ship), request }))
+        Ok(Some(NewJob {
+            kind: BRANCH_JOB_KIND.to_owned(),
+            ship: Some(ship),
+            request,
+            small: false,
+        }))
     }
 
     fn job_result(

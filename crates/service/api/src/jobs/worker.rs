@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use sistership_store::{Actor, Job, JobClaim, QueueWatch, StoreError};
+use sistership_store::{Actor, Job, JobClaim, QueueWatch, StoreError, WorkerClaim};
 use tokio::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, watch};
 use tokio::task::JoinHandle;
 use uuid::Uuid;
@@ -27,8 +27,18 @@ const SPACE_RETRY_DELAY: Duration = Duration::from_secs(5);
 pub(crate) struct Worker {
     app: App,
     name: String,
+    class: JobClass,
     stopping: StopSignal,
     queue: QueueWatch,
+}
+
+/// Jobs that a worker takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum JobClass {
+    /// Any job.
+    Any,
+    /// Small jobs only.
+    Small,
 }
 
 /// Permission of a worker to run a job: together with the other workers of the process, or alone.
@@ -54,10 +64,10 @@ struct WatchedWork {
 }
 
 impl Worker {
-    pub(crate) fn new(app: App) -> Self {
+    pub(crate) fn new(app: App, class: JobClass) -> Self {
         let name = format!("{}-{}", std::process::id(), Uuid::now_v7());
         let (stopping, queue) = (app.stop_signal(), app.store().jobs().watch_queue());
-        Self { stopping, queue, app, name }
+        Self { stopping, queue, app, name, class }
     }
 
     /// Claims and runs jobs until the server stops.
@@ -68,13 +78,7 @@ impl Worker {
         let mut alone = false;
         while !self.stopping.is_stopping() {
             let Some(turn) = self.wait_turn(&turns, alone).await else { return };
-            match self
-                .app
-                .store()
-                .jobs()
-                .claim_next(&self.name, self.app.leases().lease, alone)
-                .await
-            {
+            match self.app.store().jobs().claim_next(&self.next_claim(alone)).await {
                 Ok(JobClaim::Job(job)) => {
                     // Only a job during which a process has ended before keeps the other workers
                     // waiting.
@@ -96,6 +100,11 @@ impl Worker {
                 }
             }
         }
+    }
+
+    fn next_claim(&self, alone: bool) -> WorkerClaim<'_> {
+        let (lease, small) = (self.app.leases().lease, self.class == JobClass::Small);
+        WorkerClaim { worker: &self.name, lease, alone, small }
     }
 
     /// Waits for the permission to claim a job, shared or alone; returns `None` if the server

@@ -8,19 +8,19 @@ use reqwest::{Client, Method, StatusCode};
 use serde_json::{Value, json};
 use sistership_auth::Role;
 use sistership_store::testing::TestDatabase;
-use sistership_store::{JobClaim, NewOutcome, NewVersion};
+use sistership_store::{JobClaim, NewOutcome, NewVersion, WorkerClaim};
 
 use super::harness::{Harness, config, read};
 use crate::Server;
 use crate::rights::{HEALTH_ROUTES, IDENTIFIED_ROUTES, OPEN_ROUTES, ROLE_TABLE};
 
 /// The server's own key.
-const OWNER: &str = "sesame";
+pub(super) const OWNER: &str = "sesame";
 const PASSWORD: &str = "a long sentence of its own";
 
 impl Harness {
     /// Starts a server that identifies every caller.
-    async fn guarded(database: TestDatabase) -> Self {
+    pub(super) async fn guarded(database: TestDatabase) -> Self {
         let mut config = config(&database);
         config.api_key = Some(OWNER.into());
         config.accounts = true;
@@ -31,7 +31,12 @@ impl Harness {
     }
 
     /// Sends a request with a key, or without one.
-    async fn asks(&self, key: Option<&str>, method: Method, path: &str) -> (StatusCode, Value) {
+    pub(super) async fn asks(
+        &self,
+        key: Option<&str>,
+        method: Method,
+        path: &str,
+    ) -> (StatusCode, Value) {
         let request = self.client.request(method, self.url(path));
         let request = match key {
             Some(key) => request.bearer_auth(key),
@@ -41,7 +46,7 @@ impl Harness {
     }
 
     /// Sends a document with a key.
-    async fn sends(
+    pub(super) async fn sends(
         &self,
         key: &str,
         method: Method,
@@ -53,7 +58,7 @@ impl Harness {
     }
 
     /// Creates a service key with these roles.
-    async fn key(&self, about: &Value) -> String {
+    pub(super) async fn key(&self, about: &Value) -> String {
         let (status, made) = self.sends(OWNER, Method::POST, "/v1/keys", about).await;
         assert_eq!(status, StatusCode::CREATED, "{made}");
         made["key"].as_str().unwrap().to_owned()
@@ -154,7 +159,7 @@ fn filled(path: &str) -> String {
 }
 
 /// Returns true if the answer is the refusal of a caller whose roles do not suffice.
-fn is_refused(status: StatusCode, problem: &Value) -> bool {
+pub(super) fn is_refused(status: StatusCode, problem: &Value) -> bool {
     let detail = problem["detail"].as_str().unwrap_or_default();
     status == StatusCode::FORBIDDEN && detail.starts_with("this needs the role ")
 }
@@ -422,7 +427,8 @@ async fn candidates(harness: &Harness, ships: &[&str]) -> String {
     let kind = sistership_jobs::fleet::BULK_JOB_KIND;
     let bulk = bulks.create("tankers", "{}", kind, &[chunk], |_, _| "{}".into()).await.unwrap().id;
     let lease = std::time::Duration::from_secs(60);
-    let JobClaim::Job(job) = store.jobs().claim_next("test", lease, true).await.unwrap() else {
+    let claim = WorkerClaim { worker: "test", lease, alone: true, small: false };
+    let JobClaim::Job(job) = store.jobs().claim_next(&claim).await.unwrap() else {
         panic!("the chunk is queued")
     };
     let mut outcomes = Vec::new();

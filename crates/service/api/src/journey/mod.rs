@@ -25,6 +25,7 @@ macro_rules! on_both_databases {
 mod access;
 mod contract;
 mod documents;
+mod foreign;
 mod form_jobs;
 mod harness;
 mod keys;

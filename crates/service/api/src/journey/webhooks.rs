@@ -160,6 +160,37 @@ async fn receivers_are_told_on_postgres() {
     }
 }
 
+/// A receiver that accepts connections and never answers.
+async fn silent_receiver() -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let url = format!("http://{}/hook", listener.local_addr().unwrap());
+    tokio::spawn(async move {
+        let mut held = Vec::new();
+        while let Ok((stream, _)) = listener.accept().await {
+            held.push(stream);
+        }
+    });
+    url
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn silent_receivers_do_not_delay_another() {
+    let (silent, (receiver, good)) = (silent_receiver().await, receiver(0).await);
+    let harness = started(TestDatabase::new_sqlite(), true).await;
+    for url in std::iter::repeat_n(&silent, 24).chain([&good]) {
+        let asked = json!({ "title": "T", "url": url, "events": ["champion.moved"] });
+        assert_eq!(harness.post("/v1/webhooks", &asked).await.0, 201);
+    }
+    let start = std::time::Instant::now();
+    for n in 1..=6 {
+        move_champion(&harness, &format!("move {n}")).await;
+        until("the delivery", || receiver.seen.lock().unwrap().len() >= n).await;
+    }
+    // An attempt to a silent receiver takes fifteen seconds.
+    assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
+    harness.server.stop().await;
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn nobody_is_told_within_the_own_network_unless_that_is_allowed() {
     let harness = started(TestDatabase::new_sqlite(), false).await;

@@ -11,4 +11,4 @@ pub(crate) use sistership_web_support::acting::{
 };
 pub(crate) use table::{HEALTH_ROUTES, OPEN_ROUTES, SECOND_PERSON};
 #[cfg(test)]
-pub(crate) use table::{IDENTIFIED_ROUTES, ROLE_TABLE};
+pub(crate) use table::{IDENTIFIED_ROUTES, ROLE_TABLE, RoleScope};

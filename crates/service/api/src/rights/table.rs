@@ -115,6 +115,8 @@ pub(crate) const ROLE_TABLE: &[RouteRow] = &[
     ("POST", "/v1/diagnoses", Engineer, RoleScope::Body),
     ("POST", "/v1/branches", Engineer, RoleScope::Body),
     ("GET", "/v1/jobs", Reader, RoleScope::ShipOfQuery),
+    // Own jobs only.
+    ("DELETE", "/v1/jobs", Engineer, RoleScope::Anything),
     ("GET", "/v1/jobs/{id}", Reader, RoleScope::Job),
     ("DELETE", "/v1/jobs/{id}", Engineer, RoleScope::Job),
     ("GET", "/v1/jobs/{id}/events", Reader, RoleScope::Job),

@@ -41,6 +41,8 @@ struct EntryView {
     /// State of the subject after; null if it no longer exists.
     #[schema(value_type = Option<Object>)]
     after: Option<Value>,
+    /// Hash of the protected columns of the subject after the change; null for subjects without.
+    row_sha256: Option<String>,
     /// Hash of the previous entry; empty for the first.
     previous_sha256: String,
     /// Hash of this entry and of the previous one.
@@ -88,6 +90,7 @@ impl EntryView {
         // States are stored as JSON; one that cannot be parsed is shown as null.
         let read = |text: Option<String>| text.and_then(|text| serde_json::from_str(&text).ok());
         let (before, after) = (read(entry.state_before), read(entry.state_after));
+        let row_sha256 = entry.row_sha256;
         let (previous_sha256, sha256) = (entry.previous_sha256, entry.sha256);
         Self {
             number,
@@ -98,6 +101,7 @@ impl EntryView {
             subject,
             before,
             after,
+            row_sha256,
             previous_sha256,
             sha256,
         }

@@ -15,7 +15,7 @@ use super::named_trials::{checked_trials, no_trials};
 use super::queue::{enqueue_job, job_reply};
 use super::trials::all_of_ship;
 use crate::app::App;
-use crate::jobs::{BRANCH_JOB_KIND, BranchJob};
+use crate::jobs::BranchJob;
 use crate::problem::{Problem, Result};
 use crate::rights::check_ship_role;
 use crate::web::field::RequestKey;
@@ -72,7 +72,7 @@ async fn train(
 
 async fn queue_training(app: &App, request: BranchRequest) -> Result<StoredReply> {
     let job = resolve_request(app, request).await?;
-    job_reply(enqueue_job(app, BRANCH_JOB_KIND, &job.ship, &job).await?)
+    job_reply(app, enqueue_job(app, &job).await?).await
 }
 
 /// Looks up everything that the request names, so that a wrong request is refused at once.

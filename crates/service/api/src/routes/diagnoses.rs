@@ -16,7 +16,7 @@ use super::named_trials::{checked_trials, no_trials};
 use super::queue::{enqueue_job, job_reply};
 use super::trials::all_of_ship;
 use crate::app::App;
-use crate::jobs::{DIAGNOSIS_JOB_KIND, DiagnosisJob};
+use crate::jobs::DiagnosisJob;
 use crate::problem::{Problem, Result};
 use crate::rights::check_ship_role;
 use crate::web::field::RequestKey;
@@ -69,14 +69,11 @@ async fn diagnose(
 }
 
 async fn queue_reply(app: &App, request: DiagnosisRequest) -> Result<StoredReply> {
-    job_reply(queue_job(app, request).await?)
+    job_reply(app, queue_job(app, request).await?).await
 }
 
 async fn queue_job(app: &App, request: DiagnosisRequest) -> Result<Job> {
-    // The ship is named by the request, even if the name resolves to nothing: then the next call
-    // fails.
-    let ship = request.model.split('/').next().unwrap_or_default().to_owned();
-    enqueue_job(app, DIAGNOSIS_JOB_KIND, &ship, &resolve_request(app, request).await?).await
+    enqueue_job(app, &resolve_request(app, request).await?).await
 }
 
 /// Queues a diagnosis that a page requests, from the document that the endpoint takes.

@@ -295,10 +295,10 @@ async fn learn(State(app): State<App>, PathParams(name): PathParams<Word>) -> Re
     let family = app.store().families().get(&name).await?;
     let request =
         serde_json::to_string(&LearnJob { family: family.name }).map_err(Problem::internal)?;
-    let job =
-        // The job belongs to no ship; access to it is decided by the family in its request.
-        app.store().jobs().enqueue(&NewJob { kind: PRIOR_JOB_KIND.to_owned(), ship: None, request }).await?;
-    job_reply(job)
+    // The job belongs to no ship; access to it is decided by the family in its request.
+    let new = NewJob { kind: PRIOR_JOB_KIND.to_owned(), ship: None, request, small: false };
+    let job = app.store().jobs().enqueue(&new).await?;
+    job_reply(&app, job).await
 }
 
 fn check_ship_count(field: &str, ships: Vec<Name>) -> Result<Vec<String>> {

@@ -1,5 +1,7 @@
 //! Jobs and their state.
 
+use std::collections::HashMap;
+
 use axum::Json;
 use axum::extract::State;
 use serde::{Deserialize, Serialize};
@@ -15,7 +17,10 @@ use crate::web::field::{Cursor, Limit};
 use crate::web::{Id, Listing, Name, PathParams, QueryParams, page};
 
 pub(super) fn job_routes() -> OpenApiRouter<App> {
-    OpenApiRouter::new().routes(routes!(list)).routes(routes!(get, cancel)).routes(routes!(retry))
+    OpenApiRouter::new()
+        .routes(routes!(list, cancel_own))
+        .routes(routes!(get, cancel))
+        .routes(routes!(retry))
 }
 
 /// A job.
@@ -45,6 +50,11 @@ pub(super) struct JobView {
     pub attempt: i64,
     /// True if the job was asked to stop.
     pub cancel_requested: bool,
+    /// Author of the request.
+    pub author: String,
+    /// Place in the queue while the job waits: 1 is the next to begin. Authors take turns; within
+    /// the share of an author its ships do, and small jobs precede large ones for ten minutes.
+    pub place: Option<i64>,
     pub created_us: i64,
     pub started_us: Option<i64>,
     pub finished_us: Option<i64>,
@@ -66,6 +76,22 @@ struct JobQuery {
     /// `next` of the page before.
     #[param(inline)]
     after: Option<Cursor>,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+struct OwnJobsQuery {
+    /// Only jobs of this ship.
+    #[param(inline)]
+    ship: Option<Name>,
+}
+
+/// Jobs that were cancelled.
+#[derive(Debug, Serialize, ToSchema)]
+struct CancelledJobs {
+    /// Their ids; those that ran stop at their next step.
+    cancelled: Vec<String>,
 }
 
 /// State of a job.
@@ -108,6 +134,7 @@ impl JobView {
             created_us,
             started_us,
             finished_us,
+            author,
             ..
         } = job;
         Self {
@@ -122,11 +149,38 @@ impl JobView {
             error,
             attempt,
             cancel_requested,
+            author,
+            place: None,
             created_us,
             started_us,
             finished_us,
         }
     }
+
+    /// Returns the view of a job with its place in the queue.
+    pub(super) async fn with_place(app: &App, job: Job) -> Result<Self> {
+        let waits = job.state == JobState::Queued;
+        let mut view = [Self::from_job(job)];
+        if waits {
+            set_places(app, &mut view).await?;
+        }
+        let [view] = view;
+        Ok(view)
+    }
+}
+
+/// Sets the places of the jobs that wait.
+async fn set_places(app: &App, views: &mut [JobView]) -> Result<()> {
+    if views.iter().all(|view| view.state != JobState::Queued.as_str()) {
+        return Ok(());
+    }
+    let places = app.store().jobs().queue_places().await?;
+    let places: HashMap<String, i64> =
+        places.into_iter().map(|place| (place.id, place.place)).collect();
+    for view in views {
+        view.place = places.get(&view.id).copied();
+    }
+    Ok(())
 }
 
 /// List the jobs, the latest first
@@ -145,14 +199,17 @@ async fn list(
         .jobs()
         .list(&filter, &page::parse_page(query.limit, query.after.as_ref())?)
         .await?;
-    Ok(Json(Listing::from_list(jobs, JobView::from_job)))
+    let mut listing = Listing::from_list(jobs, JobView::from_job);
+    set_places(&app, &mut listing.items).await?;
+    Ok(Json(listing))
 }
 
 /// Get a job
 #[utoipa::path(get, path = "/v1/jobs/{id}", tag = "jobs", params(("id" = inline(Id), Path)),
     responses((status = 200, body = JobView)))]
 async fn get(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<JobView>> {
-    Ok(Json(JobView::from_job(app.store().jobs().get(&id).await?)))
+    let job = app.store().jobs().get(&id).await?;
+    Ok(Json(JobView::with_place(&app, job).await?))
 }
 
 /// Cancel a job; a running one stops at its next step
@@ -162,11 +219,23 @@ async fn cancel(State(app): State<App>, PathParams(id): PathParams<Id>) -> Resul
     Ok(Json(JobView::from_job(app.store().jobs().request_cancel(&id).await?)))
 }
 
+/// Cancel all of the caller's jobs that wait or run, of one ship if it is named
+#[utoipa::path(delete, path = "/v1/jobs", tag = "jobs", params(OwnJobsQuery),
+    responses((status = 200, body = CancelledJobs)))]
+async fn cancel_own(
+    State(app): State<App>,
+    QueryParams(query): QueryParams<OwnJobsQuery>,
+) -> Result<Json<CancelledJobs>> {
+    let jobs = app.store().jobs().cancel_own(query.ship.as_deref()).await?;
+    Ok(Json(CancelledJobs { cancelled: jobs.into_iter().map(|job| job.id).collect() }))
+}
+
 /// Run a job again that failed or was cancelled
 #[utoipa::path(
     post, path = "/v1/jobs/{id}/retry", tag = "jobs", params(("id" = inline(Id), Path)),
     responses((status = 200, body = JobView))
 )]
 async fn retry(State(app): State<App>, PathParams(id): PathParams<Id>) -> Result<Json<JobView>> {
-    Ok(Json(JobView::from_job(app.store().jobs().retry(&id).await?)))
+    let job = app.store().jobs().retry(&id).await?;
+    Ok(Json(JobView::with_place(&app, job).await?))
 }

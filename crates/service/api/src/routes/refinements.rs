@@ -16,7 +16,7 @@ use super::named_trials::{checked_trials, no_trials};
 use super::queue::{enqueue_job, job_reply};
 use super::trials::all_of_ship;
 use crate::app::App;
-use crate::jobs::{REFINEMENT_JOB_KIND, RefinementJob, SourceChoice};
+use crate::jobs::{RefinementJob, SourceChoice};
 use crate::problem::{Problem, Result};
 use crate::rights::check_ship_role;
 use crate::web::field::RequestKey;
@@ -116,15 +116,14 @@ fn names_no_method(body: &[u8]) -> bool {
 }
 
 async fn queue_reply(app: &App, request: RefinementRequest, search: bool) -> Result<StoredReply> {
-    job_reply(queue_job(app, request, search).await?)
+    job_reply(app, queue_job(app, request, search).await?).await
 }
 
 async fn queue_job(app: &App, request: RefinementRequest, search: bool) -> Result<Job> {
-    let ship = request.ship.to_string();
     // The job stores the resolved request, so that later changes of aliases or trials do not affect
     // it.
     let job = RefinementJob { search, ..resolve_request(app, request).await? };
-    enqueue_job(app, REFINEMENT_JOB_KIND, &ship, &job).await
+    enqueue_job(app, &job).await
 }
 
 /// Looks up everything that the request names, so that a wrong request is refused at once.

@@ -27,7 +27,7 @@ pub(super) async fn reserve_memory(
     let (path, mapping, sensors) =
         (trial.path.clone(), trial.mapping.clone(), trial.sensors.clone());
     let measure = move || demand_of_trial(&path, &mapping, &sensors);
-    let measured = app.run_blocking(measure).await?.map_err(Problem::internal)?;
+    let measured = app.read_files(measure).await?.map_err(Problem::internal)?;
     // Given back before more is requested: no task may hold some of the memory while it waits for
     // the rest.
     drop(share);

@@ -22,7 +22,7 @@ pub(crate) async fn read_each<T: Send + 'static>(
             let source = trial.open().map_err(|error| read_failure(&trial.name, &error));
             of(at, source.and_then(|source| read_trial(source, &trial.mapping)))
         };
-        made.push(app.run_blocking(one).await?);
+        made.push(app.read_files(one).await?);
     }
     Ok(made)
 }
@@ -39,7 +39,7 @@ pub(crate) async fn check_upload(upload: &TrialUpload, app: &App) -> Result<Vec<
                 Err(error) => unreadable_file(&trial.name, &error),
             }
         };
-        outcomes.push(app.run_blocking(one).await?);
+        outcomes.push(app.read_files(one).await?);
     }
     Ok(outcomes)
 }

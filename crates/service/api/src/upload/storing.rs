@@ -13,7 +13,7 @@ use tempfile::NamedTempFile;
 use super::memory::reserve_memory;
 use super::reading::read_failure;
 use crate::app::App;
-use crate::jobs::{DIAGNOSIS_JOB_KIND, DiagnosisJob};
+use crate::jobs::{DIAGNOSIS_JOB_KIND, DiagnosisJob, is_small};
 use crate::problem::{Problem, Result};
 use crate::rights::check_ship_role;
 use sistership_auth::Role;
@@ -75,13 +75,14 @@ async fn champion_number(app: &App, ship: &str) -> Result<Option<i64>> {
 /// Returns the job that diagnoses a champion on the new trials, and on these together with earlier
 /// ones.
 fn follow_up_job(ship: &str, number: i64, kept: &[StoredTrial]) -> Option<NewJob> {
-    let trials: Vec<String> =
-        kept.iter().filter(|trial| trial.new).map(|trial| trial.row.id.clone()).collect();
+    let new: Vec<&Trial> = kept.iter().filter(|trial| trial.new).map(|trial| &trial.row).collect();
+    let trials: Vec<String> = new.iter().map(|trial| trial.id.clone()).collect();
     let (ship, settings) = (ship.to_owned(), Default::default());
     let asked = DiagnosisJob { ship: ship.clone(), number, trials, with_earlier: true, settings };
     // An upload without a new trial needs no diagnosis.
     let request = serde_json::to_string(&asked).ok().filter(|_| !asked.trials.is_empty())?;
-    Some(NewJob { kind: DIAGNOSIS_JOB_KIND.to_owned(), ship: Some(ship), request })
+    let small = is_small(new.into_iter());
+    Some(NewJob { kind: DIAGNOSIS_JOB_KIND.to_owned(), ship: Some(ship), request, small })
 }
 
 fn unknown_ship(ship: &str) -> Problem {
@@ -107,7 +108,7 @@ async fn read_upload(upload: &TrialUpload, app: &App) -> Result<Vec<AcceptedTria
             let _share = share;
             read_arrived(&trial, inner.spool())
         };
-        match app.run_blocking(read).await?? {
+        match app.read_files(read).await?? {
             Ok(trial) => accepted.push(trial),
             Err(refusal) => refused.push(refusal),
         }

@@ -12,6 +12,6 @@ mod tests;
 
 pub use backup::{back_up_archive, restore_archive};
 pub use findings::{CheckCounts, Findings, UnreferencedObjects};
-pub use fsck::check_archive;
+pub use fsck::{check_against_head, check_archive};
 pub use gc::{RemovedObjects, collect_garbage};
-pub use sistership_store::{BackupManifest, IntegrityFault};
+pub use sistership_store::{AuditHead, BackupManifest, IntegrityFault};

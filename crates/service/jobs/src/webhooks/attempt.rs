@@ -19,6 +19,17 @@ pub(super) async fn send_once(
     now_us: i64,
     private: bool,
 ) -> Result<String, String> {
+    // The client's own timeout does not include the look-up of the name.
+    let sent = tokio::time::timeout(TIMEOUT, send_delivery(delivery, webhook, now_us, private));
+    sent.await.unwrap_or_else(|_| Err("no answer in time".to_owned()))
+}
+
+async fn send_delivery(
+    delivery: &Delivery,
+    webhook: &Webhook,
+    now_us: i64,
+    private: bool,
+) -> Result<String, String> {
     // Checked again: the setting may have changed since the webhook was created.
     let url = check_url(&webhook.url, private)?;
     let client = pinned_client(&url, &resolve_addresses(&url, private).await?)?;

@@ -4,10 +4,12 @@
 mod addresses;
 mod attempt;
 
+use std::collections::HashSet;
 use std::time::Duration;
 
 use futures::future::join_all;
 use sistership_store::{Delivery, Store, Webhook};
+use tokio::task::JoinSet;
 
 pub use addresses::check_url;
 
@@ -20,8 +22,11 @@ pub struct DeliverySettings {
     pub poll: Duration,
 }
 
-/// Number of deliveries that are sent concurrently.
-const BATCH_SIZE: usize = 8;
+/// Number of deliveries that are sent to one receiver at a time.
+const SHARE: usize = 4;
+/// Number of receivers that are served at a time. Each has its own share of deliveries, so that one
+/// that does not answer delays no other.
+const RECEIVERS: usize = 256;
 /// Lease of a delivery: no other process sends it in this time, which is longer than an attempt may
 /// take.
 const DELIVERY_LEASE: Duration = Duration::from_secs(120);
@@ -37,13 +42,21 @@ const FAILURE_DELAY: Duration = Duration::from_secs(5);
 
 /// Sends due deliveries forever. If the future is dropped, attempts are aborted; they are due again
 /// after their lease.
-pub async fn run_deliveries(store: Store, telling: DeliverySettings) {
+pub async fn run_deliveries(store: Store, settings: DeliverySettings) {
+    let (mut serving, mut served) = (HashSet::new(), JoinSet::new());
     loop {
-        let mut pause = telling.poll;
-        match deliver_batch(&store, telling).await {
-            // A full batch means that more may be due: continue without delay.
-            Ok(BATCH_SIZE) => continue,
-            Ok(_) => {}
+        while let Some(ended) = served.try_join_next() {
+            serving.remove(&ended.unwrap_or_default());
+        }
+        let mut pause = settings.poll;
+        match store.webhooks().due_receivers().await {
+            Ok(due) => {
+                for webhook in due {
+                    if serving.len() < RECEIVERS && serving.insert(webhook.clone()) {
+                        served.spawn(serve_receiver(store.clone(), settings, webhook));
+                    }
+                }
+            }
             Err(error) => {
                 tracing::error!(%error, "webhooks could not be delivered");
                 pause = pause.max(FAILURE_DELAY);
@@ -53,32 +66,51 @@ pub async fn run_deliveries(store: Store, telling: DeliverySettings) {
     }
 }
 
-/// Sends one batch of due deliveries, and returns its size.
+/// Sends all due deliveries to one receiver, and returns its webhook.
+async fn serve_receiver(store: Store, settings: DeliverySettings, webhook: String) -> String {
+    loop {
+        match deliver_batch(&store, settings, &webhook).await {
+            // A full batch means that more may be due.
+            Ok(SHARE) => {}
+            Ok(_) => return webhook,
+            Err(error) => {
+                tracing::error!(%error, webhook, "deliveries could not be read or recorded");
+                // The webhook counts as served meanwhile, so that the database can recover.
+                tokio::time::sleep(FAILURE_DELAY).await;
+                return webhook;
+            }
+        }
+    }
+}
+
+/// Sends one batch of due deliveries to a receiver, and returns its size.
 async fn deliver_batch(
     store: &Store,
-    telling: DeliverySettings,
+    settings: DeliverySettings,
+    webhook: &str,
 ) -> sistership_store::Result<usize> {
     let mut taken = Vec::new();
-    while taken.len() < BATCH_SIZE {
+    while taken.len() < SHARE {
         // Taking a delivery also counts the attempt and sets the time at which it is due again.
-        match store.webhooks().take_due(store.now_us() + to_micros(DELIVERY_LEASE)).await? {
+        let until = store.now_us() + to_micros(DELIVERY_LEASE);
+        match store.webhooks().take_due(webhook, until).await? {
             Some(one) => taken.push(one),
             None => break,
         }
     }
-    let told = taken.iter().map(|(delivery, webhook)| deliver(store, telling, delivery, webhook));
+    let sent = taken.iter().map(|(delivery, webhook)| deliver(store, settings, delivery, webhook));
     // All attempts finish before an error of the database is returned.
-    join_all(told).await.into_iter().collect::<sistership_store::Result<Vec<()>>>()?;
+    join_all(sent).await.into_iter().collect::<sistership_store::Result<Vec<()>>>()?;
     Ok(taken.len())
 }
 
 async fn deliver(
     store: &Store,
-    telling: DeliverySettings,
+    settings: DeliverySettings,
     delivery: &Delivery,
     webhook: &Webhook,
 ) -> sistership_store::Result<()> {
-    match attempt::send_once(delivery, webhook, store.now_us(), telling.private).await {
+    match attempt::send_once(delivery, webhook, store.now_us(), settings.private).await {
         Ok(answer) => store.webhooks().record_arrival(&delivery.id, &answer).await,
         Err(reason) => {
             let due = retry_delay(delivery.attempts).map(|pause| store.now_us() + to_micros(pause));

@@ -9,6 +9,7 @@ use s3s::auth::SimpleAuth;
 use s3s::service::{S3Service, S3ServiceBuilder};
 use s3s_fs::FileSystem;
 use tempfile::TempDir;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::task::JoinHandle;
 
@@ -70,6 +71,63 @@ impl TestS3 {
             unreachable!()
         };
         ObjectStorage::from_store(build_store(&place, user))
+    }
+}
+
+/// A server that does not answer as a bucket does.
+#[derive(Debug)]
+pub struct FaultyBucket {
+    address: SocketAddr,
+    serving: JoinHandle<()>,
+}
+
+impl FaultyBucket {
+    /// Starts a server that answers every request with a status; without one it accepts requests
+    /// and never answers.
+    pub async fn start(status: Option<u16>) -> Self {
+        let listener = TcpListener::bind(("127.0.0.1", 0)).await.expect("a free port");
+        let address = listener.local_addr().expect("an address");
+        Self { address, serving: tokio::spawn(answer_all(listener, status)) }
+    }
+
+    /// Opens a store in it.
+    pub fn open_objects(&self) -> ObjectStorage {
+        let (url, endpoint) = (format!("s3://{BUCKET}"), format!("http://{}", self.address));
+        let ObjectsPlace::S3(place) =
+            ObjectsPlace::parse_s3(&url, Some(endpoint), None).expect("a place")
+        else {
+            unreachable!()
+        };
+        ObjectStorage::from_store(build_store(&place, KEY.0))
+    }
+}
+
+impl Drop for FaultyBucket {
+    fn drop(&mut self) {
+        self.serving.abort();
+    }
+}
+
+async fn answer_all(listener: TcpListener, status: Option<u16>) {
+    let mut held = Vec::new();
+    while let Ok((mut stream, _)) = listener.accept().await {
+        let Some(status) = status else {
+            held.push(stream);
+            continue;
+        };
+        tokio::spawn(async move {
+            let (mut head, answer) = (
+                [0; 1 << 14],
+                format!(
+                    "HTTP/1.1 {status} Fault\r\ncontent-length: 0\r\nconnection: close\r\n\r\n"
+                ),
+            );
+            // The request is not parsed: its head comes with the first read.
+            if stream.read(&mut head).await.is_ok() {
+                let _ = stream.write_all(answer.as_bytes()).await;
+                let _ = stream.shutdown().await;
+            }
+        });
     }
 }
 

@@ -205,7 +205,7 @@ async fn what_is_done_is_in_the_audit_and_what_is_not_is_not(on: &TestStore) {
     let entries = of(AuditFilter::Subject("alias:kcs/champion")).await;
     assert_eq!(entries[0].state_before, None);
     assert!(entries[0].state_after.as_ref().unwrap().contains(r#""version":1"#), "{entries:?}");
-    let (count, faults) = on.store.audit().find_faults().await.unwrap();
+    let (count, faults) = on.store.audit().find_faults(None).await.unwrap();
     assert_eq!((count, faults.len()), (4, 0));
     let head = on.store.audit().chain_head().await.unwrap();
     assert_eq!((head.number, head.sha256.len()), (4, 64));
@@ -231,7 +231,7 @@ async fn a_unit_of_work_is_entered_as_a_whole_or_not_at_all(on: &TestStore) {
         .map(|entry| entry.subject)
         .collect();
     assert_eq!(subjects, ["ship:b", "ship:a"]);
-    assert_eq!(on.store.audit().find_faults().await.unwrap().1, []);
+    assert_eq!(on.store.audit().find_faults(None).await.unwrap().1, []);
 }
 
 async fn many_enter_at_once_and_each_has_its_number(on: &TestStore) {
@@ -254,7 +254,7 @@ async fn many_enter_at_once_and_each_has_its_number(on: &TestStore) {
     for done in futures::future::join_all(writing).await {
         done.unwrap();
     }
-    let (count, faults) = on.store.audit().find_faults().await.unwrap();
+    let (count, faults) = on.store.audit().find_faults(None).await.unwrap();
     assert_eq!((count, faults), (32, vec![]));
 }
 
@@ -279,9 +279,9 @@ async fn tampering_with_one_entry_is_found(database: impl AsyncFn() -> Option<Te
         for name in ["a", "b", "c"] {
             on.store.ships().create(&ship(name)).await.unwrap();
         }
-        assert_eq!(on.store.audit().find_faults().await.unwrap().1, [], "{damage}");
+        assert_eq!(on.store.audit().find_faults(None).await.unwrap().1, [], "{damage}");
         on.database.execute_unchecked(damage).await;
-        let faults = on.store.audit().find_faults().await.unwrap().1;
+        let faults = on.store.audit().find_faults(None).await.unwrap().1;
         assert!(!faults.is_empty(), "{damage}");
         assert!(faults.iter().all(|fault| fault.check == "audit-chain"), "{faults:?}");
     }

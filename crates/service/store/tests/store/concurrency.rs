@@ -4,7 +4,7 @@ use std::sync::Arc;
 use futures::future::join_all;
 use sistership_store::{
     ExpectedRevision, JobClaim, PageRequest, RequestClaim, Store, StoreError, SystemClock,
-    sha256_hex,
+    WorkerClaim, sha256_hex,
 };
 
 use crate::support::*;
@@ -65,7 +65,10 @@ async fn no_job_is_claimed_twice(on: &TestStore) {
         tokio::spawn(async move {
             store
                 .jobs()
-                .claim_next(&format!("worker-{n}"), crate::jobs::LEASE, false)
+                .claim_next(&WorkerClaim {
+                    alone: false,
+                    ..crate::jobs::any_job(&format!("worker-{n}"))
+                })
                 .await
                 .unwrap()
         })

@@ -1,15 +1,20 @@
 use std::time::Duration;
 
 use sistership_store::{
-    Job, JobClaim, JobFilter, JobState, MAX_LOST_WORKERS, PageRequest, QueueWatch,
+    Job, JobClaim, JobFilter, JobState, MAX_LOST_WORKERS, PageRequest, QueueWatch, WorkerClaim,
 };
 
 use crate::support::*;
 
 pub const LEASE: Duration = Duration::from_secs(30);
 
+/// The claim of a worker whose process does nothing else.
+pub fn any_job(worker: &str) -> WorkerClaim<'_> {
+    WorkerClaim { worker, lease: LEASE, alone: true, small: false }
+}
+
 pub async fn claim(on: &TestStore, worker: &str) -> Option<Job> {
-    match on.store.jobs().claim_next(worker, LEASE, true).await.unwrap() {
+    match on.store.jobs().claim_next(&any_job(worker)).await.unwrap() {
         JobClaim::Job(job) => Some(*job),
         JobClaim::Alone => panic!("a process that does nothing else may claim any job"),
         JobClaim::Nothing => None,
@@ -117,7 +122,10 @@ async fn a_job_during_which_a_process_ended_is_begun_alone(on: &TestStore) {
     let suspect = jobs.enqueue(&job("kcs")).await.unwrap().id;
     claim(on, "mortal").await.unwrap();
     let_the_lease_run_out(on).await;
-    assert_eq!(jobs.claim_next("busy", LEASE, false).await.unwrap(), JobClaim::Alone);
+    assert_eq!(
+        jobs.claim_next(&WorkerClaim { alone: false, ..any_job("busy") }).await.unwrap(),
+        JobClaim::Alone
+    );
     assert_eq!(claim(on, "idle").await.unwrap().id, suspect);
 }
 

@@ -15,6 +15,7 @@ mod idempotency;
 mod jobs;
 mod laws;
 mod objects;
+mod queue;
 mod refinements;
 mod refusals;
 mod reports;

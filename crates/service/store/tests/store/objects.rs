@@ -1,8 +1,9 @@
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use bytes::Bytes;
 use futures::TryStreamExt as _;
-use sistership_store::testing::TestS3;
+use sistership_store::testing::{FaultyBucket, TestS3};
 use sistership_store::{ObjectName, ObjectStorage, ObjectsError, StoreError, sha256_hex};
 
 use crate::support::*;
@@ -85,6 +86,38 @@ async fn a_bucket_that_does_not_let_one_in_is_an_error_and_no_missing_object() {
         Err(StoreError::Objects(ObjectsError::Store(_)))
     ));
     assert!(stranger.check_health().await.is_err());
+}
+
+/// Faults of a bucket are errors that may pass, which a client is asked to retry (503), and none
+/// of them takes longer than half a minute to be noticed.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn faults_of_a_bucket_are_noticed_and_may_pass() {
+    let key = sha256_hex(&SAMPLES);
+    let faulty = async |status: Option<u16>| {
+        let bucket = FaultyBucket::start(status).await;
+        let objects = bucket.open_objects();
+        let start = Instant::now();
+        assert!(objects.check_health().await.is_err());
+        assert!(start.elapsed() < Duration::from_secs(1), "{status:?}: {:?}", start.elapsed());
+        let marked = objects.write_marker().await.unwrap_err();
+        assert!(marked.is_transient(), "{status:?}: {marked}");
+        assert!(start.elapsed() < Duration::from_secs(5), "{status:?}: {:?}", start.elapsed());
+        if status.is_none() {
+            // The deadline of the other operations, which is the same code, is twenty seconds.
+            return;
+        }
+        for answer in [
+            objects.put(SAMPLES).await.map(drop),
+            objects.get(&key).await.map(drop),
+            objects.exists(&key).await.map(drop),
+            objects.get_stream(&key).await.map(drop),
+        ] {
+            let error = answer.unwrap_err();
+            assert!(error.is_transient() && !error.is_data_fault(), "{status:?}: {error}");
+        }
+        assert!(start.elapsed() < Duration::from_secs(30), "{status:?}: {:?}", start.elapsed());
+    };
+    tokio::join!(faulty(Some(500)), faulty(Some(503)), faulty(Some(403)), faulty(None));
 }
 
 /// As a process leaves them that is killed in the middle of a put.

@@ -72,6 +72,7 @@ pub fn job(ship: &str) -> NewJob {
         kind: "refinement".into(),
         ship: Some(ship.into()),
         request: r#"{"source":"auto"}"#.into(),
+        small: false,
     }
 }
 

@@ -46,23 +46,24 @@ async fn a_move_is_told_with_its_transaction(on: &TestStore) {
 async fn a_delivery_is_taken_by_one_until_its_time_is_over(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
     let webhooks = on.store.webhooks();
-    webhooks.create(&webhook(&["champion.moved"], None)).await.unwrap();
+    let id = webhooks.create(&webhook(&["champion.moved"], None)).await.unwrap().id;
     on.store
         .versions()
         .create(&version("kcs"), &[champion(ExpectedRevision::Absent)])
         .await
         .unwrap();
+    assert_eq!(webhooks.due_receivers().await.unwrap(), [id.clone()]);
     let until = on.store.now_us() + 60_000_000;
-    let (taken, of) = webhooks.take_due(until).await.unwrap().unwrap();
+    let (taken, of) = webhooks.take_due(&id, until).await.unwrap().unwrap();
     assert_eq!((taken.attempts, of.secret.as_str()), (1, "secret"));
-    assert_eq!(webhooks.take_due(until).await.unwrap(), None, "another has it");
+    assert_eq!(webhooks.take_due(&id, until).await.unwrap(), None, "another has it");
     webhooks.record_failure(&taken.id, Some(on.store.now_us()), "answered 500").await.unwrap();
-    let (again, _) = webhooks.take_due(until).await.unwrap().unwrap();
+    let (again, _) = webhooks.take_due(&id, until).await.unwrap().unwrap();
     assert_eq!((again.id.as_str(), again.attempts), (taken.id.as_str(), 2));
     webhooks.record_arrival(&again.id, "204").await.unwrap();
     // What comes too late of an earlier attempt does not send it again.
     webhooks.record_failure(&again.id, Some(on.store.now_us()), "no answer in time").await.unwrap();
-    assert_eq!(webhooks.take_due(until).await.unwrap(), None);
+    assert_eq!(webhooks.take_due(&id, until).await.unwrap(), None);
     assert_not_found(webhooks.retry_delivery(&of.id, &again.id).await, "delivery under way");
 }
 
@@ -78,7 +79,7 @@ async fn what_has_ended_is_told_nothing(on: &TestStore) {
         .unwrap();
     webhooks.end_webhook(&made.id).await.unwrap();
     assert_conflict(webhooks.end_webhook(&made.id).await, "ended");
-    assert_eq!(webhooks.take_due(i64::MAX).await.unwrap(), None);
+    assert_eq!(webhooks.take_due(&made.id, i64::MAX).await.unwrap(), None);
     let moved = on.store.aliases().move_to("kcs", 1, &champion(ExpectedRevision::Any)).await;
     moved.unwrap();
     assert_eq!(told(on, &made.id).await.len(), 1);

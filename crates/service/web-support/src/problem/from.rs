@@ -26,6 +26,7 @@ impl From<StoreError> for Problem {
             StoreError::NotFound { .. } => Self::not_found(text),
             StoreError::Conflict { .. } => Self::new(StatusCode::CONFLICT, text),
             StoreError::Forbidden { .. } => Self::new(StatusCode::FORBIDDEN, text),
+            StoreError::QuotaExceeded { .. } => Self::new(StatusCode::TOO_MANY_REQUESTS, text),
             StoreError::PreconditionFailed { .. } => Self::new(
                 StatusCode::PRECONDITION_FAILED,
                 format!("{text}; read it again and repeat the change if it still applies"),

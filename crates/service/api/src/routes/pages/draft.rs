@@ -84,7 +84,7 @@ async fn propose_draft(
     let owner = ship.to_owned();
     let look =
         move || propose_manifest(&owner, &paths.iter().map(AsRef::as_ref).collect::<Vec<&Path>>());
-    let proposal = app.run_blocking(look).await?.map_err(|errors| {
+    let proposal = app.read_files(look).await?.map_err(|errors| {
         let why = "a file cannot be read; see its errors below";
         let problem = Problem::new(axum::http::StatusCode::UNPROCESSABLE_ENTITY, why);
         errors.into_iter().fold(problem, |problem, error| {

@@ -3,10 +3,11 @@
 use serde_json::json;
 use sistership_identification::refine::RefinementSettings;
 use sistership_store::testing::TestDatabase;
-use sistership_store::{ExpectedRevision, sha256_hex};
+use sistership_store::{AuditHead, ExpectedRevision, sha256_hex};
 
-use super::{Place, archive, found, places};
+use super::{Place, archive, databases, found, places};
 use crate::aliases::server_move;
+use crate::upkeep::check_against_head;
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_healthy_archive_is_clean() {
@@ -119,6 +120,16 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("UPDATE audit SET actor = 'bob' WHERE number = 2", "audit-chain", "audit entry 2"),
     ("DELETE FROM audit WHERE number = 2", "audit-chain", "audit entry 3"),
     (CUT, "audit-chain", "audit entry "),
+    ("UPDATE grants SET role = 'admin' WHERE principal = 'user:ann'", "audit-row", "user:ann"),
+    ("UPDATE grants SET scope_kind = 'server', scope_name = ''", "audit-row", "user:ann"),
+    ("DELETE FROM grants", "audit-row", "user:ann"),
+    ("UPDATE users SET password_hash = 'other' WHERE name = 'ann'", "audit-row", "user:ann"),
+    ("INSERT INTO users VALUES ('eve', 'Eve', NULL, 0, NULL)", "audit-row", "user:eve"),
+    ("DELETE FROM users WHERE name = 'ann'", "audit-row", "user:ann"),
+    (KEY, "audit-row", "key:0123456789ab"),
+    ("UPDATE trials SET name = 'another.csv'", "audit-row", "trial:"),
+    ("UPDATE trials SET deleted_us = 1", "audit-row", "trial:"),
+    ("INSERT INTO settings VALUES ('second_person', 'off', 0)", "audit-row", "settings"),
     (JOB, "job-ship", "job j"),
     (JOB, "job-state", "job j"),
     (JOB, "job-result", "job j"),
@@ -150,7 +161,31 @@ const CUT: &str = "DELETE FROM audit WHERE number = (SELECT MAX(number) FROM aud
 const FACT: &str = "INSERT INTO ship_facts VALUES ('nobody', 'particular lpp_m', 1)";
 const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', 'succeeded', 1, '', \
     '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, \
-    1, 5, NULL, 0, 0, NULL, 0, 0, 'ann')";
+    1, 5, NULL, 0, 0, NULL, 0, 0, 'ann', 0)";
+
+/// The last entry and the head are cut, so that the chain itself is whole.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_tail_cut_with_its_head_is_found_by_a_head_kept_elsewhere() {
+    for database in databases().await {
+        let archive = archive(&database).await;
+        let kept = archive.store.audit().chain_head().await.unwrap();
+        let against = async |kept| check_against_head(&archive, Some(kept)).await.unwrap();
+        assert!(against(&kept).await.clean);
+        archive.store.users().disable("ann").await.unwrap();
+        assert!(against(&kept).await.clean, "entries were added");
+        let other = AuditHead { sha256: "x".into(), ..kept.clone() };
+        assert_eq!(against(&other).await.faults[0].check, "audit-head");
+        for _ in 0..2 {
+            database.execute_unchecked(CUT).await;
+        }
+        let cut = "UPDATE audit_head SET number = (SELECT MAX(number) FROM audit), sha256 = \
+            (SELECT sha256 FROM audit ORDER BY number DESC LIMIT 1)";
+        database.execute_unchecked(cut).await;
+        let faults = against(&kept).await.faults;
+        assert!(faults.iter().any(|fault| fault.check == "audit-head"), "{faults:#?}");
+        assert!(faults.iter().all(|fault| fault.check != "audit-chain"), "{faults:#?}");
+    }
+}
 
 #[tokio::test(flavor = "multi_thread")]
 async fn each_damage_to_rows_is_named_on_sqlite() {
@@ -193,7 +228,8 @@ async fn damaged(database: TestDatabase) {
     assert!(found(&archive).await.clean, "healed again");
 }
 
-const TABLES: [&str; 32] = [
+const TABLES: [&str; 33] = [
+    "settings",
     "laws",
     "effect_libraries",
     "ships",

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bytes::Bytes;
 use sistership_store::testing::{TestDatabase, TestS3};
-use sistership_store::{NewTrial, Store, SystemClock};
+use sistership_store::{GrantRow, NewTrial, Store, SystemClock};
 
 use super::{Findings, check_archive};
 use crate::archive::Archive;
@@ -23,6 +23,9 @@ async fn filled(archive: Archive) -> Archive {
     seed::seed_zoo(&archive.store, &ZooCache::default()).await.unwrap();
     let key = archive.objects.put(Bytes::from_static(b"samples")).await.unwrap();
     archive.store.trials().insert(&trial(&key)).await.unwrap();
+    let role =
+        GrantRow { scope_kind: "ship".into(), scope_name: "mariner".into(), role: "reader".into() };
+    archive.store.users().create("ann", "Ann", Some("hash"), &[role]).await.unwrap();
     archive
 }
 
