@@ -27,7 +27,7 @@ pub struct TrialApproach {
 }
 
 /// Returns the approach of a set of trials: the median speed at their first samples; where they
-/// start from rest, the median speed under way. `None` without velocities.
+/// start from rest, the typical speed under way. `None` without velocities.
 pub fn trial_approach(trials: &[&Trial]) -> Option<TrialApproach> {
     let first = |trial: &&Trial| {
         Some(trial.channel(Channel::U)?.first()?.hypot(*trial.channel(Channel::V)?.first()?))
@@ -39,13 +39,22 @@ pub fn trial_approach(trials: &[&Trial]) -> Option<TrialApproach> {
         .collect();
     let mut revolutions: Vec<f64> =
         trials.iter().flat_map(|t| t.channel(Channel::N).into_iter().flatten().copied()).collect();
-    let (start, under_way) = (median_value(&mut starts)?, median_value(&mut speeds)?);
+    let (start, under_way) = (median_value(&mut starts)?, typical_value(&mut speeds)?);
     // Half of the speed under way separates a start from rest from a steady approach.
     let speed_m_s = if start > 0.5 * under_way { start } else { under_way };
     (speed_m_s > 0.0).then(|| TrialApproach {
         speed_m_s,
-        n_rps: median_value(&mut revolutions).filter(|n| *n > 0.0),
+        n_rps: typical_value(&mut revolutions).filter(|n| *n > 0.0),
     })
+}
+
+/// Median; the root mean square where trials stop, go astern or turn on the spot, so that the median
+/// is near zero.
+fn typical_value(values: &mut [f64]) -> Option<f64> {
+    let mean_square =
+        values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64;
+    let (median, rms) = (median_value(values)?, mean_square.sqrt());
+    Some(if median > 0.5 * rms { median } else { rms })
 }
 
 fn median_value(values: &mut [f64]) -> Option<f64> {

@@ -18,6 +18,8 @@ const SLOWEST: f64 = 0.15;
 const FASTEST: f64 = 25.0;
 const FADE: f64 = 0.45;
 const MAX_LOSS: f64 = 14.0;
+/// Largest log odds of a course along which the track lies no better than along the heading.
+const ALONG: f64 = 2.0;
 /// Largest speed of a current as a fraction of the ship's speed.
 const CURRENT: f64 = 0.4;
 
@@ -234,10 +236,20 @@ impl GroundTrack {
         let straight = 1.0 - north.hypot(east) / all.max(1e-300);
         let odds = (-PER_FOLD * off.max(1e-4).ln())
             .min(STRAIGHT - PER_FOLD * (off.max(1e-4) / straight.max(1e-4)).ln())
+            .min(ALONG + PER_FOLD * (self.off_heading().max(1e-4) / off.max(1e-4)).ln())
             .clamp(-8.0, 20.0);
         let told = || format!("{:.1} % of the distance made good is along it", 100.0 * (1.0 - off));
         let figure = observed.format_figure(told);
         Some(ColumnRelation { roles: [self.roles.0, self.roles.1, Role::Course], odds, figure })
+    }
+}
+
+impl GroundTrack {
+    /// Returns the part of the way made good that does not lie along the heading; 1 without one.
+    fn off_heading(&self) -> f64 {
+        let steps = self.north.iter().zip(&self.east).zip(&self.psi);
+        let along: f64 = steps.map(|((n, e), psi)| n * psi.cos() + e * psi.sin()).sum();
+        1.0 - along / self.length.iter().sum::<f64>().max(1e-300)
     }
 }
 
