@@ -160,9 +160,12 @@ impl OwnEvidence {
             Role::Psi | Role::Course if summary.period.is_none() => summary.spread,
             _ => summary.largest,
         } * what.unit.to_si;
-        // A constant says nothing of how small a quantity is: a straight run has no rudder, no drift
-        // and one heading.
-        let is_small = size < low && summary.spread > 0.0;
+        // A straight run has no rudder, no drift and one heading, so that a constant says nothing
+        // of how small such a quantity is; speeds and revolutions have a size even then.
+        let has_size =
+            matches!(what.role, Role::U | Role::Speed | Role::UWater | Role::Depth | Role::N)
+                || matches!(what.role, Role::NS | Role::NP);
+        let is_small = size < low && (summary.spread > 0.0 || has_size);
         let out = if is_small { low / size.max(1e-12) } else { (size / high).max(1.0) };
         // A log-normal tail outside the usual range, bounded so that relations may outweigh it.
         let faded = 0.5 * (out.ln() / FADE).powi(2);

@@ -24,8 +24,8 @@ const MAY: &[(&str, &str)] = &[
     ("garbage", "LOCK"),
 ];
 /// Plan steps of lists that a statement has made itself.
-const FEW: [&str; 7] =
-    ["SCAN few", "SCAN waiting", "SCAN line", "SCAN p", "SCAN w", "SCAN t", "SCAN r"];
+const FEW: [&str; 8] =
+    ["SCAN few", "SCAN a", "SCAN waiting", "SCAN line", "SCAN p", "SCAN w", "SCAN t", "SCAN r"];
 /// Beginning of the plan step of a query within a statement.
 const WITHIN: &str = "SCAN (subquery";
 /// Plan step of a list that is an argument of the statement.

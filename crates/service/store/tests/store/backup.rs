@@ -129,7 +129,7 @@ async fn a_backup_that_is_damaged_is_refused(on: &TestStore) {
     std::fs::remove_file(backup.join("backup.json")).unwrap();
     assert_conflict(
         Store::restore(&backup, &there.url, &ObjectStorage::in_memory()).await,
-        "no backup.json",
+        "backup.json is missing",
     );
 }
 

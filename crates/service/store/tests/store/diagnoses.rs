@@ -134,7 +134,10 @@ async fn a_fenced_worker_leaves_no_diagnosis_behind(on: &TestStore) {
     let old = claim(on, "old").await.unwrap();
     let_the_lease_run_out(on).await;
     claim(on, "new").await.unwrap();
-    assert_conflict(commit(on, &old.id, old.fence, &diagnosis(&diagnosed, true)).await, "lost");
+    assert_conflict(
+        commit(on, &old.id, old.fence, &diagnosis(&diagnosed, true)).await,
+        "no longer valid",
+    );
     assert!(
         on.store
             .diagnoses()

@@ -109,7 +109,7 @@ async fn a_ship_has_one_outcome_whoever_comes_twice(on: &TestStore) {
     let_the_lease_run_out(on).await;
     let new = claim(on, "new").await.unwrap();
     let done = [outcome("a", vec![]), outcome("b", vec![champion(ExpectedRevision::Absent)])];
-    assert_conflict(commit(on, &id, &old, &done).await, "lost");
+    assert_conflict(commit(on, &id, &old, &done).await, "no longer valid");
     assert!(
         on.store.bulks().count_outcomes(&id).await.unwrap().is_empty(),
         "a fenced worker leaves nothing behind"

@@ -87,10 +87,10 @@ async fn a_lost_lease_fences_the_old_worker(on: &TestStore) {
     let_the_lease_run_out(on).await;
     let new = claim(on, "new").await.unwrap();
     assert_eq!((new.id.as_str(), new.fence, new.attempt), (id.as_str(), 2, 2));
-    assert_conflict(jobs.heartbeat(&id, old.fence, 0.9, "", LEASE).await, "lost");
-    assert_conflict(jobs.complete(&id, old.fence, "{}").await, "lost");
-    assert_conflict(jobs.fail(&id, old.fence, "late").await, "lost");
-    assert_conflict(jobs.release_job(&id, old.fence).await, "lost");
+    assert_conflict(jobs.heartbeat(&id, old.fence, 0.9, "", LEASE).await, "no longer valid");
+    assert_conflict(jobs.complete(&id, old.fence, "{}").await, "no longer valid");
+    assert_conflict(jobs.fail(&id, old.fence, "late").await, "no longer valid");
+    assert_conflict(jobs.release_job(&id, old.fence).await, "no longer valid");
     assert_eq!(jobs.get(&id).await.unwrap(), new);
 }
 

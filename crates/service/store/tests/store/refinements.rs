@@ -46,7 +46,7 @@ async fn a_fenced_worker_leaves_nothing_behind(on: &TestStore) {
     let old = claim(on, "old").await.unwrap();
     let_the_lease_run_out(on).await;
     let new = claim(on, "new").await.unwrap();
-    assert_conflict(commit(on, &old.id, old.fence).await, "lost");
+    assert_conflict(commit(on, &old.id, old.fence).await, "no longer valid");
     assert_not_found(on.store.versions().latest("kcs").await, "model");
     assert_not_found(on.store.aliases().get("kcs", "champion").await, "alias");
     assert_eq!(on.store.jobs().get(&old.id).await.unwrap(), new);
@@ -99,7 +99,7 @@ async fn the_job_that_goes_on_comes_with_the_version_or_not_at_all(on: &TestStor
     let named = |kept: &RefinementRows<'_>| format!(r#"{{"next":"{}"}}"#, kept.next.unwrap().id);
     let place = (running.id.as_str(), running.fence);
     let lost = on.store.commit_refinement(None, (place.0, place.1 - 1), &next, named).await;
-    assert_conflict(lost, "lost");
+    assert_conflict(lost, "no longer valid");
     assert_eq!(all(on).await.len(), 1);
     let kept = on.store.commit_refinement(None, place, &next, named).await.unwrap();
     let jobs = all(on).await;

@@ -12,12 +12,13 @@ use super::harness::{Harness, read};
 use values::{fitting, unfit};
 
 /// Texts of refusals that concern no limit of a field.
-const RULES: [&str; 7] = [
+const RULES: [&str; 8] = [
     "there is no",
     "has no trials",
     "has no prior yet",
     "the name of a ship cannot be changed",
     "give either",
+    "versions cannot be compared; give",
     "is beyond the rudder's limit",
     "has no posterior to draw from",
 ];
