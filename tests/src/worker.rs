@@ -37,7 +37,7 @@ impl TestWorker {
     pub fn until_it_works(&mut self) {
         let out = self.0.stdout.take().expect("its output");
         let line = BufReader::new(out).lines().next().expect("a worker that works").expect("text");
-        assert!(line.contains("works"), "{line}");
+        assert!(line.contains("worker started"), "{line}");
     }
 
     /// Its process.

@@ -25,7 +25,7 @@ pub use demo::sea_trials;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 
 use crate::arguments::{Arguments, Command};
 use crate::failure::Failure;
@@ -79,7 +79,9 @@ fn dispatch(arguments: &Arguments) -> Result<(), Failure> {
         Command::Gc(gc) => commands::gc::run(gc),
         Command::Backup(backup) => commands::backup::run_backup(backup),
         Command::Restore(restore) => commands::backup::run_restore(restore),
-        Command::Completions(completions) => commands::completions::run(completions),
-        Command::Manual(manual) => commands::manual::run(manual),
+        Command::Completions(completions) => {
+            commands::completions::run(completions, Arguments::command())
+        }
+        Command::Manual(manual) => commands::manual::run(manual, Arguments::command()),
     }
 }

@@ -2,9 +2,9 @@
 //! can be set, the parameters and particulars that the equations read.
 
 use sistership_formula::units::Dimension;
-use sistership_model::Model;
 use sistership_model::effect::qualified_name;
 use sistership_model::quantity::Quantity;
+use sistership_model::{Law, Model};
 use sistership_simulation::equations::EquationsOfMotion;
 use sistership_simulation::tape::NameBinding;
 use sistership_simulation::{Plant, PlantError};
@@ -50,7 +50,7 @@ const ADDED: [&str; 7] = [
 /// # Errors
 /// Returns an error if the law has no such coefficient.
 pub fn export_coefficients(
-    equations: &EquationsOfMotion<'_>,
+    (equations, law): (&EquationsOfMotion<'_>, &Law),
     plant: &Plant,
     outside: &[ExternalInput],
 ) -> Result<Vec<ExportCoefficient>, ExportError> {
@@ -66,14 +66,14 @@ pub fn export_coefficients(
         states.chain(outside.iter().map(|input| input.identifier.as_str())).collect();
     let identifiers = unique_identifiers(taken.iter().chain(&names).copied());
     let one = |(name, identifier): (&&str, String)| match coefficients.get(*name) {
-        Some(quantity) => coefficient(equations, (name, quantity), identifier),
+        Some(quantity) => coefficient(law, (name, quantity), identifier),
         None => Ok(parameter(equations, name, identifier)),
     };
     names.iter().zip(identifiers.into_iter().skip(taken.len())).map(one).collect()
 }
 
 fn coefficient(
-    equations: &EquationsOfMotion<'_>,
+    law: &Law,
     (name, quantity): (&str, &Quantity),
     identifier: String,
 ) -> Result<ExportCoefficient, ExportError> {
@@ -82,7 +82,7 @@ fn coefficient(
         identifier,
         meaning: "coefficient".to_owned(),
         value: quantity.value,
-        unit: equations.law().coefficient_dimension(name).map_err(PlantError::from)?.to_string(),
+        unit: law.coefficient_dimension(name).map_err(PlantError::from)?.to_string(),
         source: quantity.source.clone(),
         standard_error: quantity.standard_error,
     })

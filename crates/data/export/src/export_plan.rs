@@ -89,7 +89,7 @@ impl ExportPlan {
         let band = plant.dead_bands().iter().find(|(place, _)| Some(*place) == delta);
         // The distance to the trials' range is part of the tape, so its inputs are kept, too.
         let outside = external_inputs(&model, &law, &plant);
-        let coefficients = export_coefficients(&equations, &plant, &outside)?;
+        let coefficients = export_coefficients((&equations, subject.law), &plant, &outside)?;
         let operands = tape_operands(&law, &plant, (&outside, &coefficients));
         Ok(Self {
             name: model.name.clone(),

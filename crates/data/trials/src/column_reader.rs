@@ -124,7 +124,8 @@ fn mapped_columns(
     let length = offers[time.index].length;
     for column in columns.iter().filter(|column| offers[column.index].length != length) {
         let message = format!(
-            "has {} values, time has {length}; write them on one time base, or map only those",
+            "has {} values, but time has {length}; write all variables with the same times, or map \
+             only those",
             offers[column.index].length
         );
         findings.error(None, Some(&column.header), message);

@@ -1,9 +1,8 @@
 //! `sistership completions`: completions of the command line for a shell.
 
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::Shell;
 
-use crate::arguments::Arguments;
 use crate::failure::Failure;
 use crate::output;
 
@@ -21,29 +20,32 @@ pub struct CompletionsArguments {
     shell: Shell,
 }
 
-/// Runs the command.
+/// Runs the command for a program.
 ///
 /// # Errors
 /// Returns an error if standard output cannot be written.
-pub fn run(arguments: &CompletionsArguments) -> Result<(), Failure> {
-    let script = completion_script(arguments.shell);
+pub fn run(arguments: &CompletionsArguments, program: Command) -> Result<(), Failure> {
+    let script = completion_script(arguments.shell, program);
     output::print_result(false, &(), || script)
 }
 
-fn completion_script(shell: Shell) -> String {
+fn completion_script(shell: Shell, mut program: Command) -> String {
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut Arguments::command(), "sistership", &mut script);
+    clap_complete::generate(shell, &mut program, "sistership", &mut script);
     String::from_utf8_lossy(&script).into_owned()
 }
 
 #[cfg(test)]
 mod tests {
+    use clap::Arg;
+
     use super::*;
 
     #[test]
     fn every_shell_completes_commands_and_flags() {
         for shell in [Shell::Bash, Shell::Zsh, Shell::Fish, Shell::PowerShell, Shell::Elvish] {
-            let script = completion_script(shell);
+            let refine = Command::new("refine").arg(Arg::new("held").long("held-out"));
+            let script = completion_script(shell, Command::new("program").subcommand(refine));
             assert!(script.contains("refine") && script.contains("held-out"), "{shell}");
         }
     }

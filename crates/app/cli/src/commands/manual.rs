@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Command, CommandFactory};
+use clap::{Args, Command};
 use clap_mangen::Man;
 
-use crate::arguments::Arguments;
 use crate::failure::{Failure, about_file};
 use crate::output::print_note;
 
@@ -23,14 +22,13 @@ pub struct ManualArguments {
     out: PathBuf,
 }
 
-/// Runs the command.
+/// Runs the command for a program.
 ///
 /// # Errors
 /// Returns an error if the folder or a page cannot be written.
-pub fn run(arguments: &ManualArguments) -> Result<(), Failure> {
+pub fn run(arguments: &ManualArguments, mut program: Command) -> Result<(), Failure> {
     let folder = &arguments.out;
     std::fs::create_dir_all(folder).map_err(|error| about_file(folder, error))?;
-    let mut program = Arguments::command();
     program.build();
     let pages = write_pages(&program, "sistership", folder)?;
     print_note(&format!("{pages} pages written to {}", folder.display()));
@@ -59,13 +57,19 @@ fn is_left_out(command: &Command) -> bool {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
+    use clap::Arg;
+
     use super::*;
 
     #[test]
     fn each_command_has_a_page() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("man1");
-        run(&ManualArguments { out: out.clone() }).unwrap();
+        let refine = Command::new("refine").arg(Arg::new("held").long("held-out"));
+        let create = Command::new("create").about("a foundation");
+        let family = Command::new("family").subcommand(create);
+        let program = Command::new("sistership").subcommands([refine, family]);
+        run(&ManualArguments { out: out.clone() }, program).unwrap();
         let page = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
         assert!(page("sistership.1").contains("refine"));
         assert!(page("sistership-refine.1").contains(r"\-\-held\-out"));
