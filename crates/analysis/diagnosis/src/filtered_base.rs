@@ -11,8 +11,8 @@ use rayon::prelude::*;
 use sistership_model::manifest::VelocityFrame;
 
 use super::calibrated_model::CalibratedModel;
-use super::evidence::DiscrepancyFactor;
-use super::form_errors::{form_error_columns, integrate_form_errors};
+use super::evidence::{DiscrepancyFactor, not_positive_error};
+use super::form_errors::form_error_columns;
 use super::hypothesis::JudgedHypothesis;
 use super::linearised_trials::LinearisedTrials;
 use super::misfit::has_form_errors;
@@ -267,8 +267,11 @@ impl LinearisedHypothesis<'_, '_> {
                 add_products(gram, &(known * own), &own.tr_mul(&own));
             }
         }
-        let integrated = |piece| integrate_form_errors(piece, self.form_errors);
-        Ok(pieces.into_iter().map(integrated).collect())
+        pieces.into_iter().map(|piece| self.without_form_errors(piece)).collect()
+    }
+
+    fn without_form_errors(&self, gram: GramMatrix) -> Result<GramMatrix, RefineError> {
+        gram.integrate_last(self.form_errors).ok_or_else(not_positive_error)
     }
 
     fn hypothesis_products(
@@ -287,7 +290,7 @@ impl LinearisedHypothesis<'_, '_> {
             gram.log_variance += log_variance;
             gram.count += rows.nrows();
         }
-        Ok(integrate_form_errors(gram, self.form_errors))
+        self.without_form_errors(gram)
     }
 
     /// Number of columns: the residual, the parameters of the hypothesis and the errors of forms.

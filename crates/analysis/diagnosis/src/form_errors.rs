@@ -1,9 +1,6 @@
 //! Errors of the forms of effects, as columns of linearised parts ([`sistership_filtering`]).
 
-use nalgebra::Cholesky;
-use sistership_filtering::{
-    AxisColumn, EffectCandidate, GramMatrix, LinearisedPart, TrialReadings,
-};
+use sistership_filtering::{AxisColumn, EffectCandidate, LinearisedPart, TrialReadings};
 use sistership_model::trial::Channel;
 
 use super::linearised_trials::LinearisedTrials;
@@ -38,24 +35,4 @@ pub(super) fn form_error_columns(
         }
     }
     columns
-}
-
-/// Integrates out the last columns, which are errors of forms; without them where what is left is not
-/// positive.
-pub(super) fn integrate_form_errors(gram: GramMatrix, count: usize) -> GramMatrix {
-    if count == 0 {
-        return gram;
-    }
-    let before = gram.products.diagonal();
-    let kept: Vec<usize> = (0..before.len() - 1 - count).collect();
-    let without = gram.select_columns(&kept);
-    let Some(mut left) = gram.integrate_last(count) else { return without };
-    // What is left of a column that resembles the errors is a difference of large numbers: the
-    // ridge is above its rounding, so that the information stays positive.
-    for column in 1..left.products.nrows() {
-        let ridge = THRESHOLDS.effect.form_ridge * before[column];
-        left.products[(column, column)] += ridge.max(f64::MIN_POSITIVE);
-    }
-    let information = left.products.view((1, 1), (kept.len(), kept.len())).into_owned();
-    if Cholesky::new(information).is_some() { left } else { without }
 }

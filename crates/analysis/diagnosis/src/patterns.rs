@@ -18,7 +18,7 @@ use sistership_model::uncertainty::FalseAlarmLevel;
 use super::coefficient_prior::CoefficientPrior;
 use super::discount::REMAINDER_KEYS;
 use super::evidence::{MarginalInformation, NormalPrior, not_positive_error};
-use super::form_errors::{form_error_columns, integrate_form_errors};
+use super::form_errors::form_error_columns;
 use super::linearised_trials::LinearisedTrials;
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::{
@@ -287,5 +287,5 @@ fn trial_gram(
         }
     }
     let gram = gram.ok_or_else(not_positive_error)?;
-    Ok((patterns, integrate_form_errors(gram, errors)))
+    Ok((patterns, gram.integrate_last(errors).ok_or_else(not_positive_error)?))
 }

@@ -21,10 +21,6 @@ pub(crate) struct EffectThresholds {
     /// `T_f`: time by which another published form may be later, by `L/U`, dimensionless. Source:
     /// chosen, the order of the time constants of steering gear.
     pub form_memory: f64,
-    /// `e_f`: ridge on the information that is left after the errors of forms, by the information
-    /// before, dimensionless. Source: derived: far above the rounding of a product of thousands of
-    /// readings, and far below any information of interest.
-    pub form_ridge: f64,
     /// `D_0`: divisor of the information on an effect where a model brings no uncertainty,
     /// dimensionless. Source: chosen; published coefficients have no clean trials on which a
     /// false-alarm level could be measured.
@@ -63,7 +59,6 @@ pub(super) const EFFECT: EffectThresholds = EffectThresholds {
     misfits: 2.0,
     misfits_left: 0.5,
     form_memory: 0.2,
-    form_ridge: 1e-9,
     unknown_discount: 10.0,
     mass_deviation: 0.08,
     placebo_shifts: [0.25, 0.5, 0.75],
