@@ -22,8 +22,6 @@ pub struct CalibratedModel {
     /// Least interval between readings, s, as on the model's own trials; determined from the
     /// samples that are used where absent.
     pub reading_interval_s: Option<f64>,
-    /// True if every sample is a reading with noise of its own, as means are.
-    pub every_sample: bool,
 }
 
 impl CalibratedModel {
@@ -77,6 +75,6 @@ impl CalibratedModel {
             .map_err(|(field, message)| RefineError::Law(format!("{field}: {message}")))?;
         let expected_rates = model.uncertainty.is_some();
         let reading_interval_s = model.uncertainty.as_ref().map(|known| known.reading_interval_s);
-        Ok(Self { model, law, expected_rates, reading_interval_s, every_sample: false })
+        Ok(Self { model, law, expected_rates, reading_interval_s })
     }
 }

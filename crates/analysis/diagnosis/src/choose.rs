@@ -6,15 +6,13 @@ use rayon::prelude::*;
 
 use super::DiagnosisInputs;
 use super::discount::is_external;
-use super::effect_size::parameter_refusal;
 use super::evidence::DiscrepancyFactor;
 use super::filtered_base::FilteredBase;
 use super::hypothesis::JudgedHypothesis;
 use super::limits::detection_limits;
-use super::misfit::{has_form_errors, is_as_published, misfit_share};
+use super::misfit::{is_as_published, misfit_share};
 use super::outcome::DetectionLimit;
 use super::placebo::is_placebo;
-use super::refusal::Refusal;
 use super::screening::{ScreenedEffect, screen_effects};
 use super::search::HypothesisSearch;
 use super::settings::Settings;
@@ -43,8 +41,6 @@ pub(super) struct ConvergedChoice<'a> {
     pub search: HypothesisSearch<'a>,
     pub base: FilteredBase<'a>,
     pub best: JudgedHypothesis,
-    /// Effects that were removed, with the reasons.
-    pub removed: Vec<(String, Refusal)>,
 }
 
 /// Judges single effects, then further ones together with the best, and exchanges each of a set for
@@ -80,6 +76,14 @@ pub(super) fn choose_effects(
         choice.exchange_effects(search, settings)?;
     }
     Ok(choice)
+}
+
+/// Evidence for the last effect of a hypothesis.
+fn unlimited_last_evidence(
+    search: &HypothesisSearch<'_>,
+    judged: &JudgedHypothesis,
+) -> Result<f64, RefineError> {
+    search.effect_evidence(judged, judged.candidates.len() - 1)
 }
 
 /// Most probable sets of the effects of a base and one more, linearised and judged at their
@@ -152,12 +156,12 @@ impl EffectChoice {
         base: &FilteredBase<'_>,
         count: usize,
     ) -> Result<bool, RefineError> {
-        let mut found = judge_companions(search, base, count)?;
+        let found = judge_companions(search, base, count)?;
         let mut believed = Vec::new();
-        for (place, hypothesis) in found.iter_mut().enumerate() {
-            match self.weigh_last_effect(search, hypothesis, settings)? {
-                Ok(evidence) => believed.push((evidence, place)),
-                Err(refusal) => hypothesis.refusal = Some(refusal),
+        for (place, hypothesis) in found.iter().enumerate() {
+            let evidence = self.last_evidence(search, hypothesis)?;
+            if self.is_accepted(search, hypothesis, settings, evidence)? {
+                believed.push((evidence, place));
             }
         }
         // Accepted evidence decides, not the fit: a permanent error of an instrument would precede
@@ -168,17 +172,11 @@ impl EffectChoice {
         let mut better = None;
         // Placebos are costly, so they are judged only for those that could be accepted, best
         // first.
-        for &place in &accepted {
+        for place in accepted {
             if !is_placebo(search, &found[place], base)? {
                 better = Some(place);
                 break;
             }
-            found[place].refusal = last_effect(&found[place]).map(Refusal::Placebo);
-        }
-        let names = better.and_then(|better| last_effect(&found[better]));
-        for place in accepted.into_iter().filter(|place| Some(*place) != better) {
-            let behind = names.clone().map(Refusal::Behind);
-            found[place].refusal = found[place].refusal.take().or(behind);
         }
         self.accept_hypothesis(found, better);
         Ok(better.is_some())
@@ -197,22 +195,19 @@ impl EffectChoice {
             let mut others = kept.clone();
             others.remove(place);
             let base = search.filter_with_candidates(&others, &self.levels)?;
-            let mut found = judge_companions(search, &base, THRESHOLDS.search.companions)?;
+            let found = judge_companions(search, &base, THRESHOLDS.search.companions)?;
             // The evidence of the effect to be replaced has to be exceeded by a margin.
-            let mut least =
+            let best =
                 search.effect_evidence(self.best_hypothesis(), place)? + THRESHOLDS.search.exchange;
-            let known = self.best_hypothesis().log_evidence;
-            let mut better = None;
-            for (at, judged) in found.iter_mut().enumerate() {
-                let evidence = search.effect_evidence(judged, judged.candidates.len() - 1)?;
-                let limits = (search, settings);
-                let refusal = self.refuse_last_effect(limits, judged, evidence, f64::INFINITY)?;
-                let is_behind = evidence <= least || judged.log_evidence <= known;
-                judged.refusal = refusal.or(is_behind.then_some(Refusal::NotBetter));
-                if judged.refusal.is_none() {
-                    (least, better) = (evidence, Some(at));
+            let mut better: Option<(f64, usize)> = None;
+            for (at, judged) in found.iter().enumerate() {
+                let evidence = unlimited_last_evidence(search, judged)?;
+                let least = better.map_or(best, |(known, _)| known.max(best));
+                if evidence > least && self.is_evident(search, judged, settings, evidence)? {
+                    better = Some((evidence, at));
                 }
             }
+            let better = better.map(|(_, at)| at);
             self.accept_hypothesis(found, better);
             // One exchange at a time: the other effects are then part of a different set.
             if better.is_some() {
@@ -254,7 +249,7 @@ impl EffectChoice {
         request: &DiagnosisInputs<'_>,
     ) -> Result<ConvergedChoice<'a>, RefineError> {
         let mut search = search.clone();
-        let (mut rounds, mut removed) = (THRESHOLDS.search.joint_rounds, Vec::new());
+        let mut rounds = THRESHOLDS.search.joint_rounds;
         loop {
             // Coefficients and effects are fitted in turn, each with the others at their last
             // values.
@@ -265,11 +260,9 @@ impl EffectChoice {
             if rounds > 0 {
                 continue;
             }
-            let redundant = self.redundant_effect(&search, &best, request.settings)?;
-            let Some((place, refusal)) = redundant else {
-                return Ok(ConvergedChoice { search, base, best, removed });
+            let Some(place) = self.redundant_effect(&search, &best, request.settings)? else {
+                return Ok(ConvergedChoice { search, base, best });
             };
-            removed.push((best.candidates[place].effect.clone(), refusal));
             best = self.judge_without(&search, &best, place)?;
             // After a removal one round suffices: the others are near their estimates.
             rounds = 1;
@@ -285,13 +278,6 @@ impl EffectChoice {
         self.tried
             .extend(earlier.tried.into_iter().filter(|judged| !again.contains(&keys(judged))));
         self
-    }
-
-    /// Marks the accepted hypothesis as refused.
-    pub(super) fn refuse_accepted(&mut self, refusal: Option<Refusal>) {
-        if let Some(taken) = self.taken {
-            self.tried[taken].refusal = refusal;
-        }
     }
 
     /// Judges a set of effects with one removed.
@@ -315,114 +301,64 @@ impl EffectChoice {
 
     /// Evidence for the last effect, limited to that of the whole hypothesis over the one without
     /// it: with columns linearised at the estimates, an effect whose columns change with its size
-    /// would seem to have more. Returns the reason where the hypothesis is not accepted.
-    ///
-    /// # Errors
-    /// Returns an error if the information is not positive.
-    fn weigh_last_effect(
+    /// would seem to have more.
+    fn last_evidence(
+        &self,
+        search: &HypothesisSearch<'_>,
+        found: &JudgedHypothesis,
+    ) -> Result<f64, RefineError> {
+        let best = self.best_hypothesis().log_evidence;
+        let is_outside = found.candidates.last().is_some_and(is_external);
+        // An effect of a recorded external signal is part of the discrepancy of the calibration, so
+        // it also competes with lower levels.
+        let than = if is_outside { best.max(self.alone_at_any) } else { best };
+        Ok(unlimited_last_evidence(search, found)?.min(found.log_evidence - than))
+    }
+
+    /// Returns true if a hypothesis is more probable by enough, also on held-out trials.
+    fn is_accepted(
         &self,
         search: &HypothesisSearch<'_>,
         found: &JudgedHypothesis,
         settings: &Settings,
-    ) -> Result<Result<f64, Refusal>, RefineError> {
-        let best = self.best_hypothesis();
-        let is_outside = found.candidates.last().is_some_and(is_external);
-        // An effect of a recorded external signal is part of the discrepancy of the calibration, so
-        // it also competes with lower levels.
-        let than = best.log_evidence.max(if is_outside { self.alone_at_any } else { f64::MIN });
-        let last = found.candidates.len() - 1;
-        let most = found.log_evidence - than;
-        let evidence = gained_evidence(search, (found, last), most)?;
-        let refusal = self.refuse_last_effect((search, settings), found, evidence, most)?;
-        if let Some(refusal) = refusal {
-            return Ok(Err(refusal));
-        }
+        of_last: f64,
+    ) -> Result<bool, RefineError> {
         let held_out = |judged: &JudgedHypothesis| judged.held_out_log_probability(&search.fixed);
-        let gain = held_out(found)? - held_out(best)?;
-        Ok(if gain > 0.0 { Ok(evidence) } else { Err(Refusal::HeldOut { gain }) })
+        Ok(self.is_evident(search, found, settings, of_last)?
+            && held_out(found)? > held_out(self.best_hypothesis())?)
     }
 
-    /// Reason for which the last effect of a hypothesis is not accepted with an evidence; none
-    /// where it is. `most` limits its evidence before the discount.
-    fn refuse_last_effect(
+    /// Returns true if all forms agree with published coefficients, and the evidence for the last
+    /// one is sufficient and above the misfit allowance of the others.
+    fn is_evident(
         &self,
-        (search, settings): (&HypothesisSearch<'_>, &Settings),
+        search: &HypothesisSearch<'_>,
         found: &JudgedHypothesis,
-        evidence: f64,
-        most: f64,
-    ) -> Result<Option<Refusal>, RefineError> {
+        settings: &Settings,
+        of_last: f64,
+    ) -> Result<bool, RefineError> {
         let last = found.candidates.len() - 1;
-        let other = found.candidates.iter().find(|candidate| !is_as_published(candidate));
-        if let Some(other) = other {
-            return Ok(Some(Refusal::NotAsPublished(other.effect.clone())));
-        }
-        match parameter_refusal(found, last) {
-            Some(refusal) => Ok(Some(refusal)),
-            None => self.refuse_evidence((search, settings), (found, last), evidence, most),
-        }
+        let evidence = all_evidence(search, found)?;
+        Ok(found.candidates.iter().all(is_as_published)
+            && of_last > settings.least_evidence.max(self.misfit_allowance(found, &evidence, last)))
     }
 
-    /// Reason for which the evidence for an effect of a set is not sufficient: after its
-    /// improvement on clean trials it has to exceed the least evidence, and before that the
-    /// allowance for the forms of the others. The two errors are independent of each other.
-    fn refuse_evidence(
-        &self,
-        (search, settings): (&HypothesisSearch<'_>, &Settings),
-        (judged, place): (&JudgedHypothesis, usize),
-        evidence: f64,
-        most: f64,
-    ) -> Result<Option<Refusal>, RefineError> {
-        let effect = || judged.candidates[place].effect.clone();
-        let least = settings.least_evidence;
-        if evidence <= least {
-            return Ok(Some(Refusal::LittleEvidence { effect: effect(), evidence, least }));
-        }
-        let mut plain = plain_evidence(search, judged)?;
-        // Where the hypothesis without the effect was judged, its evidence is the difference.
-        if most.is_finite() {
-            plain[place] = most;
-        }
-        let allowance = self.misfit_allowance(judged, &plain, place);
-        let evidence = plain[place];
-        Ok((evidence <= allowance).then(|| Refusal::FormError {
-            effect: effect(),
-            evidence,
-            allowance,
-        }))
-    }
-
-    /// Index of an effect, of those judged together, that cannot be named by its parameters, or of
-    /// the weakest one, if the evidence for it is not sufficient; with the reason.
+    /// Index of an effect, of those judged together, that no longer agrees with its published form,
+    /// or of the weakest one, if the evidence for it is not sufficient.
     fn redundant_effect(
         &self,
         search: &HypothesisSearch<'_>,
         best: &JudgedHypothesis,
         settings: &Settings,
-    ) -> Result<Option<(usize, Refusal)>, RefineError> {
-        let places = 0..best.candidates.len();
-        let by_parameters =
-            places.clone().find_map(|place| Some((place, parameter_refusal(best, place)?)));
-        if by_parameters.is_some() {
-            return Ok(by_parameters);
-        }
-        let mut each: Vec<(usize, f64)> = places
-            .map(|place| Ok((place, search.effect_evidence(best, place)?)))
-            .collect::<Result<_, RefineError>>()?;
-        each.sort_by(|a, b| a.1.total_cmp(&b.1));
-        for (place, evidence) in each {
-            let limits = (search, settings);
-            if self.refuse_evidence(limits, (best, place), evidence, f64::INFINITY)?.is_none() {
-                continue;
-            }
-            // With the errors of its form an effect seems to have less: it is judged without it.
-            let without = self.judge_without(search, best, place)?;
-            let most = best.log_evidence - without.log_evidence;
-            let evidence = gained_evidence(search, (best, place), most)?;
-            if let Some(refusal) = self.refuse_evidence(limits, (best, place), evidence, most)? {
-                return Ok(Some((place, refusal)));
-            }
-        }
-        Ok(None)
+    ) -> Result<Option<usize>, RefineError> {
+        let evidence = all_evidence(search, best)?;
+        let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
+        // An effect whose form does not agree with published ones is removed first.
+        let other = best.candidates.iter().position(|candidate| !is_as_published(candidate));
+        Ok(other.or(weakest.filter(|&place| {
+            evidence[place]
+                <= settings.least_evidence.max(self.misfit_allowance(best, &evidence, place))
+        })))
     }
 
     /// Allowance for the misfit of the other effects of a set, whose published forms differ from
@@ -468,30 +404,9 @@ fn move_better_fits_forward(
     }
 }
 
-/// Evidence for each effect of a set, not discounted by the improvement on clean trials.
-fn plain_evidence(
+fn all_evidence(
     search: &HypothesisSearch<'_>,
     judged: &JudgedHypothesis,
 ) -> Result<Vec<f64>, RefineError> {
-    let places = 0..judged.candidates.len();
-    places.map(|place| search.discounted_effect_evidence(judged, place, 1.0)).collect()
-}
-
-/// Evidence for an effect of a set, discounted by its improvement on clean trials, where `most` is
-/// that of the whole set over the one without it. At the estimates of all, the errors of its form
-/// limit the evidence, but without the effect there are none: then that of the set counts, divided
-/// as the information is.
-fn gained_evidence(
-    search: &HypothesisSearch<'_>,
-    (judged, place): (&JudgedHypothesis, usize),
-    most: f64,
-) -> Result<f64, RefineError> {
-    let own = search.effect_evidence(judged, place)?;
-    let discounted = most / search.candidate_discount(&judged.candidates[place]);
-    let limited = has_form_errors(&judged.candidates[place]);
-    Ok(if limited { own.max(discounted) } else { own }.min(most))
-}
-
-fn last_effect(judged: &JudgedHypothesis) -> Option<String> {
-    judged.candidates.last().map(|candidate| candidate.effect.clone())
+    (0..judged.candidates.len()).map(|place| search.effect_evidence(judged, place)).collect()
 }

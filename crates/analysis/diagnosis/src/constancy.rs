@@ -15,7 +15,7 @@ use super::thresholds::THRESHOLDS;
 use sistership_filtering::GramMatrix;
 use sistership_identification::refine::RefineError;
 
-/// Indices of the effects whose variation between the pieces is above `least`. An effect of a recorded external signal may vary
+/// Indices of the effects that are not constant. An effect of a recorded external signal may vary
 /// where records of other times explain the trials less ([`follow_records`]), since an unknown
 /// cause does not follow that record.
 ///
@@ -25,7 +25,7 @@ pub(super) fn inconstant_effects(
     search: &HypothesisSearch<'_>,
     base: &FilteredBase<'_>,
     judged: &JudgedHypothesis,
-    (least, margin): (f64, f64),
+    margin: f64,
 ) -> Result<Vec<usize>, RefineError> {
     let pieces = base
         .linearise_hypothesis(&search.calibrated_model, &judged.linearised_at)?
@@ -46,7 +46,8 @@ pub(super) fn inconstant_effects(
     };
     let varies: Vec<f64> = (0..judged.linearised_at.len()).map(one).collect();
     // A form that differs from the true one also needs another size in other motions.
-    let limit = |place: usize| least.max(misfit_share(&judged.candidates[place]));
+    let limit =
+        |place: usize| THRESHOLDS.constancy.limit.max(misfit_share(&judged.candidates[place]));
     let mut places: Vec<usize> =
         (0..varies.len()).filter(|&place| varies[place] > limit(place)).collect();
     let is_outside = |place: &usize| is_external(&judged.candidates[*place]);

@@ -36,15 +36,6 @@ pub struct NormalPrior {
     pub mean: f64,
     /// Standard deviation.
     pub deviation: f64,
-    /// Least and greatest distance that is plausible.
-    pub bounds: [f64; 2],
-}
-
-impl NormalPrior {
-    /// Prior without bounds.
-    pub fn unbounded(mean: f64, deviation: f64) -> Self {
-        Self { mean, deviation, bounds: [f64::NEG_INFINITY, f64::INFINITY] }
-    }
 }
 
 /// Estimate of a hypothesis.
@@ -202,8 +193,7 @@ impl MarginalInformation {
         (information, right)
     }
 
-    /// Estimate of a hypothesis that has some of the effects' columns, with their priors, within
-    /// the bounds of these: the evidence is that at the bound where the maximum is outside.
+    /// Estimate of a hypothesis that has some of the effects' columns, with their priors.
     pub fn estimate_parameters(
         &self,
         columns: &[usize],
@@ -215,50 +205,16 @@ impl MarginalInformation {
         };
         let prior: f64 = priors.iter().map(of).sum();
         let factor = Cholesky::new(information)?;
-        let free = factor.solve(&right);
+        let mean = factor.solve(&right);
         let log_determinant: f64 =
             2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
-        let covariance = factor.inverse();
-        let (mean, loss) = move_within_bounds(&free, &covariance, priors)?;
         Some(HypothesisEstimate {
             // log of the marginal likelihood ratio: (b' S b - m' P m + ln |P| + ln |S|) / 2.
-            gain: 0.5 * (right.dot(&free) - prior - log_determinant) - loss,
+            gain: 0.5 * (right.dot(&mean) - prior - log_determinant),
             mean,
-            covariance,
+            covariance: factor.inverse(),
         })
     }
-}
-
-/// Most probable point within the bounds, and its loss in logarithmic probability: parameters
-/// beyond a bound are set to it, the others follow by their covariance with them.
-fn move_within_bounds(
-    free: &DVector<f64>,
-    covariance: &DMatrix<f64>,
-    priors: &[NormalPrior],
-) -> Option<(DVector<f64>, f64)> {
-    let (mut mean, mut loss, mut bound) = (free.clone(), 0.0, Vec::new());
-    // Each round sets at least one further parameter.
-    for _ in 0..free.len() {
-        let is_outside = |place: &usize| {
-            let [low, high] = priors[*place].bounds;
-            !bound.contains(place) && !(low..=high).contains(&mean[*place])
-        };
-        let outside: Vec<usize> = (0..free.len()).filter(is_outside).collect();
-        if outside.is_empty() {
-            break;
-        }
-        bound.extend(outside);
-        let at = |place: usize| free[place].clamp(priors[place].bounds[0], priors[place].bounds[1]);
-        let moved = DVector::from_fn(bound.len(), |i, _| at(bound[i]) - free[bound[i]]);
-        let own =
-            DMatrix::from_fn(bound.len(), bound.len(), |i, j| covariance[(bound[i], bound[j])]);
-        let weighted = Cholesky::new(own)?.solve(&moved);
-        loss = 0.5 * moved.dot(&weighted);
-        let others = DMatrix::from_fn(free.len(), bound.len(), |i, j| covariance[(i, bound[j])]);
-        mean = free + others * weighted;
-        bound.iter().for_each(|&place| mean[place] = at(place));
-    }
-    Some((mean, loss))
 }
 
 /// Error for information that is not positive definite.
@@ -270,28 +226,6 @@ pub(super) fn not_positive_error() -> RefineError {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-
-    /// An effect that may only be positive has no evidence where the trials ask for a negative one.
-    #[test]
-    fn evidence_is_that_within_the_bounds() {
-        let says = MarginalInformation {
-            deviance: 0.0,
-            information: DMatrix::from_row_slice(2, 2, &[100.0, 30.0, 30.0, 25.0]),
-            right: DVector::from_column_slice(&[-200.0, -40.0]),
-            answers: DMatrix::zeros(0, 0),
-            shift: DVector::zeros(0),
-        };
-        let wide = NormalPrior::unbounded(0.0, 1.0);
-        let positive = NormalPrior { bounds: [0.0, 5.0], ..wide };
-        let free = says.estimate_parameters(&[0, 1], &[wide, wide]).unwrap();
-        let held = says.estimate_parameters(&[0, 1], &[positive, wide]).unwrap();
-        assert!(free.mean[0] < 0.0 && held.mean[0] == 0.0, "{free:?} {held:?}");
-        // The other parameter is at its maximum given the first: b / (G + P).
-        assert!((held.mean[1] + 40.0 / 26.0).abs() < 1e-9, "{held:?}");
-        let point = |mean: &DVector<f64>| says.log_likelihood_at(mean) - 0.5 * mean.norm_squared();
-        let loss = point(&free.mean) - point(&held.mean);
-        assert!((free.gain - held.gain - loss).abs() < 1e-9, "{free:?} {held:?}");
-    }
 
     /// One coefficient and one effect: what is left of the effect is its Schur complement, and
     /// information that is not positive is an error, not an absence of evidence.

@@ -11,14 +11,12 @@ use rayon::prelude::*;
 use sistership_model::manifest::VelocityFrame;
 
 use super::calibrated_model::CalibratedModel;
-use super::evidence::{DiscrepancyFactor, not_positive_error};
-use super::form_errors::form_error_columns;
+use super::evidence::DiscrepancyFactor;
 use super::hypothesis::JudgedHypothesis;
 use super::linearised_trials::LinearisedTrials;
-use super::misfit::has_form_errors;
 use sistership_filtering::{
-    AxisDiscrepancies, EffectCandidate, FORM_ERRORS, FilterColumns, GramMatrix,
-    LinearisationDetail, LinearisedPart, ResidualSystem, TrialReadings, linearise, whiten_part,
+    AxisDiscrepancies, EffectCandidate, FilterColumns, GramMatrix, LinearisationDetail,
+    LinearisedPart, ResidualSystem, linearise, whiten_part,
 };
 use sistership_identification::refine::RefineError;
 
@@ -156,21 +154,13 @@ impl<'a> FilteredBase<'a> {
             .par_iter()
             .map(|record| linearise(&system, record, LinearisationDetail::Columns))
             .collect::<Result<_, _>>()?;
-        let errors = |record: &TrialReadings<'_>, part: LinearisedPart| {
-            let columns = form_error_columns(&self.workspace, record, &part, (0, candidates));
-            part.append_axis_columns(&columns)
-        };
         // The filter of the base is kept: its transitions and readings of deviations.
-        let of = |((own, base), record): ((Vec<LinearisedPart>, &Vec<LinearisedPart>), _)| {
-            let parts = own.into_iter().zip(base);
-            parts.map(|(own, base)| errors(record, own.with_filter_from(base))).collect()
+        let of = |(own, base): (Vec<LinearisedPart>, &Vec<LinearisedPart>)| {
+            own.into_iter().zip(base).map(|(own, base)| own.with_filter_from(base)).collect()
         };
-        let parts = linear.into_iter().zip(self.workspace.linearised_parts());
-        let with_errors = candidates.iter().filter(|candidate| has_form_errors(candidate)).count();
         Ok(LinearisedHypothesis {
             base: self,
-            form_errors: with_errors * self.workspace.axes().len() * FORM_ERRORS,
-            linear: parts.zip(records).map(of).collect(),
+            linear: linear.into_iter().zip(self.workspace.linearised_parts()).map(of).collect(),
         })
     }
 }
@@ -204,9 +194,6 @@ fn whitened_rows(
 pub(super) struct LinearisedHypothesis<'b, 'a> {
     base: &'b FilteredBase<'a>,
     linear: Vec<Vec<LinearisedPart>>,
-    /// Number of columns, after those of the parameters, of the errors of forms: they differ from
-    /// trial to trial and are integrated out.
-    form_errors: usize,
 }
 
 impl LinearisedHypothesis<'_, '_> {
@@ -267,11 +254,7 @@ impl LinearisedHypothesis<'_, '_> {
                 add_products(gram, &(known * own), &own.tr_mul(&own));
             }
         }
-        pieces.into_iter().map(|piece| self.without_form_errors(piece)).collect()
-    }
-
-    fn without_form_errors(&self, gram: GramMatrix) -> Result<GramMatrix, RefineError> {
-        gram.integrate_last(self.form_errors).ok_or_else(not_positive_error)
+        Ok(pieces)
     }
 
     fn hypothesis_products(
@@ -290,10 +273,10 @@ impl LinearisedHypothesis<'_, '_> {
             gram.log_variance += log_variance;
             gram.count += rows.nrows();
         }
-        self.without_form_errors(gram)
+        Ok(gram)
     }
 
-    /// Number of columns: the residual, the parameters of the hypothesis and the errors of forms.
+    /// Number of columns: the residual and the parameters of the hypothesis.
     fn own_width(&self) -> usize {
         1 + self.linear.iter().flatten().next().map_or(0, |part| part.sizes.columns)
     }

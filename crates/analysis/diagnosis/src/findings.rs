@@ -7,14 +7,12 @@ use sistership_model::Model;
 use sistership_model::quantity::Quantity;
 
 use super::DiagnosisInputs;
-use super::choose::{ConvergedChoice, EffectChoice};
+use super::choose::EffectChoice;
 use super::confounded::EffectResponses;
 use super::covariance::effect_covariance;
 use super::hypothesis::JudgedHypothesis;
 use super::next_trial::propose_next_trial;
-use super::outcome::{
-    HypothesisReport, MissingEffect, NextTrial, RemainderPattern, ValueWithError,
-};
+use super::outcome::{HypothesisReport, MissingEffect, NextTrial, ValueWithError};
 use super::search::HypothesisSearch;
 use super::values::{form_target, own_covariance, values_with_errors};
 use sistership_filtering::EffectCandidate;
@@ -62,16 +60,13 @@ fn report_effect(
     let candidate = &best.candidates[place];
     let discount = search.candidate_discount(candidate);
     let covariance = effect_covariance(best, place, (&search.nuisance, &search.fixed), discount);
-    // The evidence of a single effect is that of all, discounted by its level on clean trials.
-    let single = if best.candidates.len() == 1 { of_all / discount } else { f64::MIN };
-    let evidence = search.effect_evidence(best, place)?.max(single).min(of_all);
     Ok(MissingEffect {
         name: candidate.effect.clone(),
         form: candidate.form.file.name.clone(),
         meaning: candidate.form.file.meaning.clone(),
         acts_on: form_target(candidate),
         parameters: values_with_errors(candidate, &covariance, request.model),
-        evidence,
+        evidence: search.effect_evidence(best, place)?.min(of_all),
         in_model: BTreeMap::new(),
         confounded_with: Vec::new(),
     })
@@ -94,73 +89,29 @@ pub(super) fn refitted_parameters(
     if moved { all.map(one).collect() } else { BTreeMap::new() }
 }
 
-/// Returns the hypotheses that were judged at their estimates, the most probable first; the one
-/// with the effects of the result is marked, and the others have the reason for which they are not
-/// accepted.
+/// Returns the hypotheses that were judged at their estimates, the most probable first.
 ///
 /// # Errors
 /// Returns an error if the information is not positive.
 pub(super) fn report_hypotheses(
     request: &DiagnosisInputs<'_>,
-    settled: &ConvergedChoice<'_>,
+    search: &HypothesisSearch<'_>,
     choice: &EffectChoice,
 ) -> Result<Vec<HypothesisReport>, RefineError> {
-    let fixed = &settled.search.fixed;
-    let alone = choice.alone.held_out_log_probability(fixed)?;
-    let found = hypothesis_keys(&settled.best);
-    let one = |judged: &JudgedHypothesis| {
-        let effects = hypothesis_keys(judged);
-        let taken = !found.is_empty() && same_keys(&effects, &found);
+    let alone = choice.alone.held_out_log_probability(&search.fixed)?;
+    let one = |(place, judged): (usize, &JudgedHypothesis)| {
         Ok(HypothesisReport {
-            effects,
+            effects: judged.candidates.iter().map(EffectCandidate::candidate_key).collect(),
             evidence: judged.log_evidence - choice.alone.log_evidence,
-            held_out: Some(judged.held_out_log_probability(fixed)? - alone),
+            held_out: Some(judged.held_out_log_probability(&search.fixed)? - alone),
             parameters: hypothesis_parameters(request, judged),
-            taken,
-            refused: (!taken).then(|| refusal_reason(settled, choice, judged)),
+            taken: choice.taken == Some(place),
         })
     };
-    // A set of which effects were removed at the end may not have been judged before.
-    let is_new = choice.tried.iter().all(|tried| !same_keys(&hypothesis_keys(tried), &found));
-    let last = (is_new && !found.is_empty()).then_some(&settled.best);
     let mut all: Vec<HypothesisReport> =
-        choice.tried.iter().chain(last).map(one).collect::<Result<_, RefineError>>()?;
+        choice.tried.iter().enumerate().map(one).collect::<Result<_, RefineError>>()?;
     all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     Ok(all)
-}
-
-/// Keys of the effects of a hypothesis, in their order.
-fn hypothesis_keys(judged: &JudgedHypothesis) -> Vec<String> {
-    judged.candidates.iter().map(EffectCandidate::candidate_key).collect()
-}
-
-/// Returns true if two sets have the same keys in any order.
-fn same_keys(a: &[String], b: &[String]) -> bool {
-    a.len() == b.len() && a.iter().all(|key| b.contains(key))
-}
-
-/// Reason for which a hypothesis is not the result.
-fn refusal_reason(
-    settled: &ConvergedChoice<'_>,
-    choice: &EffectChoice,
-    judged: &JudgedHypothesis,
-) -> String {
-    if let Some(refusal) = &judged.refusal {
-        return refusal.to_string();
-    }
-    let own = hypothesis_keys(judged);
-    let accepted = choice.taken.map(|taken| hypothesis_keys(&choice.tried[taken]));
-    if accepted.is_some_and(|accepted| same_keys(&accepted, &own)) {
-        // It was accepted, and lost effects when the coefficients were fitted together with it.
-        let reasons = settled.removed.iter().map(|(name, refusal)| {
-            format!("`{name}` was removed after the coefficients were fitted with it: {refusal}")
-        });
-        return reasons.collect::<Vec<_>>().join("; ");
-    }
-    match settled.best.candidates.is_empty() {
-        true => "what it explains is a change within trials".to_owned(),
-        false => format!("`{}` explains the trials better", settled.best.effect_names()),
-    }
 }
 
 fn hypothesis_parameters(
@@ -190,24 +141,6 @@ pub(super) fn describe_method(request: &DiagnosisInputs<'_>, refit: Option<&str>
         ),
         None => fitted,
     }
-}
-
-/// Remark on a pattern of the remainder.
-pub(super) fn pattern_remark(pattern: &RemainderPattern) -> String {
-    let variable = match (pattern.variable.as_str(), pattern.period_s) {
-        ("psi", _) => "the heading".to_owned(),
-        ("t", _) => "the time since the start of a trial".to_owned(),
-        ("u", _) => "the speed".to_owned(),
-        ("delta", _) => "the rudder".to_owned(),
-        ("n", _) => "the revolutions".to_owned(),
-        (_, Some(period_s)) => format!("a period of about {period_s:.0} s"),
-        (other, None) => other.to_owned(),
-    };
-    format!(
-        "what remains of the acceleration `{}` goes with {variable} (evidence {:.1}), although no \
-         single segment of a trial stands out",
-        pattern.channel, pattern.evidence
-    )
 }
 
 /// Remarks on effects that were refused, and on the resulting model.

@@ -5,7 +5,6 @@ use sistership_model::effect::EffectParameter;
 
 use super::coefficient_prior::CoefficientPrior;
 use super::evidence::{HypothesisEstimate, MarginalInformation, NormalPrior, not_positive_error};
-use super::refusal::Refusal;
 use sistership_filtering::{EffectCandidate, GramMatrix};
 use sistership_identification::refine::RefineError;
 
@@ -24,17 +23,9 @@ pub(super) struct JudgedHypothesis {
     pub grams: Vec<GramMatrix>,
     /// Values of the candidates at which the columns are tangents.
     pub linearised_at: Vec<EffectCandidate>,
-    /// Reason for which it is not accepted.
-    pub refusal: Option<Refusal>,
 }
 
 impl JudgedHypothesis {
-    /// Names of its effects.
-    pub fn effect_names(&self) -> String {
-        let names = self.candidates.iter().map(|candidate| candidate.effect.as_str());
-        names.collect::<Vec<_>>().join(" + ")
-    }
-
     /// Distance of each parameter from the values of the linearisation.
     pub fn parameter_changes(&self) -> Vec<f64> {
         let pairs = self.candidates.iter().zip(&self.linearised_at);
@@ -94,7 +85,6 @@ pub(super) fn candidate_priors(candidate: &EffectCandidate) -> Vec<NormalPrior> 
     let one = |(at, parameter): (&f64, &EffectParameter)| NormalPrior {
         mean: parameter.prior_mean - at,
         deviation: parameter.prior_deviation,
-        bounds: parameter.bounds.map(|bound| bound - at),
     };
     candidate.at.iter().zip(candidate.form.parameters.values()).map(one).collect()
 }

@@ -1,7 +1,6 @@
 //! Diagnosis of the residual: effects that a model lacks, if any.
 
 mod as_recorded;
-mod averaged_trials;
 mod calibrate;
 mod calibrated_model;
 mod changes;
@@ -13,13 +12,10 @@ mod corrected;
 mod covariance;
 mod dependence;
 mod discount;
-mod effect_size;
 mod evidence;
 mod expected;
 mod filtered_base;
 mod findings;
-mod form_errors;
-mod hidden_patterns;
 mod hypothesis;
 mod judge;
 mod limits;
@@ -30,10 +26,8 @@ mod next_trial;
 mod nuisance;
 mod origin;
 mod outcome;
-mod patterns;
 mod placebo;
 mod refit;
-mod refusal;
 mod remainder;
 mod run;
 mod screening;
@@ -53,8 +47,8 @@ pub use expected::{ExpectedInformation, TrialUnknowns, observable_forms};
 pub use outcome::{
     ChangeCourse, ConfoundedEffect, DetectionLimit, Diagnosis, DiscrepancyLevel, EffectChange,
     HypothesisReport, LimitedBy, ManoeuvreOutcome, MissingEffect, NextTrial, OriginKind,
-    RemainderDependence, RemainderOrigin, RemainderPattern, ResidualSeries, TrialErrors,
-    UnexplainedSegment, ValueWithError, VariableDependence, Verdict,
+    RemainderDependence, RemainderOrigin, ResidualSeries, TrialErrors, UnexplainedSegment,
+    ValueWithError, VariableDependence, Verdict,
 };
 pub use run::diagnose;
 pub use settings::Settings;

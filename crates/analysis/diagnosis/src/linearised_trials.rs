@@ -83,7 +83,7 @@ impl<'a> LinearisedTrials<'a> {
         instruments: &InstrumentNoise,
     ) -> Result<Self, RefineError> {
         let mut all = Self::every_sample(learned, columns, trials, least_step_s)?;
-        set_reading_intervals(&mut all.records, learned);
+        set_reading_intervals(&mut all.records, learned.reading_interval_s);
         all.with_instruments(instruments.clone())?.linearise_all()
     }
 
@@ -126,7 +126,7 @@ impl<'a> LinearisedTrials<'a> {
         least_step_s: Option<f64>,
     ) -> Result<Self, RefineError> {
         let mut all = Self::every_sample(learned, columns, trials, least_step_s)?;
-        set_reading_intervals(&mut all.records, learned);
+        set_reading_intervals(&mut all.records, learned.reading_interval_s);
         let known = learned.model.uncertainty.as_ref();
         let noise = instrument_noise(&all.records, all.lpp_m, all.speed_m_s, known);
         all.with_instruments(noise)
@@ -229,12 +229,6 @@ impl<'a> LinearisedTrials<'a> {
         }
     }
 
-    /// Highest recorded revolutions, 1/s; 0 where none were recorded.
-    pub fn highest_revolutions(&self) -> f64 {
-        let recorded = self.trials.iter().filter_map(|trial| trial.channel(Channel::N));
-        recorded.flatten().fold(0.0, |most, n| n.abs().max(most))
-    }
-
     pub fn motion_scales(&self) -> MotionScales {
         let rate = self.speed_m_s / self.lpp_m;
         let of = |axis: &Axis| {
@@ -285,11 +279,8 @@ impl<'a> LinearisedTrials<'a> {
 
 /// Sets the interval between readings by their noise, and at least to that of the model's own
 /// trials.
-fn set_reading_intervals(records: &mut [TrialReadings<'_>], learned: &CalibratedModel) {
-    if learned.every_sample {
-        return records.iter_mut().for_each(|record| record.every = 1);
-    }
-    let Some(as_before_s) = learned.reading_interval_s else {
+fn set_reading_intervals(records: &mut [TrialReadings<'_>], as_before_s: Option<f64>) {
+    let Some(as_before_s) = as_before_s else {
         let every = reading_stride(records);
         return records.iter_mut().for_each(|record| record.every = every);
     };

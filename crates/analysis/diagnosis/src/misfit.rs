@@ -41,19 +41,7 @@ pub(super) fn is_as_published(candidate: &EffectCandidate) -> bool {
 }
 
 /// Share of the evidence for an effect that its misfit may amount to: the evidence is half the
-/// square of a response, so that of the misfit is the square of the misfit times as large. Of an
-/// effect on accelerations most of the misfit is integrated out with the form's errors.
+/// square of a response, so that of the misfit is the square of the misfit times as large.
 pub(super) fn misfit_share(candidate: &EffectCandidate) -> f64 {
-    let misfits = match has_form_errors(candidate) {
-        true => THRESHOLDS.effect.misfits_left,
-        false => THRESHOLDS.effect.misfits,
-    };
-    (misfits * form_misfit(candidate)).powi(2)
-}
-
-/// Returns true if the errors of a candidate's form have columns: it acts on accelerations, and is
-/// present.
-pub(super) fn has_form_errors(candidate: &EffectCandidate) -> bool {
-    form_target(candidate) != ActsOn::Measurement
-        && candidate.parameter_changes().iter().any(|change| *change != 0.0)
+    (THRESHOLDS.effect.misfits * form_misfit(candidate)).powi(2)
 }

@@ -17,9 +17,7 @@ use super::outcome::{MissingEffect, NextTrial};
 use super::search::HypothesisSearch;
 use super::thresholds::{PlannedHelm, THRESHOLDS};
 use super::values::model_with_effects;
-use sistership_filtering::{
-    EffectCandidate, FilterColumns, GramMatrix, average_trial, filter_part,
-};
+use sistership_filtering::{EffectCandidate, FilterColumns, GramMatrix, filter_part};
 use sistership_identification::refine::RefineError;
 
 /// A possible trial.
@@ -136,10 +134,6 @@ impl<'d, 'a> SeparationProblem<'d, 'a> {
         let Some(trial) = simulate_trial(self.base, (ship, self.search.law), planned) else {
             return Ok(None);
         };
-        // Read as the recorded ones, whose noise it has.
-        let step_s = self.base.workspace.trials.first().map_or(0.0, |trial| trial.interval_s());
-        let means = self.search.averaged.then(|| average_trial(&trial, step_s, 0.0)).flatten();
-        let trial = means.unwrap_or(trial);
         // The planned trial is added to the information of the recorded ones.
         let mut total = self.total.clone();
         total.add(&self.planned_products(&trial)?);

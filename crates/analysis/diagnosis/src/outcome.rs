@@ -31,9 +31,6 @@ pub struct Diagnosis {
     pub effects: Vec<MissingEffect>,
     /// Segments that no effect explains.
     pub unexplained: Vec<UnexplainedSegment>,
-    /// Patterns of the remainder where no segment stands out by itself, the most evident first.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub patterns: Vec<RemainderPattern>,
     /// Changes in time that explain the remainder of a trial, the most evident first: they belong
     /// to one day, and no model carries them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -189,23 +186,6 @@ pub struct RemainderOrigin {
     pub trials: usize,
 }
 
-/// Dependence of the remainder of an acceleration over all trials, in which no segment stands out
-/// by itself.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RemainderPattern {
-    /// `u`, `v`, `r` or `p`.
-    pub channel: String,
-    /// Channel on which it depends: `psi`, `u`, `delta`, `n`; `t` for the time of a trial, `period`
-    /// where it oscillates.
-    pub variable: String,
-    /// The period, s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub period_s: Option<f64>,
-    /// Natural logarithm of the ratio of the trials' probability with it to that without, less that
-    /// of the number of patterns that were tested, discounted by its level on clean trials.
-    pub evidence: f64,
-}
-
 /// Kind of an origin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -319,11 +299,8 @@ pub struct HypothesisReport {
     pub held_out: Option<f64>,
     /// Parameters.
     pub parameters: BTreeMap<String, ValueWithError>,
-    /// True if its effects are those of the result.
+    /// True if it was accepted.
     pub taken: bool,
-    /// Reason for which it was not accepted.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub refused: Option<String>,
 }
 
 /// Errors on one trial.

@@ -3,14 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::DiagnosisInputs;
-use super::averaged_trials::averaged_trials;
 use super::choose::{ConvergedChoice, choose_effects};
 use super::dependence::remainder_dependence;
 use super::findings::{
-    collect_remarks, describe_method, found_with_confounded, pattern_remark, refitted_parameters,
-    report_hypotheses,
+    collect_remarks, describe_method, found_with_confounded, refitted_parameters, report_hypotheses,
 };
-use super::hidden_patterns::{pattern_origin, pattern_segments, remainder_patterns};
 use super::judge::{SimulatedErrors, simulate_errors};
 use super::limits::{excluding, undetectable_effects};
 use super::linearised_trials::LinearisedTrials;
@@ -24,8 +21,8 @@ use super::setup::{prepare_search, with_level_below};
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::NoiseLevel;
 use sistership_identification::refine::{Progress, RefineError};
+use sistership_model::Model;
 use sistership_model::trial::Channel;
-use sistership_model::{Model, Trial};
 
 /// Diagnoses a model on trials.
 ///
@@ -46,11 +43,7 @@ pub fn diagnose(
         ));
     }
     report_progress(progress, 0.05, "selecting the effects that these trials can show")?;
-    let means = averaged_trials(request)?;
-    let averaged: Vec<&Trial> = means.iter().flatten().collect();
-    let trials = if means.is_some() { averaged.as_slice() } else { request.trials };
-    let read = DiagnosisInputs { trials, ..*request };
-    let search = with_level_below(prepare_search(&read, means.is_some())?);
+    let search = with_level_below(prepare_search(request)?);
     report_progress(progress, 0.1, "evaluating effects, alone and in combination")?;
     let base = search.filter_with_candidates(&[], &search.levels)?;
     let choice = choose_effects(&search, &base, request.settings)?;
@@ -88,7 +81,7 @@ fn fit_and_simulate(
     request: &DiagnosisInputs<'_>,
     settled: &ConvergedChoice<'_>,
 ) -> Result<FittedModel, RefineError> {
-    let ConvergedChoice { search, base, best, .. } = settled;
+    let ConvergedChoice { search, base, best } = settled;
     let length_s = base.workspace.lpp_m / base.workspace.speed_m_s;
     let restart_s = request.settings.restart_s.unwrap_or(THRESHOLDS.trials.restart * length_s);
     let mut refits = refit_alternatives(request, search, best, restart_s)?;
@@ -142,29 +135,14 @@ fn build_diagnosis(
     (fitted, named): (FittedModel, NamedEffects),
 ) -> Result<Diagnosis, RefineError> {
     let SelectedEffects { choice, settled, remaining, changes, .. } = selected;
-    let ConvergedChoice { search, base, best, .. } = &settled;
+    let ConvergedChoice { search, base, best } = &settled;
     let names: Vec<String> = named.found.iter().map(|found| found.name.clone()).collect();
     let limits = excluding(choice.limits.clone(), &names);
     let FittedModel { errors, taken } = fitted;
     let residuals = residual_series(first, search, best)?;
-    let least = request.settings.least_evidence;
-    let patterns = match remaining.is_empty() {
-        true => remainder_patterns(&settled, least)?,
-        false => Vec::new(),
-    };
-    let (remaining, origins) = match patterns.first() {
-        Some(first) => {
-            (pattern_segments(&settled, first)?, vec![pattern_origin(first, request.trials.len())])
-        }
-        None => {
-            let origins = remainder_origins(&settled, &remaining, least)?;
-            (remaining, origins)
-        }
-    };
+    let origins = remainder_origins(&settled, &remaining, request.settings.least_evidence)?;
     Ok(Diagnosis {
         verdict: derive_verdict(&remaining, &named.found),
-        remarks: named.remarks.into_iter().chain(patterns.first().map(pattern_remark)).collect(),
-        patterns,
         changes,
         depends_on: remainder_dependence(first.trials, &residuals, (&remaining, &origins)),
         origins,
@@ -176,30 +154,24 @@ fn build_diagnosis(
         next_trial: named.next_trial,
         before: errors.before,
         after: errors.after,
-        noise: noise_by_channel(&base.workspace, readings_per_sample(request, search)),
+        noise: noise_by_channel(&base.workspace),
         how: describe_method(request, taken.how.as_deref()),
         diagnosed: request.model.name.clone(),
-        hypotheses: report_hypotheses(request, &settled, &choice)?,
+        hypotheses: report_hypotheses(request, search, &choice)?,
         trials: errors.trials,
         manoeuvres: errors.manoeuvres,
         residuals,
         discrepancies: discrepancy_levels(search, &base.workspace, &choice.alone, best),
         model: named.model,
         settings: request.settings.clone(),
+        remarks: named.remarks,
     })
 }
 
-/// Number of readings in a sample of the search.
-fn readings_per_sample(request: &DiagnosisInputs<'_>, search: &HypothesisSearch<'_>) -> f64 {
-    let interval_s = |trials: &[&Trial]| trials.first().map_or(1.0, |trial| trial.interval_s());
-    if search.averaged { interval_s(search.trials) / interval_s(request.trials) } else { 1.0 }
-}
-
-/// Noise of the instruments, by channel, SI: that of single readings, of which a sample is the mean
-/// of some.
-fn noise_by_channel(workspace: &LinearisedTrials<'_>, readings: f64) -> BTreeMap<String, f64> {
+/// Noise of the instruments, by channel, SI.
+fn noise_by_channel(workspace: &LinearisedTrials<'_>) -> BTreeMap<String, f64> {
     let one = |(channel, instrument): (&Channel, &NoiseLevel)| {
-        (channel.name().to_owned(), instrument.deviation * readings.sqrt())
+        (channel.name().to_owned(), instrument.deviation)
     };
     workspace.noise.iter().map(one).collect()
 }

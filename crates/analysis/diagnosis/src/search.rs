@@ -41,8 +41,6 @@ pub(super) struct HypothesisSearch<'a> {
     /// Levels of the discrepancy that are considered.
     pub levels: Vec<DiscrepancyFactor>,
     pub least_step_s: Option<f64>,
-    /// True if the trials are means of readings.
-    pub averaged: bool,
     /// Forms of the library's effects that are candidates.
     pub listed: Vec<EffectCandidate>,
     /// Terms that the model lacks.
@@ -143,21 +141,6 @@ impl<'a> HypothesisSearch<'a> {
         judged: &JudgedHypothesis,
         place: usize,
     ) -> Result<f64, RefineError> {
-        let discount = self.candidate_discount(&judged.candidates[place]);
-        self.discounted_effect_evidence(judged, place, discount)
-    }
-
-    /// Returns the evidence for one of the effects judged together, given the others, with its
-    /// information divided by `discount`.
-    ///
-    /// # Errors
-    /// Returns an error if the information is not positive.
-    pub fn discounted_effect_evidence(
-        &self,
-        judged: &JudgedHypothesis,
-        place: usize,
-        discount: f64,
-    ) -> Result<f64, RefineError> {
         let candidate = &judged.candidates[place];
         let sizes: Vec<usize> =
             judged.linearised_at.iter().map(|linearised_at| linearised_at.at.len()).collect();
@@ -176,7 +159,7 @@ impl<'a> HypothesisSearch<'a> {
             MarginalInformation::new(&GramMatrix::sum_parts(&judged.grams, width), &self.fixed)?
                 .marginalise_others(&others, &of(&others), &own)
                 .ok_or_else(not_positive_error)?;
-        let reduced = reduced.divide_by(discount);
+        let reduced = reduced.divide_by(self.candidate_discount(candidate));
         let estimate = reduced
             .estimate_parameters(&(0..own.len()).collect::<Vec<_>>(), &of(&own))
             .ok_or_else(not_positive_error)?;
@@ -312,16 +295,13 @@ impl<'a> HypothesisSearch<'a> {
         let calibrated: Vec<f64> =
             self.calibrated.iter().zip(&shift).map(|(before, more)| before + more).collect();
         Ok(Self {
-            calibrated_model: CalibratedModel {
-                every_sample: self.averaged,
-                ..CalibratedModel::new(
-                    request.model,
-                    request.law,
-                    &self.terms,
-                    &self.nuisance,
-                    &calibrated,
-                )?
-            },
+            calibrated_model: CalibratedModel::new(
+                request.model,
+                request.law,
+                &self.terms,
+                &self.nuisance,
+                &calibrated,
+            )?,
             fixed: self.fixed.clone().relative_to(&shift),
             calibrated,
             ..self.clone()
@@ -371,7 +351,6 @@ impl<'a> HypothesisSearch<'a> {
             covariance: estimate.covariance,
             level,
             grams,
-            refusal: None,
         })
     }
 }

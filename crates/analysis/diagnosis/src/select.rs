@@ -10,8 +10,7 @@ use super::hypothesis::JudgedHypothesis;
 use super::linearised_trials::LinearisedTrials;
 use super::misfit::shape_error;
 use super::outcome::{EffectChange, UnexplainedSegment};
-use super::refusal::Refusal;
-use super::remainder::{FittedColumns, find_unexplained};
+use super::remainder::find_unexplained;
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::{AxisDiscrepancies, EffectCandidate};
@@ -45,8 +44,7 @@ pub(super) fn select_effects<'a>(
         let state = RemainderState::from_converged(choice.converge(&search, request)?)?;
         let varying = state.inconstant_places(request.settings.least_evidence)?;
         let is_asked = refused.is_empty() || varying.is_empty();
-        let is_open = !state.remaining.is_empty() || !varying.is_empty();
-        if is_asked && is_open && !state.accepted_effects().is_empty() {
+        if is_asked && !state.remaining.is_empty() && !state.accepted_effects().is_empty() {
             report_progress(progress, "comparing with changes within trials")?;
             let steady = state.effect_names(|place| !varying.contains(&place));
             // All accepted effects only resembled the changes.
@@ -66,7 +64,6 @@ pub(super) fn select_effects<'a>(
         // Refused effects are removed from the search before it is repeated.
         let names = state.effect_names(|place| varying.contains(&place)).into_iter();
         refused.extend(names.inspect(|name| search.remove_effect(name)));
-        choice.refuse_accepted(refused.last().cloned().map(Refusal::NotConstant));
         report_progress(progress, "removing effects with inconsistent sizes")?;
         choice = choose_effects(&search, base, request.settings)?.merge_earlier(choice);
     }
@@ -95,18 +92,13 @@ impl<'a> RemainderState<'a> {
         wanted.map(|(_, candidate)| candidate.effect.clone()).collect()
     }
 
-    /// Indices of the effects that are not constant in time. Where nothing remains unexplained,
-    /// only a plain change counts: another form may need other sizes in other motions.
+    /// Indices of the effects that are not constant in time, where something remains unexplained.
     fn inconstant_places(&self, margin: f64) -> Result<Vec<usize>, RefineError> {
-        let ConvergedChoice { search, base, best, .. } = &self.settled;
-        if best.candidates.is_empty() {
-            return Ok(Vec::new());
+        let ConvergedChoice { search, base, best } = &self.settled;
+        match self.remaining.is_empty() {
+            true => Ok(Vec::new()),
+            false => inconstant_effects(search, base, best, margin),
         }
-        let least = match self.remaining.is_empty() {
-            true => THRESHOLDS.constancy.plain,
-            false => THRESHOLDS.constancy.limit,
-        };
-        inconstant_effects(search, base, best, (least, margin))
     }
 
     /// Changes within trials in addition to the accepted effects.
@@ -193,12 +185,7 @@ fn unexplained_segments(
     };
     let changes: Vec<f64> = best.candidates.iter().flat_map(open).collect();
     let effects: Vec<f64> = vec![0.0; best.shift.len()].into_iter().chain(changes).collect();
-    let fitted = FittedColumns {
-        parameters: &parameters,
-        effects: &effects,
-        present: &workspace.columns().candidates,
-    };
-    let found = find_unexplained(workspace, expected, fitted, clean)?;
+    let found = find_unexplained(workspace, expected, &parameters, &effects, clean)?;
     // Without a calibration there are no coefficients of clean trials to date the remainder by.
     if clean.is_none() || found.is_empty() {
         return Ok(found);
@@ -208,8 +195,7 @@ fn unexplained_segments(
     let given_way = search.coefficient_shift().into_iter().map(|change| -change);
     let as_calibrated: Vec<f64> =
         given_way.chain(parameters.iter().copied().skip(best.shift.len())).collect();
-    let fitted = FittedColumns { parameters: &as_calibrated, ..fitted };
-    let dated = find_unexplained(workspace, expected, fitted, clean)?;
+    let dated = find_unexplained(workspace, expected, &as_calibrated, &effects, clean)?;
     let same = |a: &UnexplainedSegment, b: &UnexplainedSegment| {
         a.trial == b.trial && a.channel == b.channel
     };

@@ -86,7 +86,6 @@ fn is_applicable(form: &EffectForm, law: &Law, trials: &[&Trial]) -> bool {
 /// Returns an error that names what the model or a trial lacks.
 pub(super) fn prepare_search<'a>(
     request: &DiagnosisInputs<'a>,
-    averaged: bool,
 ) -> Result<HypothesisSearch<'a>, RefineError> {
     let listed = listed_candidates(request.model, request.law, request.effects, request.trials);
     let (freed, changing) = (missing_term_candidates(request), changing_candidates(request));
@@ -109,11 +108,13 @@ pub(super) fn prepare_search<'a>(
     let mut search = HypothesisSearch {
         model: request.model,
         law: request.law,
-        calibrated_model: CalibratedModel {
-            every_sample: averaged,
-            ..CalibratedModel::new(request.model, request.law, &terms, &nuisance, &shift)?
-        },
-        averaged,
+        calibrated_model: CalibratedModel::new(
+            request.model,
+            request.law,
+            &terms,
+            &nuisance,
+            &shift,
+        )?,
         trials: request.trials,
         nuisance,
         terms,
@@ -122,8 +123,7 @@ pub(super) fn prepare_search<'a>(
         calibrated: shift,
         expected: Vec::new(),
         levels,
-        // Means are not thinned again.
-        least_step_s: if averaged { Some(0.0) } else { request.settings.least_step_s },
+        least_step_s: request.settings.least_step_s,
         log_priors: log_priors(request, &listed, &freed, &changing),
         states_odds: states_odds(request),
         listed,

@@ -45,18 +45,10 @@ pub(super) fn values_with_errors(
         let gradient =
             DVector::from_iterator(names.len(), (0..names.len()).map(|i| slope(i).unwrap_or(0.0)));
         let se = (gradient.transpose() * covariance * &gradient)[(0, 0)].max(0.0).sqrt();
-        values.insert(name.clone(), ValueWithError { value: full_circle(name, value), se });
+        values.insert(name.clone(), ValueWithError { value, se });
     }
     values
 }
-
-/// A direction from 0 to 360 deg; any other figure as it is.
-fn full_circle(name: &str, value: f64) -> f64 {
-    if BEARINGS.contains(&name) { value.rem_euclid(360.0) } else { value }
-}
-
-/// Figures that are directions.
-const BEARINGS: [&str; 2] = ["towards_deg", "from_deg"];
 
 /// Part of a joint covariance that belongs to a candidate.
 pub(super) fn own_covariance(

@@ -13,7 +13,6 @@
 //! of an effect is one more column that passes the same filter. Fitting, evidence and comparison
 //! need only the sums over samples of the products of these columns.
 
-mod averaged;
 mod columns;
 mod correction;
 mod discrepancies;
@@ -21,7 +20,6 @@ mod filter;
 mod filter_noise;
 mod filter_value;
 mod followed;
-mod form_errors;
 mod gram;
 mod instruments;
 mod jumps;
@@ -44,7 +42,6 @@ mod tapes;
 mod thresholds;
 mod transition;
 
-pub use averaged::average_trial;
 pub use columns::{
     EffectCandidate, FilterColumns, NuisanceColumn, NuisanceKind, missing_term_name,
 };
@@ -53,7 +50,6 @@ pub use filter::{
     WhitenedRows, column_responses, filter_columns, filter_part, prediction_errors, whiten_part,
 };
 pub use filter_noise::unknown_noise_error;
-pub use form_errors::{AxisColumn, FORM_ERRORS};
 pub use gram::GramMatrix;
 pub use likelihood::part_deviances;
 pub use linearise::linearise;

@@ -59,9 +59,6 @@ pub(super) struct ResidualThresholds {
     /// white noise falls to a third, and a rudder that is recorded as often as usual moves for
     /// longer.
     pub band_mean: usize,
-    /// `n_m`: fewest means of a trial, a count. Source: chosen, as many as a fast manoeuvre needs
-    /// for its course to be resolved.
-    pub least_means: usize,
     /// Least change of a reading by a unit of a rate and of a parameter, in units of both. Source:
     /// derived: a delay's is 1, and smaller values are rounding.
     pub least_rate_response: f64,
@@ -84,6 +81,5 @@ pub(super) const RESIDUAL: ResidualThresholds = ResidualThresholds {
     lag_step_s: 0.01,
     band_step: 1e-3,
     band_mean: 9,
-    least_means: 100,
     least_rate_response: 1e-9,
 };

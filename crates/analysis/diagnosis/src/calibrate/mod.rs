@@ -15,12 +15,10 @@ use rayon::prelude::*;
 use representative::representative_trials;
 use sistership_model::law::Law;
 use sistership_model::trial::Channel;
-use sistership_model::uncertainty::{Discrepancy, FalseAlarmLevel, InstrumentFit, Uncertainty};
+use sistership_model::uncertainty::{Discrepancy, InstrumentFit, Uncertainty};
 use sistership_model::{Effect, Model, Trial};
 use trial_information::{TrialInformation, expected_columns};
 
-use super::DiagnosisInputs;
-use super::averaged_trials::averaged_trials;
 use super::calibrated_model::CalibratedModel;
 use super::coefficient_prior::CoefficientPrior;
 use super::evidence::not_positive_error;
@@ -28,9 +26,7 @@ use super::linearised_trials::LinearisedTrials;
 use super::nuisance::{
     TermForms, learned_terms, missing_terms, term_regressor, uncalibrated_prior,
 };
-use super::patterns::PatternInformation;
 use super::remainder::largest_per_channel;
-use super::settings::Settings;
 use super::setup::listed_candidates;
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::{
@@ -268,7 +264,7 @@ impl<'a> CalibrationInputs<'a> {
         // The learned errors of instruments are part of the model here, and are stored with its
         // uncertainty.
         let errs = model.uncertainty.as_ref().map(|known| known.systematic_errors.clone());
-        let mut uncertainty = Uncertainty {
+        Ok(Uncertainty {
             systematic_errors: errs.unwrap_or_default(),
             false_alarm_levels: false_alarm::false_alarm_levels(
                 all,
@@ -277,38 +273,7 @@ impl<'a> CalibrationInputs<'a> {
             )?,
             remainder,
             ..root_uncertainty(all, known, learned)?
-        };
-        let levels = self.pattern_levels(learned, &uncertainty, but_one)?;
-        uncertainty.false_alarm_levels.extend(levels);
-        Ok(uncertainty)
-    }
-
-    /// Levels of the patterns of remainders, with the trials read as a diagnosis reads them.
-    fn pattern_levels(
-        &self,
-        learned: &LearnedCalibration<'_>,
-        uncertainty: &Uncertainty,
-        but_one: &[CoefficientPrior],
-    ) -> Result<BTreeMap<String, FalseAlarmLevel>, RefineError> {
-        let with_uncertainty =
-            |model: &Model| Model { uncertainty: Some(uncertainty.clone()), ..model.clone() };
-        let (model, settings) = (with_uncertainty(&learned.model), Settings::default());
-        let Self { law, effects, trials, .. } = *self;
-        let request = DiagnosisInputs { model: &model, law, effects, trials, settings: &settings };
-        let means = averaged_trials(&request)?;
-        let averaged: Vec<&Trial> = means.iter().flatten().collect();
-        let trials = if means.is_some() { averaged.as_slice() } else { trials };
-        let shifted = CalibratedModel {
-            model: with_uncertainty(&learned.shifted.model),
-            every_sample: means.is_some(),
-            ..learned.shifted.clone()
-        };
-        let columns = FilterColumns { nuisance: learned.nuisance.clone(), candidates: Vec::new() };
-        let step_s = means.is_some().then_some(0.0);
-        let all = LinearisedTrials::linearised_on_demand(&shifted, columns, trials, step_s)?;
-        let discrepancies = &learned.found.discrepancies;
-        let says = PatternInformation::new(&all, discrepancies, &[], (but_one, None))?;
-        Ok(says.clean_levels(&all))
+        })
     }
 }
 
@@ -375,8 +340,7 @@ fn largest_remainders(
         let Some(shift) = expected_columns(&but_one[trial], workspace.columns().len()) else {
             return Ok(Vec::new());
         };
-        let parts = workspace.parts_of_trial(trial)?;
-        largest_per_channel((workspace, trial), &parts, discrepancies, &shift)
+        largest_per_channel(workspace, &workspace.parts_of_trial(trial)?, discrepancies, &shift)
     };
     let sizes: Vec<Vec<(Channel, f64)>> = (0..workspace.trials.len())
         .into_par_iter()

@@ -38,7 +38,7 @@ pub(super) fn find_systematic_errors(
         ..Settings::default()
     };
     let request = DiagnosisInputs { model: &model, law, effects, trials, settings: &settings };
-    let mut search = prepare_search(&request, false)?;
+    let mut search = prepare_search(&request)?;
     search.freed.clear();
     // Detection limits are not needed here.
     search.states_odds = false;

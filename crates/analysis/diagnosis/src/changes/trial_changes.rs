@@ -14,7 +14,7 @@ use super::super::hypothesis::JudgedHypothesis;
 use super::super::linearised_trials::LinearisedTrials;
 use super::super::misfit::{misfit_share, shape_error};
 use super::super::outcome::{ChangeCourse, EffectChange, UnexplainedSegment};
-use super::super::remainder::{FittedColumns, unexplained_in_trial};
+use super::super::remainder::unexplained_in_trial;
 use super::super::search::HypothesisSearch;
 use super::super::values::values_with_errors;
 use sistership_filtering::{
@@ -34,8 +34,6 @@ pub(super) struct ChangeSearch<'s, 'a> {
     /// Columns that are present together with a change: those of coefficients, and of the accepted
     /// effects.
     kept: Vec<usize>,
-    /// Number of accepted effects, which are the first candidates of the workspace.
-    accepted: usize,
     /// Priors of the accepted effects by the other trials.
     taken: Vec<NormalPrior>,
     /// Relative uncertainty of the accepted effects' laws, by their columns.
@@ -78,8 +76,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
             discrepancies: search.expected.clone(),
             sources: change_sources(search, workspace.columns()),
             kept: (0..size + moved).collect(),
-            accepted: best.candidates.len(),
-            taken: (0..moved).map(|i| NormalPrior::unbounded(0.0, deviation(i))).collect(),
+            taken: (0..moved).map(|i| NormalPrior { mean: 0.0, deviation: deviation(i) }).collect(),
             open: vec![0.0; size]
                 .into_iter()
                 .chain(best.candidates.iter().flat_map(share))
@@ -279,9 +276,8 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         let place = trial.place;
         let parts = self.weighted_parts((place, &self.kept), source, &weight);
         let clean = self.search.model.uncertainty.as_ref().map(|known| &known.remainder);
-        let present = &self.workspace.columns().candidates[..self.accepted];
-        let fitted = FittedColumns { parameters: &parameters, effects: &open, present };
-        unexplained_in_trial((self.workspace, place), &parts, &self.discrepancies, fitted, clean)
+        let named = (self.workspace, self.workspace.trials[place].name.as_str());
+        unexplained_in_trial(named, &parts, &self.discrepancies, (&parameters, &open), clean)
     }
 
     /// Coefficients, accepted effects and the change, fitted together on the trial.

@@ -14,13 +14,6 @@ pub(crate) struct EffectThresholds {
     /// remainder is attributed to a further effect, dimensionless. Source: derived: a misfit is a
     /// root mean square over authors, of which 95 % are within twice as much.
     pub misfits: f64,
-    /// `k_l`: multiple of its misfit that is left of a form whose errors are integrated out
-    /// (`sistership_filtering::FORM_ERRORS`), as [`Self::misfits`], dimensionless. Source: chosen, a
-    /// quarter of [`Self::misfits`].
-    pub misfits_left: f64,
-    /// `T_f`: time by which another published form may be later, by `L/U`, dimensionless. Source:
-    /// chosen, the order of the time constants of steering gear.
-    pub form_memory: f64,
     /// `D_0`: divisor of the information on an effect where a model brings no uncertainty,
     /// dimensionless. Source: chosen; published coefficients have no clean trials on which a
     /// false-alarm level could be measured.
@@ -44,9 +37,6 @@ pub(crate) struct EffectThresholds {
     /// chi-squares by their degrees of freedom were at most 1.4 where the effect was present, and
     /// 4.5 to 15 where a force of no effect was attributed to it; 22.5 of 6 is this limit.
     pub shape_quantile: f64,
-    /// `z_0`: least size of an effect that is named, by its standard error, dimensionless. Source:
-    /// derived: the half width of an interval of 95 % that does not contain zero.
-    pub least_size: f64,
     /// `h`: step of numerical derivatives of reported values, by the parameter's standard error,
     /// dimensionless. Source: derived: central differences err by its square.
     pub report_step: f64,
@@ -57,14 +47,11 @@ pub(super) const EFFECT: EffectThresholds = EffectThresholds {
     size: 0.03,
     shape: 0.003,
     misfits: 2.0,
-    misfits_left: 0.5,
-    form_memory: 0.2,
     unknown_discount: 10.0,
     mass_deviation: 0.08,
     placebo_shifts: [0.25, 0.5, 0.75],
     least_variation: 0.15,
     shape_quantile: 3.09,
-    least_size: 2.0,
     report_step: 1e-3,
 };
 
@@ -79,9 +66,6 @@ pub(crate) struct ConstancyThresholds {
     /// form's misfit where it is larger. Source: chosen, sizes in the halves that differ by about a
     /// third.
     pub limit: f64,
-    /// `v_q`: as [`Self::limit`], where nothing remains unexplained. Source: chosen: of an effect
-    /// that begins at half time or later it is 1, of one that begins at a quarter 0.11.
-    pub plain: f64,
     /// `r_0`: least response in that ratio, in squared deviations. Source: derived: it prevents a
     /// division by zero.
     pub least_response: f64,
@@ -89,7 +73,7 @@ pub(crate) struct ConstancyThresholds {
 
 /// Values of constancy.
 pub(super) const CONSTANCY: ConstancyThresholds =
-    ConstancyThresholds { pieces: 2, limit: 0.1, plain: 0.5, least_response: 1e-9 };
+    ConstancyThresholds { pieces: 2, limit: 0.1, least_response: 1e-9 };
 
 /// Distinction of two effects.
 #[derive(Debug, Clone, Copy)]

@@ -9,10 +9,6 @@ pub(crate) struct TrialThresholds {
     /// chosen; a ship moves by a fiftieth of its length, so that a shorter step changes the
     /// linearisation by less than noise.
     pub least_step: f64,
-    /// `T_m`: longest interval over which readings with noise of their own are averaged for the
-    /// search, by `L/U`, dimensionless. Source: `docs/evidence/diagnosis_unseen.md`, "Means of
-    /// readings".
-    pub mean: f64,
     /// `T_j`: time before and after a jump in which readings are not used, by `L/U`, dimensionless:
     /// smoothing spreads the jump. Source: chosen; the rule was derived from the Esso Osaka trials
     /// (`docs/evidence/diagnosis.md`, "Positions and headings jump").
@@ -24,7 +20,7 @@ pub(crate) struct TrialThresholds {
 
 /// Values of trials.
 pub(super) const TRIALS: TrialThresholds =
-    TrialThresholds { least_step: 0.02, mean: 0.05, settles: 0.2, restart: 10.0 };
+    TrialThresholds { least_step: 0.02, settles: 0.2, restart: 10.0 };
 
 /// Rudder and switching angle of a manoeuvre, deg; a turn has no switching angle.
 #[derive(Debug, Clone, Copy)]

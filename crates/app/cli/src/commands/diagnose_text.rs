@@ -180,20 +180,19 @@ fn format_errors(diagnosis: &Diagnosis) -> TextTable {
 }
 
 fn format_hypotheses(hypotheses: &[HypothesisReport]) -> TextTable {
-    let mut table = TextTable::new(["hypothesis", "evidence", "held-out", "accepted"]);
+    let mut table = TextTable::new(["hypothesis", "evidence", "held-out", "selected"]);
     for hypothesis in distinct_hypotheses(hypotheses).into_iter().take(MAX_HYPOTHESES) {
         let name = if hypothesis.effects.is_empty() {
             "no effect".to_owned()
         } else {
             hypothesis.effects.join(" + ")
         };
-        let refused = || format!("no: {}", hypothesis.refused.as_deref().unwrap_or("-"));
-        let taken = if hypothesis.taken { "yes".to_owned() } else { refused() };
+        let taken = if hypothesis.taken { "yes" } else { "" };
         table.add_row([
             name,
             format_number(hypothesis.evidence),
             format_optional(hypothesis.held_out),
-            taken,
+            taken.to_owned(),
         ]);
     }
     table

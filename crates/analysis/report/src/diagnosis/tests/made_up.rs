@@ -117,7 +117,6 @@ fn hypothesis(effects: &[&str], evidence: f64, taken: bool) -> HypothesisReport 
         held_out: taken.then_some(30.5),
         parameters: current().parameters,
         taken,
-        refused: None,
     }
 }
 
@@ -260,7 +259,6 @@ fn diagnosis(after: Model) -> Diagnosis {
         verdict: Verdict::Effects,
         effects: vec![current()],
         unexplained: vec![stretch],
-        patterns: Vec::new(),
         changes: vec![damage()],
         origins: origins(),
         depends_on: vec![depends_on()],
