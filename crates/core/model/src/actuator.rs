@@ -93,7 +93,7 @@ impl Actuator {
     /// Returns the faults of an actuator; `sources` are the keys that exist.
     fn find_faults(&self, sources: &[&str]) -> Vec<String> {
         let places = [self.x_m.unwrap_or(0.0), self.y_m];
-        let is_far = places.iter().any(|place| !(place.abs() <= MAX_DISTANCE_M));
+        let is_far = places.iter().any(|place| place.is_nan() || place.abs() > MAX_DISTANCE_M);
         let far = is_far.then(|| format!("stands more than {MAX_DISTANCE_M} m from midship"));
         let is_wrong = self.diameter_m.is_some_and(|d| !(d > 0.0 && d < 20.0));
         let diameter = is_wrong.then(|| "`diameter_m` is above 0 and below 20 m".to_owned());

@@ -156,7 +156,7 @@ fn nmea2000_log() -> String {
         let [low, high] = (10 * u16::try_from(k).unwrap()).to_le_bytes();
         line(t + 0.01, 0x09F1_1223, &[0, low, high, 0xff, 0x7f, 0xff, 0x7f, 0xfc]);
         if k % 10 == 0 {
-            let mut message = vec![0; 43];
+            let mut message = [0; 43];
             message[7..15].copy_from_slice(&(510_000_000_000_000_000_i64).to_le_bytes());
             message[15..23].copy_from_slice(&(35_000_000_000_000_000_i64).to_le_bytes());
             let (first, rest) = message.split_at(6);

@@ -52,7 +52,7 @@ async fn a_delivery_is_taken_by_one_until_its_time_is_over(on: &TestStore) {
         .create(&version("kcs"), &[champion(ExpectedRevision::Absent)])
         .await
         .unwrap();
-    assert_eq!(webhooks.due_receivers().await.unwrap(), [id.clone()]);
+    assert_eq!(webhooks.due_receivers().await.unwrap(), std::slice::from_ref(&id));
     let until = on.store.now_us() + 60_000_000;
     let (taken, of) = webhooks.take_due(&id, until).await.unwrap().unwrap();
     assert_eq!((taken.attempts, of.secret.as_str()), (1, "secret"));
