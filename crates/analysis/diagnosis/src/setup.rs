@@ -45,7 +45,7 @@ pub(super) fn listed_candidates(
         let forms = effect
             .forms
             .iter()
-            .filter(|form| is_applicable(form, law, trials) && !is_systematic(form));
+            .filter(|form| is_applicable(form, model, law, trials) && !is_systematic(form));
         let forms = forms.filter(|form| !form.file.only_as_change);
         forms.map(|form| EffectCandidate::at_absence(&effect.name, form)).collect()
     };
@@ -56,7 +56,8 @@ pub(super) fn listed_candidates(
 fn changing_candidates(request: &DiagnosisInputs<'_>) -> Vec<EffectCandidate> {
     let of = |effect: &Arc<Effect>| -> Vec<EffectCandidate> {
         let can = |form: &&Arc<EffectForm>| {
-            form.file.only_as_change && is_applicable(form, request.law, request.trials)
+            form.file.only_as_change
+                && is_applicable(form, request.model, request.law, request.trials)
         };
         let forms = effect.forms.iter().filter(can);
         forms.map(|form| EffectCandidate::at_absence(&effect.name, form)).collect()
@@ -70,14 +71,19 @@ fn missing_term_candidates(request: &DiagnosisInputs<'_>) -> Vec<EffectCandidate
     terms.iter().map(|(effect, form)| EffectCandidate::at_absence(effect, form)).collect()
 }
 
-fn is_applicable(form: &EffectForm, law: &Law, trials: &[&Trial]) -> bool {
+/// True for a form whose channels and particulars are there. A water jet has no propeller diameter,
+/// and no effect that needs one.
+fn is_applicable(form: &EffectForm, model: &Model, law: &Law, trials: &[&Trial]) -> bool {
     let everywhere =
         |channel: &_| trials.iter().all(|trial: &&Trial| trial.channel(*channel).is_some());
     let somewhere =
         |channel: &_| trials.iter().any(|trial: &&Trial| trial.channel(*channel).is_some());
     // Some forms apply only to laws without roll.
     let rolls = form.file.only_without_roll && law.has_roll();
-    form.file.needs.iter().all(everywhere) && !form.file.unless.iter().any(somewhere) && !rolls
+    form.file.needs.iter().all(everywhere)
+        && !form.file.unless.iter().any(somewhere)
+        && !rolls
+        && form.missing_particular(&model.particulars).is_none()
 }
 
 /// Prepares a search.

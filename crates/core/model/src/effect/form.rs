@@ -1,11 +1,12 @@
 //! Form of an effect, with parsed and checked formulas.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use indexmap::IndexMap;
 
 use super::file::{FormFile, Mirror};
 use crate::coefficient::Axis;
+use crate::particulars::{self, Particulars};
 use crate::trial::Channel;
 use sistership_formula::Expr;
 use sistership_formula::units::Dimension;
@@ -71,6 +72,22 @@ pub struct ReportedFigure {
 }
 
 impl EffectForm {
+    /// First particular that the formulas use, the ship does not state and the form does not replace.
+    pub fn missing_particular(&self, stated: &Particulars) -> Option<&'static str> {
+        let mentioned: BTreeSet<&str> =
+            self.acting_formulas().flat_map(Expr::mentioned_names).collect();
+        let own = |name: &str| {
+            self.parameters.contains_key(name)
+                || self.values.contains_key(name)
+                || self.particulars.contains_key(name)
+        };
+        particulars::particular_names().find(|name| {
+            mentioned.contains(name)
+                && !own(name)
+                && particulars::particular_value(stated, name).is_none()
+        })
+    }
+
     /// Every formula that acts on the law or the instruments.
     pub(crate) fn acting_formulas(&self) -> impl Iterator<Item = &Expr> {
         let named = self
