@@ -39,7 +39,7 @@ def run(request):
     started = processor_seconds()
     model = peer.fit(training)
     seconds = processor_seconds() - started
-    limit = limits(data.trials)
+    limit = limits(training.trials)
     rows = []
     for restart in [0.0] + [task.restart_s] * (task.restart_s > 0):
         windows = [Window(trial, start, stop) for trial in data.select(task.test)

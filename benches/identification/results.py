@@ -74,6 +74,8 @@ def cell(row):
 def significant(value):
     if value is None:
         return "-"
+    if isinstance(value, int) or abs(value) >= 100:
+        return f"{value:.0f}"
     digits = max(0, 2 - math.floor(math.log10(abs(value)))) if value else 0
     return f"{value:.{digits}f}"
 

@@ -19,8 +19,7 @@ PRIORS = {"mx": 0.02, "my": 0.22, "jz": 0.02, "x0": 0.022, "xvv": -0.04, "xvr": 
           "nv": -0.14, "nr": -0.05, "nvvv": -0.03, "nvvr": -0.29, "nvrr": 0.055, "nrrr": -0.013,
           "y0": 0.0, "n0": 0.0, "thrust": 1.0, "advance": 0.5, "wash": 0.5, "rudder": 0.05,
           "flow": 0.5, "lever": -0.7, "drag": 0.6}
-WIDTH = {"y0": 0.003, "n0": 0.002, "xvv": 0.1, "xvr": 0.1, "xrr": 0.03, "yvvv": 1.5, "yvrr": 0.5,
-         "yrrr": 0.1, "nvvv": 0.3, "nrrr": 0.05, "rudder": 0.05}
+WIDTH = {"y0": 0.003, "n0": 0.002, "xvv": 0.1, "xvr": 0.1, "yvrr": 0.5, "yrrr": 0.1, "nvvv": 0.3}
 NAMES = tuple(PRIORS)
 MEAN = np.array(list(PRIORS.values()))
 SCALE = np.array([WIDTH.get(name, max(0.5 * abs(mean), 0.02)) for name, mean in PRIORS.items()])
@@ -42,13 +41,24 @@ def fit(task):
         bound = limits(trials)
 
         def residuals(z):
-            runs = model(MEAN + SCALE * z, frame, task.controls, bound).simulate(pieces)
-            misses = [(np.stack([run[s] for s in STATES], 1) - p.truth.columns(STATES)) / spread
-                      for run, p in zip(runs, pieces)]
-            misses = np.concatenate(misses).ravel()
-            return np.concatenate([misses, z * strength * np.sqrt(len(misses)) / 30])
-        found = least_squares(residuals, np.zeros(len(MEAN)), loss="soft_l1", max_nfev=15,
-                              x_scale=1.0, bounds=(-8, 8))
+            return misses(z[None], strength)[0]
+
+        def slopes(z):
+            moved = np.vstack([z, z + 1e-4 * np.eye(len(z))])
+            found = misses(moved, strength)
+            return (found[1:] - found[0]).T / 1e-4
+
+        def misses(z, strength):
+            """One row per parameter set; all of them are simulated in lockstep."""
+            values = np.repeat(MEAN + SCALE * z, len(pieces), axis=0).T
+            runs = model(values, frame, task.controls, bound).simulate(pieces * len(z))
+            states = np.stack([[run[s] for s in STATES] for run in runs])
+            truth = np.stack([[p.truth[s] for s in STATES] for p in pieces])
+            missed = (states.reshape(len(z), *truth.shape) - truth) / spread[:, None]
+            missed = missed.reshape(len(z), -1)
+            return np.hstack([missed, z * strength * np.sqrt(missed.shape[1]) / 30])
+        found = least_squares(residuals, np.zeros(len(MEAN)), slopes, loss="soft_l1", max_nfev=12,
+                              bounds=(-8, 8))
         return model(MEAN + SCALE * found.x, frame, task.controls, bound)
     return select((0.1, 1.0), fit_strength, task.trials)
 
@@ -58,13 +68,12 @@ def revolutions(trial):
 
 
 def segments(trials, seconds):
-    """At most forty pieces of the trials, evenly chosen."""
+    """At most thirty pieces of the trials of one length, evenly chosen."""
     every = []
     for trial in trials:
-        step = max(10, round(seconds / trial.dt))
+        step = min(max(10, round(seconds / trial.dt)), min(map(len, trials)))
         every += [Window(trial, k, k + step) for k in range(0, len(trial) - step + 1, step)]
-    every = every or [Window(trial, 0, len(trial)) for trial in trials]
-    return every[::-(-len(every) // 40)]
+    return every[::-(-len(every) // 30)]
 
 
 def model(values, frame, controls, bound):

@@ -18,6 +18,9 @@ def fit(task):
         terms = Abkowitz(rows, task.controls)
         scale = rates.std(axis=0)
         model = make_pipeline(StandardScaler(), Ridge(alpha)).fit(terms(rows), rates / scale)
-        return AccelerationModel(lambda rows: model.predict(terms(rows)) * scale, task.controls,
-                                 model[-1].coef_.size + 3, limits(trials))
+        scaler, ridge = model
+        weights = (ridge.coef_ / scaler.scale_).T * scale
+        offset = ridge.intercept_ * scale - scaler.mean_ @ weights
+        return AccelerationModel(lambda rows: terms(rows) @ weights + offset, task.controls,
+                                 weights.size + 3, limits(trials))
     return select(OPTIONS, fit_option, task.trials)
