@@ -20,8 +20,8 @@ def fit(task):
         rows, rates = accelerations(trials, task.controls, width)
         mean, scale = rows.mean(axis=0), np.maximum(rows.std(axis=0), 1e-9)
         spread = np.maximum(rates.std(axis=0), 1e-12)
-        network = MLPRegressor((neurons, neurons), activation="tanh", alpha=penalty,
-                               max_iter=300, early_stopping=True, random_state=1)
+        network = MLPRegressor(hidden_layer_sizes=(neurons, neurons), activation="tanh",
+                               alpha=penalty, max_iter=300, early_stopping=True, random_state=1)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             network.fit((rows - mean) / scale, rates / spread)
