@@ -3,6 +3,7 @@
 
 mod backup;
 mod bad_input;
+mod benchmark;
 mod branch_taken;
 mod branches;
 mod command_line;
