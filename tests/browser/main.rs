@@ -3,6 +3,7 @@
 //! it, a hidden current shows that it does not hold, and it is rolled back.
 #![allow(clippy::unwrap_used)]
 
+mod charts;
 mod driver;
 mod files;
 

@@ -34,4 +34,4 @@ pub use beginning::{from_content, page_beginning};
 pub use error::{PageError, Result};
 pub use form::FormFields;
 pub use problem::problem_page;
-pub use shell::{PageShell, PageUser, TOKEN_FIELD, security_policy};
+pub use shell::{PageShell, PageUser, TOKEN_FIELD, report_policy, security_policy};

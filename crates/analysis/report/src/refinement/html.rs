@@ -10,7 +10,7 @@ use super::content::RefinementContent;
 use super::summary::method_text;
 use super::{coefficient_shifts, further, selection_table, similarity, tables};
 use crate::numbers::{format_significant, format_stated, join_words};
-use crate::plots::{self, SvgPlot};
+use crate::plots::{self, LiveChart, SvgPlot};
 use crate::rendered::ReportError;
 use crate::replayed::{ReplaySummary, ReplayedTrial};
 use crate::tables::ReportTable;
@@ -57,8 +57,7 @@ struct RefinementPage<'a> {
 struct RefinementTrialPlots<'a> {
     shown: &'a ReplaySummary<'a>,
     caption: String,
-    trajectory: SvgPlot,
-    series: SvgPlot,
+    chart: LiveChart,
 }
 
 /// Reasons for the choice of the source.
@@ -138,8 +137,7 @@ impl<'a> RefinementTrialPlots<'a> {
         Self {
             shown,
             caption: plot_caption(shown),
-            trajectory: plots::trajectory_plot(replayed),
-            series: plots::series_plot(replayed),
+            chart: plots::replay_chart(replayed, ["measured", "source", "refined"]),
         }
     }
 }

@@ -7,7 +7,7 @@ use askama::Template;
 use sistership_jobs::Archive;
 use sistership_jobs::environment::steady_effect;
 use sistership_model::effect::AppliedEffect;
-use sistership_report::plots::HullOutline;
+use sistership_report::plots::{HullOutline, LiveChart};
 use sistership_simulation::Ship;
 
 use self::orders::{ManoeuvreOrders, Surroundings};
@@ -15,8 +15,7 @@ use self::simulation::{FigureList, simulate_orders};
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
 use crate::named::NamedVersion;
-use crate::picture::render_svg;
-use crate::plot::{LINES, PlotTrack, plot_channels, plot_ground};
+use crate::plot::{LINES, PlotTrack, track_chart};
 use crate::shell::PageShell;
 
 /// Inputs of the page.
@@ -38,8 +37,7 @@ struct PlaygroundPage<'a> {
     label: Option<String>,
     deep: bool,
     speed_hint: String,
-    track: Option<String>,
-    series: Option<String>,
+    chart: Option<LiveChart>,
     figures: FigureList,
     notes: Vec<String>,
 }
@@ -53,8 +51,7 @@ impl PlaygroundPage<'_> {
 
 /// Plots and figures of a simulation.
 struct PlaygroundResult {
-    track: Option<String>,
-    series: Option<String>,
+    chart: Option<LiveChart>,
     figures: FigureList,
     notes: Vec<String>,
     deep: bool,
@@ -112,15 +109,13 @@ impl PlaygroundInputs {
         };
         let label = self.version.as_ref().map(NamedVersion::label);
         let empty = PlaygroundResult {
-            track: None,
-            series: None,
+            chart: None,
             figures: Vec::new(),
             notes: Vec::new(),
             deep: false,
             speed_hint: String::new(),
         };
-        let PlaygroundResult { track, series, figures, notes, deep, speed_hint } =
-            drawn.unwrap_or(empty);
+        let PlaygroundResult { chart, figures, notes, deep, speed_hint } = drawn.unwrap_or(empty);
         let page = PlaygroundPage {
             shell: &self.shell,
             model: self.fields.get_text("model").unwrap_or_default(),
@@ -130,8 +125,7 @@ impl PlaygroundInputs {
             label,
             deep,
             speed_hint,
-            track,
-            series,
+            chart,
             figures,
             notes,
         };
@@ -168,8 +162,7 @@ fn run_playground(
     let tracks = [track];
     let hull = HullOutline::from_particulars(&model.particulars);
     Ok(PlaygroundResult {
-        track: plot_ground(&tracks, hull, "Track").as_ref().map(render_svg).transpose()?,
-        series: Some(render_svg(&plot_channels(&tracks, "Motion over time"))?),
+        chart: Some(track_chart(&tracks, hull, "simulated manoeuvre")),
         figures: run.figures,
         notes,
         deep: !knows_depth,
