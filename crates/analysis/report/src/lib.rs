@@ -35,3 +35,4 @@ pub use diagnosis::{
 pub use refinement::{RefinementInput, render_refinement};
 pub use rendered::{RenderedReport, ReportError, VersionLabel};
 pub use validation::render_validation;
+pub use words::{axis_words, field_words, variable_words};

@@ -2,7 +2,6 @@
 // Charts: values under the pointer, linked cursors, zoom, an outline of the ship along the track,
 // downloads. The server has drawn every chart; without this script it stays as it is.
 (() => {
-const SPACE = "http://www.w3.org/2000/svg";
 // Half of the outline of a ship from bow to stern, as fractions of length and beam.
 const HALF = [[.5, 0], [.42, .24], [.3, .44], [.18, .5], [-.38, .5], [-.5, .36]];
 const OUTLINE = [...HALF, ...HALF.slice(1).reverse().map(([x, y]) => [x, -y])];
@@ -10,7 +9,7 @@ const STYLES = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dashar
   "stroke-linecap", "stroke-linejoin", "font-family", "font-size", "font-weight", "text-anchor", "paint-order", "display", "vector-effect"];
 
 const draw = (name, attributes, parent) => {
-  const node = document.createElementNS(SPACE, name);
+  const node = document.createElementNS(parent.namespaceURI, name);
   for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
   parent.append(node);
   return node;
@@ -368,7 +367,7 @@ class Chart {
       left += sizes[index].width + 10;
       return new XMLSerializer().serializeToString(copy);
     });
-    return { width, height, text: `<svg xmlns="${SPACE}" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}"><rect width="100%" height="100%" fill="${paper}"/>${parts.join("")}</svg>` };
+    return { width, height, text: `<svg xmlns="${this.plots[0].namespaceURI}" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}"><rect width="100%" height="100%" fill="${paper}"/>${parts.join("")}</svg>` };
   }
   async png() {
     const { text, width, height } = this.svg(), image = new Image();
