@@ -17,6 +17,7 @@ pub mod jobs;
 mod named;
 pub mod new_ship;
 pub mod people;
+mod pickers;
 mod picture;
 pub mod playground;
 mod plot;

@@ -12,6 +12,7 @@ use self::tables::{ValueRow, coefficient_rows, criterion_rows, figure_rows};
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
 use crate::named::NamedVersion;
+use crate::pickers;
 use crate::plot::{PlotTrack, track_chart};
 use crate::shell::PageShell;
 
@@ -24,6 +25,7 @@ pub struct ComparisonInputs {
     versions: Vec<NamedVersion>,
     wrong: Option<String>,
     asked: Vec<String>,
+    known: Vec<String>,
 }
 
 #[derive(Template)]
@@ -31,6 +33,7 @@ pub struct ComparisonInputs {
 struct ComparePage<'a> {
     shell: &'a PageShell,
     asked: Vec<&'a str>,
+    known: &'a [String],
     wrong: Option<&'a str>,
     versions: Vec<ComparisonColumn<'a>>,
     turns: Option<LiveChart>,
@@ -72,7 +75,8 @@ pub async fn gather_inputs(
     // Names beyond the limit are dropped with a message.
     let wrong =
         wrong.or_else(|| many.then(|| format!("at most {MOST_VERSIONS} versions can be compared")));
-    Ok(ComparisonInputs { shell: shell.at_place("/compare"), versions, wrong, asked })
+    let known = pickers::model_names(archive).await?;
+    Ok(ComparisonInputs { shell: shell.at_place("/compare"), versions, wrong, asked, known })
 }
 
 impl ComparisonInputs {
@@ -100,6 +104,7 @@ impl ComparisonInputs {
         let page = ComparePage {
             shell: &self.shell,
             asked: self.form_names(),
+            known: &self.known,
             wrong: self.wrong.as_deref(),
             versions: self.versions.iter().map(ComparisonColumn::from_version).collect(),
             turns: chart(&turns, "turning circles, 35 deg to starboard"),

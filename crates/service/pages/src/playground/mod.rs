@@ -15,6 +15,7 @@ use self::simulation::{FigureList, simulate_orders};
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
 use crate::named::NamedVersion;
+use crate::pickers;
 use crate::plot::{LINES, PlotTrack, track_chart};
 use crate::shell::PageShell;
 
@@ -22,6 +23,9 @@ use crate::shell::PageShell;
 pub struct PlaygroundInputs {
     shell: PageShell,
     fields: FormFields,
+    /// Model that is simulated: that of the form, or one to begin with.
+    asked: String,
+    known: Vec<String>,
     version: Option<NamedVersion>,
     wrong: Option<String>,
 }
@@ -31,6 +35,7 @@ pub struct PlaygroundInputs {
 struct PlaygroundPage<'a> {
     shell: &'a PageShell,
     model: &'a str,
+    known: &'a [String],
     wrong: Option<String>,
     orders: ManoeuvreOrders,
     around: Surroundings,
@@ -68,14 +73,18 @@ pub async fn gather_inputs(
     fields: FormFields,
 ) -> Result<PlaygroundInputs> {
     let (mut version, mut wrong) = (None, None);
-    if let Some(name) = fields.get_text("model") {
-        match NamedVersion::find(archive, "model", name).await {
-            Ok(found) => version = Some(found),
-            Err(PageError::Invalid { message, .. }) => wrong = Some(message),
-            Err(other) => return Err(other),
-        }
+    let asked = match fields.get_text("model") {
+        Some(name) => name.to_owned(),
+        None => pickers::first_model(archive).await?,
+    };
+    match NamedVersion::find(archive, "model", &asked).await {
+        Ok(found) => version = Some(found),
+        Err(PageError::Invalid { message, .. }) => wrong = Some(message),
+        Err(other) => return Err(other),
     }
-    Ok(PlaygroundInputs { shell: shell.at_place("/playground"), fields, version, wrong })
+    let known = pickers::model_names(archive).await?;
+    let shell = shell.at_place("/playground");
+    Ok(PlaygroundInputs { shell, fields, asked, known, version, wrong })
 }
 
 impl PlaygroundInputs {
@@ -118,7 +127,8 @@ impl PlaygroundInputs {
         let PlaygroundResult { chart, figures, notes, deep, speed_hint } = drawn.unwrap_or(empty);
         let page = PlaygroundPage {
             shell: &self.shell,
-            model: self.fields.get_text("model").unwrap_or_default(),
+            model: &self.asked,
+            known: &self.known,
             wrong,
             orders,
             around,
