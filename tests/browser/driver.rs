@@ -139,6 +139,30 @@ impl Browser {
         }
     }
 
+    /// Moves the pointer to places of an element, as shares of its width and height; with `drags`
+    /// the button is held from the first place to the last.
+    pub async fn point(&self, css: &str, places: &[(f64, f64)], drags: bool) {
+        let corner = self
+            .run(&format!(
+                "const one = document.querySelector(\"{css}\"); one.scrollIntoView({{ block: 'center' }});
+                const box = one.getBoundingClientRect(); return [box.left, box.top, box.width, box.height]"
+            ))
+            .await;
+        let number = |index: usize| corner[index].as_f64().expect("a number");
+        let mut actions: Vec<Value> = Vec::new();
+        for (x, y) in places {
+            let (x, y) = (number(0) + x * number(2), number(1) + y * number(3));
+            actions.push(json!({ "type": "pointerMove", "x": x.round(), "y": y.round() }));
+        }
+        if drags {
+            actions.insert(1, json!({ "type": "pointerDown", "button": 0 }));
+            actions.push(json!({ "type": "pointerUp", "button": 0 }));
+        }
+        let pointer = json!({ "type": "pointer", "id": "mouse",
+            "parameters": { "pointerType": "mouse" }, "actions": actions });
+        self.told(Method::POST, "/actions", &json!({ "actions": [pointer] })).await;
+    }
+
     /// Types into a field, in the place of what it holds.
     pub async fn fill(&self, css: &str, text: &str) {
         let id = self.element(css).await;

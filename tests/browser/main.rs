@@ -3,8 +3,10 @@
 //! it, a hidden current shows that it does not hold, and it is rolled back.
 #![allow(clippy::unwrap_used)]
 
+mod charts;
 mod driver;
 mod files;
+mod first_steps;
 
 use std::net::TcpListener;
 
@@ -35,7 +37,7 @@ async fn sign_in(browser: &Browser, server: &TestServer, name: &str, password: &
     browser.fill("#name", name).await;
     browser.fill("#password", password).await;
     browser.leave_by("main form button").await;
-    browser.until("Ships and their manoeuvring models").await;
+    browser.until("Your fleet").await;
 }
 
 async fn shown(browser: &Browser, name: &str) {
@@ -83,8 +85,14 @@ async fn upload(browser: &Browser, server: &TestServer, files: &[String], name: 
     browser.leave_by("button[value='keep']").await;
 }
 
-async fn refined(browser: &Browser, server: &TestServer) {
+/// Opens the ship's page with its menu of actions.
+async fn open_actions(browser: &Browser, server: &TestServer) {
     browser.go(&format!("{}/ships/{SHIP}", server.url())).await;
+    browser.click("#actions > summary").await;
+}
+
+async fn refined(browser: &Browser, server: &TestServer) {
+    open_actions(browser, server).await;
     browser.fill("#source", "mariner").await;
     browser.choose("#method", "weak").await;
     browser.leave_by(&format!("form[action='/ships/{SHIP}/refine'] button")).await;
@@ -117,7 +125,7 @@ async fn compared(browser: &Browser, server: &TestServer) {
 
 /// Makes a version champion on the ship's page.
 async fn promote(browser: &Browser, server: &TestServer, reason: &str) -> String {
-    browser.go(&format!("{}/ships/{SHIP}", server.url())).await;
+    open_actions(browser, server).await;
     browser.fill("#reason", reason).await;
     browser.leave_by(&format!("form[action='/ships/{SHIP}/champion'] button")).await;
     browser.text().await
@@ -154,6 +162,7 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
     shown(&browser, "ship").await;
 
     // A note that others see, with its author.
+    browser.click("#actions > summary").await;
     browser.fill("#text", "bow thruster out of order").await;
     browser.leave_by(&format!("form[action='/ships/{SHIP}/note'] button")).await;
     let noted = browser.until("bow thruster out of order").await;
@@ -174,11 +183,12 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
 
     // Its model with the current is promoted by mistake, and rolled back.
     sign_in(&browser, &server, "bob", &bob).await;
-    browser.go(&format!("{}/ships/{SHIP}", server.url())).await;
+    open_actions(&browser, &server).await;
     browser.choose("#promoted", "2").await;
     browser.fill("#reason", "by mistake").await;
     browser.leave_by(&format!("form[action='/ships/{SHIP}/champion'] button")).await;
-    browser.until("Roll back to version 1").await;
+    browser.until("More actions").await;
+    browser.click("#actions > summary").await;
     browser.leave_by(&format!("form[action='/ships/{SHIP}/champion'] button.quiet")).await;
     browser.until("does not hold").await;
     told(&server, &["family", "create", "sisters", "--foundation", "mariner/1", "--ship", SHIP]);

@@ -19,6 +19,10 @@ mod tile;
 mod validation;
 mod words;
 
+/// Style sheet of charts, on pages and in reports.
+pub const CHART_STYLE: &str = include_str!("../templates/chart.css");
+/// Script of charts; each chart is complete without it.
+pub const CHART_SCRIPT: &str = include_str!("../templates/chart.js");
 /// Style sheet of reports, which other pages share.
 pub const STYLE: &str = include_str!("../templates/report_style.css");
 
@@ -31,3 +35,4 @@ pub use diagnosis::{
 pub use refinement::{RefinementInput, render_refinement};
 pub use rendered::{RenderedReport, ReportError, VersionLabel};
 pub use validation::render_validation;
+pub use words::{axis_words, field_words, variable_words};

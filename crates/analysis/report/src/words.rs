@@ -68,7 +68,7 @@ const UNITS: [(&str, &str); 9] = [
 ];
 
 /// Name in words and unit of a field such as `rudder_area_m2`.
-pub(crate) fn field_words(name: &str) -> (String, &'static str) {
+pub fn field_words(name: &str) -> (String, &'static str) {
     let (stem, unit) = UNITS
         .into_iter()
         .find_map(|(ending, unit)| Some((name.strip_suffix(ending)?, unit)))
@@ -117,7 +117,7 @@ pub(crate) fn method_words(name: &str) -> &'static str {
 }
 
 /// Axis in words.
-pub(crate) fn axis_words(axis: &str) -> &'static str {
+pub fn axis_words(axis: &str) -> &'static str {
     match axis {
         "X" => "surge force X",
         "Y" => "sway force Y",
@@ -129,7 +129,7 @@ pub(crate) fn axis_words(axis: &str) -> &'static str {
 }
 
 /// Recorded variable in words, its displayed unit, and the conversion from SI.
-pub(crate) fn variable_words(name: &str) -> (&str, &'static str, fn(f64) -> f64) {
+pub fn variable_words(name: &str) -> (&str, &'static str, fn(f64) -> f64) {
     let plain: fn(f64) -> f64 = |value| value;
     let degrees: fn(f64) -> f64 = |value| value.to_degrees();
     match name {

@@ -21,6 +21,7 @@ pub mod memory;
 pub mod predictions;
 pub mod promotion;
 pub mod publish;
+mod published_ships;
 pub mod recipe;
 pub mod request;
 pub mod schema;

@@ -28,7 +28,8 @@ struct EntryRow {
     at: String,
     actor: String,
     origin: String,
-    action: String,
+    /// What was done, in words.
+    sentence: String,
     subject: String,
     before: String,
     after: String,
@@ -62,6 +63,38 @@ pub async fn audit_page(archive: &Archive, shell: PageShell, query: &FormFields)
     Ok(page.render()?)
 }
 
+/// Verbs of the audit in the past tense; others are shown as they are.
+const VERBS: [(&str, &str); 16] = [
+    ("create", "created"),
+    ("update", "changed"),
+    ("delete", "deleted"),
+    ("undelete", "restored"),
+    ("move", "moved"),
+    ("tag", "tagged"),
+    ("untag", "removed a tag from"),
+    ("note", "added a note to"),
+    ("cancel", "cancelled"),
+    ("retry", "repeated"),
+    ("enable", "enabled"),
+    ("disable", "disabled"),
+    ("revoke", "revoked"),
+    ("begin", "began"),
+    ("end", "ended"),
+    ("add", "added a member to"),
+];
+
+/// Returns an entry in words: `created the ship kcs` of `ship.create` and `ship:kcs`.
+fn action_words(action: &str, subject: &str) -> String {
+    let (kind, name) = subject.split_once(':').unwrap_or(("", subject));
+    let (noun, verb) = action.split_once('.').unwrap_or(("", action));
+    let known = VERBS.iter().find(|(word, _)| *word == verb);
+    match known {
+        Some((_, past)) if kind == noun || kind.is_empty() => format!("{past} the {noun} {name}"),
+        Some((_, past)) => format!("{past} the {noun} of {kind} {name}"),
+        None => format!("{verb} of the {noun}, {kind} {name}"),
+    }
+}
+
 impl EntryRow {
     fn from_entry(entry: AuditEntry) -> Self {
         let AuditEntry { number, at_us, actor, origin, action, subject, .. } = entry;
@@ -71,10 +104,22 @@ impl EntryRow {
             at: format_date(at_us),
             actor,
             origin,
-            action,
+            sentence: action_words(&action, &subject),
             subject,
             before: before.unwrap_or_default(),
             after: after.unwrap_or_default(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_read_as_sentences() {
+        assert_eq!(action_words("ship.create", "ship:kcs"), "created the ship kcs");
+        assert_eq!(action_words("alias.move", "ship:kcs"), "moved the alias of ship kcs");
+        assert_eq!(action_words("roles.set", "user:ann"), "set of the roles, user ann");
     }
 }

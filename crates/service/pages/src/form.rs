@@ -20,6 +20,11 @@ impl FormFields {
         own.map(|(_, text)| text.trim()).find(|text| !text.is_empty())
     }
 
+    /// Returns true if no field has a text.
+    pub fn is_empty(&self) -> bool {
+        self.0.iter().all(|(_, text)| text.trim().is_empty())
+    }
+
     /// Texts of a field that may occur several times.
     pub fn get_texts<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a str> {
         let own = self.0.iter().filter(move |(known, _)| known == name);

@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use sha2::{Digest as _, Sha256};
+use sistership_report::{CHART_SCRIPT, CHART_STYLE};
 
 /// Style sheet of every page.
 pub(crate) const STYLE: &str = include_str!("../templates/style.css");
@@ -86,17 +87,36 @@ impl PageShell {
     }
 }
 
-/// Content Security Policy of pages: their own style and script by their hashes (Content Security
-/// Policy Level 3, W3C), requests and forms to this server, and nothing else.
+/// Content Security Policy of pages: their own styles and scripts by their hashes (Content Security
+/// Policy Level 3, W3C), requests and forms to this server, images made by the page itself for download,
+/// and nothing else.
 pub fn security_policy() -> &'static str {
     static POLICY: LazyLock<String> = LazyLock::new(|| {
-        let hash = |text: &str| BASE64_STANDARD.encode(Sha256::digest(text.as_bytes()));
         format!(
-            "default-src 'none'; style-src 'sha256-{}'; script-src 'sha256-{}'; \
+            "default-src 'none'; style-src {}; script-src {}; img-src blob:; \
              connect-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'",
-            hash(STYLE),
-            hash(SCRIPT)
+            allowed_hashes(&[STYLE, CHART_STYLE]),
+            allowed_hashes(&[SCRIPT, CHART_SCRIPT])
         )
     });
     &POLICY
+}
+
+/// Content Security Policy of a report: its own styles and images, and the script of charts.
+pub fn report_policy() -> &'static str {
+    static POLICY: LazyLock<String> = LazyLock::new(|| {
+        format!(
+            "default-src 'none'; style-src 'unsafe-inline'; script-src {}; img-src data: blob:; \
+             form-action 'none'; frame-ancestors 'none'",
+            allowed_hashes(&[CHART_SCRIPT])
+        )
+    });
+    &POLICY
+}
+
+fn allowed_hashes(texts: &[&str]) -> String {
+    let hash = |text: &&str| BASE64_STANDARD.encode(Sha256::digest(text.as_bytes()));
+    let sources: Vec<String> =
+        texts.iter().map(|text| format!("'sha256-{}'", hash(text))).collect();
+    sources.join(" ")
 }

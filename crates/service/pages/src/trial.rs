@@ -9,7 +9,7 @@ use sistership_model::trial::{Channel, Finding, Trial as Samples};
 use sistership_model::version::RecipeTrial;
 use sistership_model::{Law, Model};
 use sistership_report::numbers::format_significant;
-use sistership_report::plots::HullOutline;
+use sistership_report::plots::{HullOutline, LiveChart};
 use sistership_simulation::Ship;
 use sistership_simulation::error::SquaredError;
 use sistership_simulation::recorded::{ReplaySettings, replay_trial};
@@ -17,8 +17,7 @@ use sistership_store::{PageRequest, Trial};
 
 use crate::date::format_date;
 use crate::error::Result;
-use crate::picture::render_svg;
-use crate::plot::{LINES, PlotTrack, legend_entries, plot_channels, plot_ground};
+use crate::plot::{LINES, PlotTrack, track_chart};
 use crate::shell::PageShell;
 
 /// Number of the ship's versions that are searched.
@@ -46,9 +45,8 @@ struct TrialPage<'a> {
     shell: &'a PageShell,
     created: String,
     findings: Vec<Finding>,
-    legend: Vec<(&'static str, String)>,
-    track: Option<String>,
-    series: String,
+    has_track: bool,
+    chart: LiveChart,
     errors: Vec<(String, String)>,
     said: Option<String>,
     manifest: String,
@@ -136,18 +134,13 @@ impl TrialPageInputs {
             .champion
             .as_ref()
             .and_then(|known| HullOutline::from_particulars(&known.model.particulars));
-        let label = format!("Track of {}", self.trial.name);
         let page = TrialPage {
             of: self,
             shell: &self.shell,
             created: format_date(self.trial.created_us),
             findings: serde_json::from_str(&self.trial.warnings).unwrap_or_default(),
-            legend: legend_entries(&tracks),
-            track: plot_ground(&tracks, hull, &label).as_ref().map(render_svg).transpose()?,
-            series: render_svg(&plot_channels(
-                &tracks,
-                &format!("Channels of {} over time", self.trial.name),
-            ))?,
+            has_track: tracks.iter().any(|track| track.positions().is_some()),
+            chart: track_chart(&tracks, hull, &self.trial.name),
             errors,
             said,
             manifest: format_json(&self.trial.manifest),

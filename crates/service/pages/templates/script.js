@@ -28,6 +28,7 @@ for (const form of document.querySelectorAll("form[data-live]")) {
     const result = page.getElementById("result");
     if (turn !== latest || !result) return;
     document.getElementById("result").replaceWith(result);
+    document.dispatchEvent(new Event("content"));
     history.replaceState(null, "", query);
   };
   form.addEventListener("input", () => { clearTimeout(waiting); waiting = setTimeout(ask, 250); });

@@ -87,6 +87,8 @@ statements! {
     // All vectors of a category, in no order, for a comparison in memory.
     VECTORS = search!("CAST(NULL AS DOUBLE PRECISION) AS value, v.vectors",
         "ship_vectors v JOIN ships s ON s.name = v.ship WHERE v.category = $1", "");
+    COUNT_OF_RANGE = same("SELECT CAST(COUNT(*) AS BIGINT) AS rows FROM ship_facts WHERE fact = $1 \
+        AND value BETWEEN $2 AND $3");
     STATE = same("SELECT CAST(COUNT(*) AS BIGINT) AS ships, CAST(COALESCE(SUM(stamp), 0) AS \
         BIGINT) AS stamps FROM ship_vectors WHERE category = $1");
     // The next distinct category after `$1`, by one step in the index.
@@ -336,6 +338,15 @@ impl ShipRepository<'_> {
     pub async fn vectors_state(&self, category: &str) -> Result<VectorsState> {
         let state = self.0.database().fetch_optional(STATE, args![category: category]).await?;
         Ok(state.unwrap_or(VectorsState { ships: 0, stamps: 0 }))
+    }
+
+    /// Returns the number of ships in a range, from the index of facts alone.
+    pub async fn count_ships(&self, range: &FactRange) -> Result<i64> {
+        let FactRange { fact, min, max } = range;
+        let limits = args![fact: fact, min: *min, max: *max];
+        let count: Option<RowCount> =
+            self.0.database().fetch_optional(COUNT_OF_RANGE, limits).await?;
+        Ok(count.map_or(0, |count| count.rows))
     }
 
     /// Returns the categories that have ships with vectors, by name. One statement for each skips

@@ -8,7 +8,7 @@ use sistership_diagnosis::{MissingEffect, ResidualSeries, UnexplainedSegment};
 use super::input::DiagnosisInput;
 use super::{changes, errors, evidence, limits, provenance, remaining, sentence, summary};
 use crate::numbers::{format_fixed, format_significant, format_stated, join_words};
-use crate::plots::{self, SvgPlot};
+use crate::plots::{self, LiveChart, SvgPlot};
 use crate::rendered::ReportError;
 use crate::replayed::ReplayedTrial;
 use crate::tables::ReportTable;
@@ -62,9 +62,8 @@ struct EffectSection<'a> {
 struct DiagnosisTrialPlots<'a> {
     replayed: &'a ReplayedTrial<'a>,
     caption: String,
-    trajectory: SvgPlot,
-    series: SvgPlot,
-    residual: Option<SvgPlot>,
+    chart: LiveChart,
+    residual: Option<LiveChart>,
 }
 
 /// Renders the page.
@@ -169,9 +168,8 @@ impl<'a> DiagnosisTrialPlots<'a> {
             input.diagnosis.unexplained.iter().filter(|stretch| stretch.trial == *name).collect();
         Self {
             caption: plot_caption(replayed),
-            trajectory: plots::trajectory_plot(replayed),
-            series: plots::series_plot(replayed),
-            residual: (!own.is_empty()).then(|| plots::residual_plot(name, &own, &stretches)),
+            chart: plots::replay_chart(replayed, ["measured", "model before", "model after"]),
+            residual: (!own.is_empty()).then(|| plots::residual_chart(name, &own, &stretches)),
             replayed,
         }
     }

@@ -1,7 +1,7 @@
 //! Chart of the ground: north up, east to the right, on equal scales.
 
 use super::axes::{AxisScale, grid_columns, grid_rows, nice_step};
-use super::{HullOutline, Shape, WIDTH};
+use super::{GROUND, HullOutline, PanelAxes, Shape, WIDTH};
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 18.0;
@@ -52,7 +52,14 @@ impl GroundChart {
     pub fn draw_chart(&self, inside: Vec<Shape>) -> Vec<Shape> {
         let (at, size) = ((LEFT, TOP), (self.east.length, self.north.length));
         let mut shapes = self.draw_grid();
-        shapes.push(Shape::Panel { at, size, shapes: inside });
+        let axes = PanelAxes {
+            quantity: GROUND.to_owned(),
+            title: "position".to_owned(),
+            unit: "m",
+            across: self.east,
+            up: self.north,
+        };
+        shapes.push(Shape::Panel { at, size, shapes: inside, axes: Some(axes) });
         shapes.push(Shape::Rect { at, size, class: "frame" });
         shapes
     }

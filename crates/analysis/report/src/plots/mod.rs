@@ -6,6 +6,8 @@ mod dependence;
 mod ground;
 mod hull;
 mod lines;
+mod live;
+mod replay_chart;
 mod residual;
 mod scatter;
 mod series;
@@ -18,11 +20,11 @@ pub use decimate::{drawn_indices, path_data};
 pub(crate) use dependence::dependence_plots;
 pub use ground::GroundChart;
 pub use hull::HullOutline;
-pub(crate) use residual::residual_plot;
+pub use live::{ChartLine, GROUND, LiveChart, PanelAxes};
+pub(crate) use replay_chart::replay_chart;
+pub(crate) use residual::residual_chart;
 pub(crate) use scatter::scatter_plots;
-pub(crate) use series::series_plot;
 pub use trajectory::mark_interval_s;
-pub(crate) use trajectory::trajectory_plot;
 
 /// Width of every plot in its own units, close to that of a phone's screen, so that text stays
 /// legible there.
@@ -57,5 +59,5 @@ pub enum Shape {
     /// Text; `class` also anchors it.
     Text { at: (f64, f64), text: String, class: &'static str },
     /// Shapes in the coordinates of a panel, clipped at its edges.
-    Panel { at: (f64, f64), size: (f64, f64), shapes: Vec<Shape> },
+    Panel { at: (f64, f64), size: (f64, f64), shapes: Vec<Shape>, axes: Option<PanelAxes> },
 }

@@ -5,7 +5,7 @@ use sistership_diagnosis::{ResidualSeries, UnexplainedSegment};
 
 use super::axes::{AxisScale, grid_columns, grid_rows, padded_range, value_range};
 use super::decimate::{drawn_indices, path_data};
-use super::{Shape, SvgPlot, WIDTH};
+use super::{ChartLine, LiveChart, PanelAxes, Shape, SvgPlot, WIDTH};
 use crate::words::acceleration_unit;
 
 const LEFT: f64 = 52.0;
@@ -14,8 +14,22 @@ const TITLE: f64 = 20.0;
 const HEIGHT: f64 = 78.0;
 const BOTTOM: f64 = 34.0;
 
+/// Returns the residuals of a trial over time.
+pub(crate) fn residual_chart(
+    trial: &str,
+    series: &[&ResidualSeries],
+    unexplained: &[&UnexplainedSegment],
+) -> LiveChart {
+    let plots = vec![residual_plot(trial, series, unexplained)];
+    let mut chart = LiveChart::new(plots, &residual_lines(series), None);
+    if !unexplained.is_empty() {
+        chart.legend.push(("stretch", "unexplained".to_owned()));
+    }
+    chart
+}
+
 /// Returns the panels of one trial, one for each acceleration; unexplained segments are shaded.
-pub(crate) fn residual_plot(
+fn residual_plot(
     trial: &str,
     series: &[&ResidualSeries],
     stretches: &[&UnexplainedSegment],
@@ -81,12 +95,37 @@ fn acceleration_panel(
     let lines = vec![line(&series.before, "source"), line(&series.after, "refined")];
     let size = (time.length, HEIGHT);
     // Order of drawing: shaded areas below the grid, lines above it.
-    shapes.push(Shape::Panel { at: (LEFT, top), size, shapes: areas });
+    shapes.push(Shape::Panel { at: (LEFT, top), size, shapes: areas, axes: None });
     shapes.extend(grid_rows((LEFT, top), time.length, &scale, 4));
     shapes.extend(grid_columns((LEFT, top), HEIGHT, time, 6, last));
-    shapes.push(Shape::Panel { at: (LEFT, top), size, shapes: lines });
+    let axes = PanelAxes {
+        quantity: series.channel.clone(),
+        title: format!("residual of d{}/dt", series.channel),
+        unit,
+        across: *time,
+        up: scale,
+    };
+    shapes.push(Shape::Panel { at: (LEFT, top), size, shapes: lines, axes: Some(axes) });
     shapes.push(Shape::Rect { at: (LEFT, top), size, class: "frame" });
     shapes
+}
+
+/// Returns the lines of the panels, each with its own times.
+fn residual_lines(series: &[&ResidualSeries]) -> Vec<ChartLine> {
+    let line = |one: &ResidualSeries, class, name: &str, values: &[f64]| {
+        let (_, factor) = acceleration_unit(&one.channel);
+        let values = values.iter().map(|value| value * factor).collect();
+        let quantities = vec![(one.channel.clone(), values)];
+        ChartLine { class, name: name.to_owned(), t_s: one.t_s.clone(), quantities }
+    };
+    let both = |one: &&ResidualSeries| {
+        [
+            line(one, "source", "before", &one.before),
+            line(one, "refined", "after", &one.after),
+            line(one, "band", "range of noise alone (two standard deviations)", &one.band),
+        ]
+    };
+    series.iter().flat_map(both).collect()
 }
 
 fn high_band(series: &ResidualSeries, factor: f64) -> f64 {

@@ -5,7 +5,7 @@ use sistership_model::trial::Channel;
 use super::axes::{AxisScale, display_range, grid_columns, grid_rows, padded_range, value_range};
 use super::decimate::path_data;
 use super::lines::{self, PlottedLine};
-use super::{Shape, SvgPlot, WIDTH};
+use super::{PanelAxes, Shape, SvgPlot, WIDTH};
 use crate::replayed::ReplayedTrial;
 use crate::words::{self, DisplayChannel, RUDDER};
 
@@ -45,7 +45,7 @@ pub(crate) fn series_plot(replayed: &ReplayedTrial<'_>) -> SvgPlot {
 }
 
 /// Displayed channels: the motions, then the rudder.
-fn panel_channels(rolls: bool) -> Vec<(Channel, DisplayChannel)> {
+pub(super) fn panel_channels(rolls: bool) -> Vec<(Channel, DisplayChannel)> {
     let motions = [Channel::U, Channel::V, Channel::R, Channel::Psi, Channel::Phi];
     // Roll is only shown if it is simulated.
     let motions = motions.into_iter().filter(|channel| rolls || *channel != Channel::Phi);
@@ -84,7 +84,15 @@ fn channel_panel(
     shapes.extend(grid_rows((LEFT, top), time.length, &scale, 5));
     shapes.extend(grid_columns((LEFT, top), HEIGHT, time, 6, last));
     let curves = lines.iter().map(|line| channel_curve(replayed, line, time, &scale)).collect();
-    shapes.push(Shape::Panel { at: (LEFT, top), size: (time.length, HEIGHT), shapes: curves });
+    let axes = PanelAxes {
+        quantity: channel.name().to_owned(),
+        title: format!("{} {}", quantity.name, quantity.symbol),
+        unit: quantity.unit,
+        across: *time,
+        up: scale,
+    };
+    let (at, size) = ((LEFT, top), (time.length, HEIGHT));
+    shapes.push(Shape::Panel { at, size, shapes: curves, axes: Some(axes) });
     shapes.push(Shape::Rect { at: (LEFT, top), size: (time.length, HEIGHT), class: "frame" });
     shapes
 }

@@ -53,7 +53,7 @@ impl SmallPlot {
         let mut shapes = vec![Shape::Text { at: (LEFT, TOP - 8.0), text: title, class: "title" }];
         shapes.extend(grid_rows(corner, self.across.length, &self.up, 5));
         shapes.extend(grid_columns(corner, self.up.length, &self.across, 5, true));
-        shapes.push(Shape::Panel { at: corner, size, shapes: content });
+        shapes.push(Shape::Panel { at: corner, size, shapes: content, axes: None });
         shapes.push(Shape::Rect { at: corner, size, class: "frame" });
         let under = (LEFT + 0.5 * self.across.length, TOP + self.up.length + 32.0);
         shapes.push(Shape::Text { at: under, text: below, class: "title mid" });

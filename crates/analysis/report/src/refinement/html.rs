@@ -5,12 +5,14 @@ use sistership_model::source::Source;
 use sistership_model::vessel::Status;
 use sistership_model_selection::SelectionReport;
 
+use super::acceptance::AcceptanceSummary;
 use super::coefficients::CoefficientReport;
 use super::content::RefinementContent;
+use super::input::RefinementInput;
 use super::summary::method_text;
 use super::{coefficient_shifts, further, selection_table, similarity, tables};
 use crate::numbers::{format_significant, format_stated, join_words};
-use crate::plots::{self, SvgPlot};
+use crate::plots::{self, LiveChart, SvgPlot};
 use crate::rendered::ReportError;
 use crate::replayed::{ReplaySummary, ReplayedTrial};
 use crate::tables::ReportTable;
@@ -22,6 +24,7 @@ use crate::words;
 #[template(path = "report.html")]
 struct RefinementPage<'a> {
     content: &'a RefinementContent<'a>,
+    acceptance: AcceptanceSummary,
     method: String,
     tiles: Vec<ErrorTile>,
     errors: ReportTable,
@@ -57,8 +60,7 @@ struct RefinementPage<'a> {
 struct RefinementTrialPlots<'a> {
     shown: &'a ReplaySummary<'a>,
     caption: String,
-    trajectory: SvgPlot,
-    series: SvgPlot,
+    chart: LiveChart,
 }
 
 /// Reasons for the choice of the source.
@@ -77,6 +79,7 @@ struct CitedSource<'a> {
 
 /// Renders the page.
 pub(crate) fn render_page(
+    input: &RefinementInput<'_>,
     content: &RefinementContent<'_>,
     replayed: &[ReplayedTrial<'_>],
 ) -> Result<String, ReportError> {
@@ -84,6 +87,7 @@ pub(crate) fn render_page(
     let lpp_m = content.manoeuvres.lpp_m;
     let page = RefinementPage {
         content,
+        acceptance: AcceptanceSummary::from_input(input, content),
         method: method_text(&content.headline),
         tiles: content.errors.headline_rows().map(ErrorTile::from_row).collect(),
         errors: tables::error_table(&content.errors),
@@ -138,8 +142,7 @@ impl<'a> RefinementTrialPlots<'a> {
         Self {
             shown,
             caption: plot_caption(shown),
-            trajectory: plots::trajectory_plot(replayed),
-            series: plots::series_plot(replayed),
+            chart: plots::replay_chart(replayed, ["measured", "source", "refined"]),
         }
     }
 }

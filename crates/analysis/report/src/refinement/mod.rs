@@ -5,6 +5,7 @@
 //! measured figures, similarity, provenance, replays); JSON is that content, the page shows it with
 //! tables and plots. Nothing depends on the clock.
 
+mod acceptance;
 mod coefficient_shifts;
 mod coefficients;
 mod content;
@@ -36,6 +37,6 @@ pub fn render_refinement(input: &RefinementInput<'_>) -> Result<RenderedReport, 
     let replayed = replays::replay_chosen(input)?;
     let further = further::simulate_further(input)?;
     let content = RefinementContent::from_input(input, &replayed, further);
-    let html = html::render_page(&content, &replayed)?;
+    let html = html::render_page(input, &content, &replayed)?;
     Ok(RenderedReport { json: serde_json::to_value(&content)?, html })
 }

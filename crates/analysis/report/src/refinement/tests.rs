@@ -106,7 +106,7 @@ fn the_same_input_gives_the_same_self_contained_page() {
     let first = case.render();
     assert_eq!(first, case.render());
     assert!(
-        !first.html.contains("<script") && !first.html.contains("zz<1>"),
+        !first.html.contains("zz<1>") && first.html.matches("<script>").count() == 1,
         "text from outside must be escaped"
     );
     assert!(
@@ -124,7 +124,16 @@ fn the_same_input_gives_the_same_self_contained_page() {
 fn a_page_says_what_a_reader_asks() {
     let case = Case::new(&["zigzag", "turn"]);
     let RenderedReport { html, json } = case.render();
-    let ids = ["errors", "trials", "coefficients", "options", "manoeuvres", "source", "provenance"];
+    let ids = [
+        "acceptance",
+        "errors",
+        "trials",
+        "coefficients",
+        "options",
+        "manoeuvres",
+        "source",
+        "provenance",
+    ];
     let places: Vec<usize> =
         ids.iter().map(|id| html.find(&format!("<section id=\"{id}\"")).unwrap()).collect();
     assert!(places.is_sorted());

@@ -12,10 +12,6 @@ use crate::app::App;
 use crate::problem::Result;
 use crate::web::{Id, PathParams, QueryParams, accept};
 
-/// Content Security Policy of a report: only its own styles and images.
-pub(super) const REPORT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; \
-    form-action 'none'; frame-ancestors 'none'";
-
 const JSON: &str = "application/json";
 const HTML: &str = "text/html";
 
@@ -61,7 +57,7 @@ async fn get(
     let head = [
         (header::CONTENT_TYPE, media),
         (header::VARY, "accept"),
-        (header::CONTENT_SECURITY_POLICY, REPORT_POLICY),
+        (header::CONTENT_SECURITY_POLICY, sistership_pages::report_policy()),
     ];
     Ok((head, body).into_response())
 }

@@ -10,7 +10,6 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::reports::REPORT_POLICY;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::web::{Name, Number, PathParams, QueryParams, accept};
@@ -71,7 +70,7 @@ async fn validation(
     let head = [
         (header::CONTENT_TYPE, media),
         (header::VARY, "accept"),
-        (header::CONTENT_SECURITY_POLICY, REPORT_POLICY),
+        (header::CONTENT_SECURITY_POLICY, sistership_pages::report_policy()),
     ];
     Ok((head, body).into_response())
 }

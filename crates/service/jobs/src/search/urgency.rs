@@ -1,17 +1,23 @@
 //! Priority of ships for attention, as facts by which they are listed.
 
 use serde_json::Value;
-use sistership_store::{FactRange, StoreError};
+use sistership_store::{FactRange, PageRequest, StoreError};
 
 use crate::archive::Archive;
 use crate::condition::{Condition, ModelValidity};
 use crate::fleet::residuals_of_newest;
+use crate::published_ships::is_published;
 use crate::version::VersionDocument;
 
 /// Fact that orders ships by urgency: by class, and within a class by decreasing error.
 pub const URGENCY_FACT: &str = "standing order";
 /// Fact with the error of a ship's champion on held-out manoeuvres.
 pub const ERROR_FACT: &str = "standing error";
+
+/// Fact that counts the ships of the fleet by urgency: [`URGENCY_FACT`] without the library.
+pub const FLEET_FACT: &str = "fleet order";
+/// Fact that tells the ships of the fleet, 1, from those of the library, 0.
+const OWN_FACT: &str = "own";
 
 /// Prefix of the facts with the unexplained force of a champion on the newest trials of its ship,
 /// oldest first.
@@ -73,6 +79,37 @@ impl UrgencyClass {
     }
 }
 
+/// Ships of the users, or published ones that the program brings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ShipCollection {
+    /// Ships that a user has added, and published ones with trials of their own.
+    Fleet,
+    /// Published ships without trials, as source models and examples.
+    Library,
+}
+
+impl ShipCollection {
+    /// Returns the range of its ships, all with the same value.
+    pub fn fact_range(self) -> FactRange {
+        let value = self.fact_value();
+        FactRange { fact: OWN_FACT.to_owned(), min: value, max: value }
+    }
+
+    fn fact_value(self) -> f64 {
+        match self {
+            Self::Fleet => 1.0,
+            Self::Library => 0.0,
+        }
+    }
+
+    /// Returns the collection of a ship.
+    async fn find(archive: &Archive, ship: &str) -> Result<Self, StoreError> {
+        let trials = archive.store.trials().list(ship, &PageRequest::first_page(1)).await?;
+        let published = is_published(ship) && trials.items.is_empty();
+        Ok(if published { Self::Library } else { Self::Fleet })
+    }
+}
+
 /// Part of the distance between two classes that the errors use.
 const CLASS_WIDTH: f64 = 0.999;
 
@@ -97,7 +134,14 @@ pub(super) async fn urgency_facts(
 ) -> Result<Vec<(String, f64)>, StoreError> {
     let class = UrgencyClass::from_condition(&Condition::read_current(&archive.store, ship).await?);
     let error = champion.and_then(held_out_error);
-    let facts = [(URGENCY_FACT, Some(urgency(class, error))), (ERROR_FACT, error)];
+    let order = urgency(class, error);
+    let collection = ShipCollection::find(archive, ship).await?;
+    let facts = [
+        (URGENCY_FACT, Some(order)),
+        (ERROR_FACT, error),
+        (OWN_FACT, Some(collection.fact_value())),
+        (FLEET_FACT, (collection == ShipCollection::Fleet).then_some(order)),
+    ];
     let facts = facts.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?)));
     let left = match champion {
         Some(champion) => newest_residuals(archive, champion).await,

@@ -5,15 +5,15 @@ mod tables;
 
 use askama::Template;
 use sistership_jobs::Archive;
-use sistership_report::plots::HullOutline;
+use sistership_report::plots::{HullOutline, LiveChart};
 
 use self::simulations::VersionManoeuvres;
 use self::tables::{ValueRow, coefficient_rows, criterion_rows, figure_rows};
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
 use crate::named::NamedVersion;
-use crate::picture::render_svg;
-use crate::plot::{legend_entries, plot_channels, plot_ground};
+use crate::pickers;
+use crate::plot::{PlotTrack, track_chart};
 use crate::shell::PageShell;
 
 /// Largest number of versions in a comparison.
@@ -25,6 +25,7 @@ pub struct ComparisonInputs {
     versions: Vec<NamedVersion>,
     wrong: Option<String>,
     asked: Vec<String>,
+    known: Vec<String>,
 }
 
 #[derive(Template)]
@@ -32,11 +33,11 @@ pub struct ComparisonInputs {
 struct ComparePage<'a> {
     shell: &'a PageShell,
     asked: Vec<&'a str>,
+    known: &'a [String],
     wrong: Option<&'a str>,
     versions: Vec<ComparisonColumn<'a>>,
-    legend: Vec<(&'static str, String)>,
-    track: Option<String>,
-    series: Option<String>,
+    turns: Option<LiveChart>,
+    zigzags: Option<LiveChart>,
     figures: Vec<ValueRow>,
     criteria: Vec<ValueRow>,
     coefficients: Vec<ValueRow>,
@@ -74,7 +75,8 @@ pub async fn gather_inputs(
     // Names beyond the limit are dropped with a message.
     let wrong =
         wrong.or_else(|| many.then(|| format!("at most {MOST_VERSIONS} versions can be compared")));
-    Ok(ComparisonInputs { shell: shell.at_place("/compare"), versions, wrong, asked })
+    let known = pickers::model_names(archive).await?;
+    Ok(ComparisonInputs { shell: shell.at_place("/compare"), versions, wrong, asked, known })
 }
 
 impl ComparisonInputs {
@@ -96,20 +98,17 @@ impl ComparisonInputs {
             .filter_map(|one| HullOutline::from_particulars(&one.document.model.particulars));
         let hull =
             longest.max_by(|a, b| a.lpp_m.total_cmp(&b.lpp_m)).filter(|_| self.is_single_ship());
+        let chart = |tracks: &[PlotTrack], label| {
+            (!tracks.is_empty()).then(|| track_chart(tracks, hull, label))
+        };
         let page = ComparePage {
             shell: &self.shell,
             asked: self.form_names(),
+            known: &self.known,
             wrong: self.wrong.as_deref(),
             versions: self.versions.iter().map(ComparisonColumn::from_version).collect(),
-            legend: legend_entries(&turns),
-            track: plot_ground(&turns, hull, "Turning circles, 35 deg")
-                .as_ref()
-                .map(render_svg)
-                .transpose()?,
-            series: match zigzags.as_slice() {
-                [] => None,
-                all => Some(render_svg(&plot_channels(all, "Zigzags 20/20 over time"))?),
-            },
+            turns: chart(&turns, "turning circles, 35 deg to starboard"),
+            zigzags: chart(&zigzags, "zigzags 20/20"),
             figures: figure_rows(&sailed),
             criteria: criterion_rows(&sailed),
             coefficients: coefficient_rows(&self.versions),

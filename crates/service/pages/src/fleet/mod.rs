@@ -1,15 +1,19 @@
 //! The fleet: a list of the ships, the one that most needs attention first.
 
+mod first_steps;
 mod query;
 
 use askama::Template;
 use sistership_jobs::Archive;
 use sistership_jobs::condition::{Condition, diagnosed_trials};
-use sistership_jobs::search::urgency::{ERROR_FACT, RESIDUAL_FACT_PREFIX, UrgencyClass};
+use sistership_jobs::search::urgency::{
+    ERROR_FACT, FLEET_FACT, RESIDUAL_FACT_PREFIX, ShipCollection, UrgencyClass,
+};
 use sistership_jobs::search::{self, SearchCriteria, VectorCache};
 use sistership_report::numbers::{format_significant, format_stated};
-use sistership_store::{FoundShip, ListPage, PageRequest, ShipKey, ShipOverview};
+use sistership_store::{FactRange, FoundShip, ListPage, PageRequest, ShipKey, ShipOverview};
 
+use self::first_steps::FirstSteps;
 use self::query::{FleetQuery, SortOrder};
 use crate::cursor::encode_cursor;
 use crate::error::Result;
@@ -34,6 +38,14 @@ struct FleetPage {
     ships: Vec<ShipRow>,
     next: Option<String>,
     changing: bool,
+    first_steps: Option<FirstSteps>,
+    counts: Vec<ConditionCount>,
+}
+
+/// Number of ships of the fleet in a condition.
+struct ConditionCount {
+    class: UrgencyClass,
+    ships: i64,
 }
 
 struct ShipRow {
@@ -73,8 +85,15 @@ pub async fn fleet_page(
         let standing = standings.remove(&ship.name).unwrap_or_default();
         ship_row(ship, standing, &deleted, query.sort)
     };
-    let ships = found.items.into_iter().map(row).collect::<Result<_>>()?;
+    let ships: Vec<ShipRow> = found.items.into_iter().map(row).collect::<Result<_>>()?;
+    let is_fleet = query.collection == Some(ShipCollection::Fleet);
+    let names: Vec<&str> = ships.iter().map(|ship| ship.name.as_str()).collect();
     let page = FleetPage {
+        first_steps: match is_fleet && !query.has_filter() && !query.is_continued() {
+            true => FirstSteps::find(archive, &names).await?,
+            false => None,
+        },
+        counts: if is_fleet { count_conditions(archive).await? } else { Vec::new() },
         shell: shell.at_place("/"),
         particulars: search::particular_names().collect(),
         metrics: search::searchable_metrics().collect(),
@@ -85,6 +104,17 @@ pub async fn fleet_page(
         changing: !archive.store.search_index().list_stale("", 1).await?.is_empty(),
     };
     Ok(page.render()?)
+}
+
+/// Counts the ships of the fleet by condition, most urgent first.
+async fn count_conditions(archive: &Archive) -> Result<Vec<ConditionCount>> {
+    let mut counts = Vec::new();
+    for class in UrgencyClass::ALL {
+        let range = FactRange { fact: FLEET_FACT.to_owned(), ..class.class_range() };
+        let ships = archive.store.ships().count_ships(&range).await?;
+        counts.push(ConditionCount { class, ships });
+    }
+    Ok(counts)
 }
 
 async fn find_ships(

@@ -1,6 +1,6 @@
 //! The query of the fleet page.
 
-use sistership_jobs::search::urgency::UrgencyClass;
+use sistership_jobs::search::urgency::{ShipCollection, UrgencyClass};
 use sistership_jobs::search::{self, SearchCriteria};
 use sistership_store::{FactRange, ShipKey, ShipSearch};
 
@@ -9,7 +9,8 @@ use crate::error::{PageError, Result};
 use crate::form::FormFields;
 
 /// Fields of the form that select ships.
-const FILTER_FIELDS: [&str; 10] = [
+const FILTER_FIELDS: [&str; 11] = [
+    "ships",
     "standing",
     "category",
     "tag",
@@ -39,6 +40,8 @@ pub(super) enum SortOrder {
 #[derive(Debug, Clone)]
 pub(super) struct FleetQuery {
     pub sort: SortOrder,
+    /// Ships of the fleet or of the library alone; without a query those of the fleet.
+    pub collection: Option<ShipCollection>,
     fields: FormFields,
 }
 
@@ -54,7 +57,22 @@ impl FleetQuery {
                 return Err(PageError::invalid_field("sort", message));
             }
         };
-        Ok(Self { sort, fields: fields.clone() })
+        let collection = match fields.get_text("ships") {
+            Some("library") => Some(ShipCollection::Library),
+            Some("fleet") => Some(ShipCollection::Fleet),
+            None if fields.is_empty() => Some(ShipCollection::Fleet),
+            _ => None,
+        };
+        Ok(Self { sort, collection, fields: fields.clone() })
+    }
+
+    /// Value of the collection in the form.
+    pub fn collection_name(&self) -> &'static str {
+        match self.collection {
+            Some(ShipCollection::Fleet) => "fleet",
+            Some(ShipCollection::Library) => "library",
+            None => "all",
+        }
     }
 
     /// Text of a field, for the form that is shown again.
@@ -64,7 +82,12 @@ impl FleetQuery {
 
     /// Returns true if the form has more than the order.
     pub fn has_filter(&self) -> bool {
-        FILTER_FIELDS.iter().any(|name| self.fields.get_text(name).is_some())
+        FILTER_FIELDS[1..].iter().any(|name| self.fields.get_text(name).is_some())
+    }
+
+    /// Returns true if the page does not begin with the first ship.
+    pub fn is_continued(&self) -> bool {
+        self.fields.get_text("after").is_some()
     }
 
     /// Returns the search of the store.
@@ -84,17 +107,20 @@ impl FleetQuery {
         };
         let last = class.filter(|_| self.sort != SortOrder::Worst).map(UrgencyClass::class_range);
         let ranges: Vec<FactRange> = first.into_iter().chain(own).chain(last).collect();
-        match (self.sort, ranges.is_empty()) {
-            (SortOrder::Name, false) => Err(PageError::invalid_field(
+        let by_name_of_some = self.sort == SortOrder::Name && !ranges.is_empty();
+        // All ships of a collection have the same value: they are in the order of their names.
+        let collection = self.collection.map(ShipCollection::fact_range);
+        match (by_name_of_some, self.sort == SortOrder::Value && ranges.is_empty()) {
+            (true, _) => Err(PageError::invalid_field(
                 "sort",
                 "order by name is possible only without condition, particular and metric; order \
                  by value or worst first",
             )),
-            (SortOrder::Value, true) => Err(PageError::invalid_field(
+            (_, true) => Err(PageError::invalid_field(
                 "sort",
                 "order by value needs a range of a particular or metric",
             )),
-            _ => Ok(self.with_ranges(ranges)),
+            _ => Ok(self.with_ranges(ranges.into_iter().chain(collection).collect())),
         }
     }
 
@@ -151,11 +177,16 @@ impl FleetQuery {
 
     /// Address of the next page.
     pub fn next_address(&self, after: &str) -> String {
-        let own = FILTER_FIELDS.into_iter().chain(["sort"]);
+        let collection = self.collection.map(|_| format!("ships={}", self.collection_name()));
+        let own = FILTER_FIELDS[1..].iter().copied().chain(["sort"]);
         let pairs = own.filter_map(|name| {
             Some(format!("{name}={}", percent_encode(self.fields.get_text(name)?)))
         });
-        let pairs = pairs.chain([format!("after={after}")]).collect::<Vec<_>>();
+        let pairs = collection
+            .into_iter()
+            .chain(pairs)
+            .chain([format!("after={after}")])
+            .collect::<Vec<_>>();
         format!("/?{}", pairs.join("&"))
     }
 
@@ -206,7 +237,8 @@ mod tests {
     #[test]
     fn the_worst_come_first_unless_something_else_is_asked() {
         let search = query(&[]).to_search().unwrap();
-        assert_eq!(search.ships.ranges, [UrgencyClass::full_range()]);
+        let fleet = ShipCollection::Fleet.fact_range();
+        assert_eq!(search.ships.ranges, [UrgencyClass::full_range(), fleet]);
         let asked = query(&[
             ("standing", "holds"),
             ("particular", "lpp_m"),

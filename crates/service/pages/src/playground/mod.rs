@@ -7,7 +7,7 @@ use askama::Template;
 use sistership_jobs::Archive;
 use sistership_jobs::environment::steady_effect;
 use sistership_model::effect::AppliedEffect;
-use sistership_report::plots::HullOutline;
+use sistership_report::plots::{HullOutline, LiveChart};
 use sistership_simulation::Ship;
 
 use self::orders::{ManoeuvreOrders, Surroundings};
@@ -15,14 +15,17 @@ use self::simulation::{FigureList, simulate_orders};
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
 use crate::named::NamedVersion;
-use crate::picture::render_svg;
-use crate::plot::{LINES, PlotTrack, plot_channels, plot_ground};
+use crate::pickers;
+use crate::plot::{LINES, PlotTrack, track_chart};
 use crate::shell::PageShell;
 
 /// Inputs of the page.
 pub struct PlaygroundInputs {
     shell: PageShell,
     fields: FormFields,
+    /// Model that is simulated: that of the form, or one to begin with.
+    asked: String,
+    known: Vec<String>,
     version: Option<NamedVersion>,
     wrong: Option<String>,
 }
@@ -32,14 +35,14 @@ pub struct PlaygroundInputs {
 struct PlaygroundPage<'a> {
     shell: &'a PageShell,
     model: &'a str,
+    known: &'a [String],
     wrong: Option<String>,
     orders: ManoeuvreOrders,
     around: Surroundings,
     label: Option<String>,
     deep: bool,
     speed_hint: String,
-    track: Option<String>,
-    series: Option<String>,
+    chart: Option<LiveChart>,
     figures: FigureList,
     notes: Vec<String>,
 }
@@ -53,8 +56,7 @@ impl PlaygroundPage<'_> {
 
 /// Plots and figures of a simulation.
 struct PlaygroundResult {
-    track: Option<String>,
-    series: Option<String>,
+    chart: Option<LiveChart>,
     figures: FigureList,
     notes: Vec<String>,
     deep: bool,
@@ -71,14 +73,18 @@ pub async fn gather_inputs(
     fields: FormFields,
 ) -> Result<PlaygroundInputs> {
     let (mut version, mut wrong) = (None, None);
-    if let Some(name) = fields.get_text("model") {
-        match NamedVersion::find(archive, "model", name).await {
-            Ok(found) => version = Some(found),
-            Err(PageError::Invalid { message, .. }) => wrong = Some(message),
-            Err(other) => return Err(other),
-        }
+    let asked = match fields.get_text("model") {
+        Some(name) => name.to_owned(),
+        None => pickers::first_model(archive).await?,
+    };
+    match NamedVersion::find(archive, "model", &asked).await {
+        Ok(found) => version = Some(found),
+        Err(PageError::Invalid { message, .. }) => wrong = Some(message),
+        Err(other) => return Err(other),
     }
-    Ok(PlaygroundInputs { shell: shell.at_place("/playground"), fields, version, wrong })
+    let known = pickers::model_names(archive).await?;
+    let shell = shell.at_place("/playground");
+    Ok(PlaygroundInputs { shell, fields, asked, known, version, wrong })
 }
 
 impl PlaygroundInputs {
@@ -112,26 +118,24 @@ impl PlaygroundInputs {
         };
         let label = self.version.as_ref().map(NamedVersion::label);
         let empty = PlaygroundResult {
-            track: None,
-            series: None,
+            chart: None,
             figures: Vec::new(),
             notes: Vec::new(),
             deep: false,
             speed_hint: String::new(),
         };
-        let PlaygroundResult { track, series, figures, notes, deep, speed_hint } =
-            drawn.unwrap_or(empty);
+        let PlaygroundResult { chart, figures, notes, deep, speed_hint } = drawn.unwrap_or(empty);
         let page = PlaygroundPage {
             shell: &self.shell,
-            model: self.fields.get_text("model").unwrap_or_default(),
+            model: &self.asked,
+            known: &self.known,
             wrong,
             orders,
             around,
             label,
             deep,
             speed_hint,
-            track,
-            series,
+            chart,
             figures,
             notes,
         };
@@ -168,8 +172,7 @@ fn run_playground(
     let tracks = [track];
     let hull = HullOutline::from_particulars(&model.particulars);
     Ok(PlaygroundResult {
-        track: plot_ground(&tracks, hull, "Track").as_ref().map(render_svg).transpose()?,
-        series: Some(render_svg(&plot_channels(&tracks, "Motion over time"))?),
+        chart: Some(track_chart(&tracks, hull, "simulated manoeuvre")),
         figures: run.figures,
         notes,
         deep: !knows_depth,

@@ -4,7 +4,7 @@ use sistership_model::trial::Channel;
 use sistership_report::plots::axes::{
     AxisScale, grid_columns, grid_rows, padded_range, value_range,
 };
-use sistership_report::plots::{Shape, SvgPlot, WIDTH, path_data};
+use sistership_report::plots::{ChartLine, PanelAxes, Shape, SvgPlot, WIDTH, path_data};
 
 use super::track::PlotTrack;
 
@@ -52,6 +52,22 @@ pub(crate) fn plot_channels(tracks: &[PlotTrack], label: &str) -> SvgPlot {
     SvgPlot { width: WIDTH, height, label: label.to_owned(), shapes }
 }
 
+/// Returns the values of a track in the units of the panels, with its positions.
+pub(super) fn chart_line(track: &PlotTrack) -> ChartLine {
+    let shown = PANELS.into_iter().map(|(channel, _, _, factor)| (channel, factor));
+    let all = [(Channel::X, 1.0), (Channel::Y, 1.0)].into_iter().chain(shown);
+    let quantity = |(channel, factor): (Channel, f64)| {
+        let values = track.channels.get(&channel)?;
+        Some((channel.name().to_owned(), values.iter().map(|value| value * factor).collect()))
+    };
+    ChartLine {
+        class: track.style.name,
+        name: track.name.clone(),
+        t_s: track.t_s.clone(),
+        quantities: all.filter_map(quantity).collect(),
+    }
+}
+
 /// Returns true if some track has the channel. Revolutions that were not recorded are all zero.
 fn is_recorded(tracks: &[PlotTrack], channel: Channel) -> bool {
     let there =
@@ -92,7 +108,15 @@ fn panel_shapes(
             class: track.style.line,
         }
     };
-    shapes.push(Shape::Panel { at, size, shapes: lines.iter().map(curve).collect() });
+    let axes = PanelAxes {
+        quantity: channel.name().to_owned(),
+        title: name.to_owned(),
+        unit,
+        across: *time,
+        up: scale,
+    };
+    let shapes_inside = lines.iter().map(curve).collect();
+    shapes.push(Shape::Panel { at, size, shapes: shapes_inside, axes: Some(axes) });
     shapes.push(Shape::Rect { at, size, class: "frame" });
     shapes
 }

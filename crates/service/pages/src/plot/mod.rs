@@ -1,9 +1,24 @@
-//! Plots of measured and simulated tracks: over the ground, and channels over time.
+//! Charts of measured and simulated tracks: over the ground, and channels over time.
 
 mod channels;
 mod ground;
 mod track;
 
+use sistership_report::plots::{ChartLine, HullOutline, LiveChart};
+
 pub(crate) use channels::plot_channels;
 pub(crate) use ground::plot_ground;
-pub(crate) use track::{LINES, PlotTrack, legend_entries};
+pub(crate) use track::{LINES, PlotTrack};
+
+/// Returns a chart of tracks over the ground, if they have positions, and of their channels;
+/// `label` describes it.
+pub(crate) fn track_chart(
+    tracks: &[PlotTrack],
+    hull: Option<HullOutline>,
+    label: &str,
+) -> LiveChart {
+    let ground = plot_ground(tracks, hull, &format!("Track: {label}"));
+    let over_time = plot_channels(tracks, &format!("Over time: {label}"));
+    let lines: Vec<ChartLine> = tracks.iter().map(channels::chart_line).collect();
+    LiveChart::new(ground.into_iter().chain([over_time]).collect(), &lines, hull)
+}

@@ -83,8 +83,3 @@ impl PlotTrack {
         self.gaps.iter().any(|gap| from < *gap && *gap <= to)
     }
 }
-
-/// Returns the class and the name of each line.
-pub(crate) fn legend_entries(tracks: &[PlotTrack]) -> Vec<(&'static str, String)> {
-    tracks.iter().map(|track| (track.style.name, track.name.clone())).collect()
-}

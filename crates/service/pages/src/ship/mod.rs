@@ -1,6 +1,7 @@
 //! The page of a ship: particulars, health of its model, versions, trials, jobs, and actions.
 
 mod drawing;
+mod next_step;
 mod versions;
 
 use std::sync::Arc;
@@ -12,11 +13,14 @@ use sistership_jobs::archive::parse_vessel;
 use sistership_jobs::champions::most_similar_ships;
 use sistership_jobs::condition::{Condition, SinceTrial, WeighedDiagnosis};
 use sistership_jobs::search::urgency::UrgencyClass;
+use sistership_model::quantity::Quantity;
 use sistership_model::{Vessel, Zoo};
 use sistership_priors::similarity::RankedSource;
+use sistership_report::field_words;
 use sistership_report::numbers::{format_significant, format_stated};
 use sistership_store::{Alias, JobFilter, PageRequest, Ship, ShipNote};
 
+use self::next_step::{NextStep, ShipSituation, StepAction};
 use self::versions::{VersionRow, list_versions};
 use crate::date::format_date;
 use crate::error::Result;
@@ -24,6 +28,8 @@ use crate::picture::render_svg;
 use crate::rows::{JobRow, TrialRow};
 use crate::shell::PageShell;
 
+/// Knots in a metre per second.
+const KNOTS: f64 = 3600.0 / 1852.0;
 /// Number of lines of each list.
 const LIST_LINES: i64 = 50;
 /// Number of similar ships on the page.
@@ -54,9 +60,10 @@ struct ShipPage<'a> {
     shell: &'a PageShell,
     class: &'static str,
     since: Option<String>,
+    next: NextStep,
     evidence: Vec<EvidenceRow>,
     revision: Option<i64>,
-    particulars: Vec<(String, String, String)>,
+    particulars: Vec<ParticularRow>,
     drawing: Option<String>,
     similar: Vec<SimilarRow>,
     compare: String,
@@ -67,6 +74,31 @@ impl ShipPage<'_> {
     /// Returns true if a version is the champion, the version in use.
     fn is_champion(&self, number: &i64) -> bool {
         self.of.condition.version == Some(*number)
+    }
+}
+
+/// A particular in words, with its name in documents.
+struct ParticularRow {
+    name: String,
+    words: String,
+    value: String,
+    unit: &'static str,
+    source: String,
+}
+
+impl ParticularRow {
+    fn from_quantity(name: &str, of: &Quantity) -> Self {
+        let (words, unit) = field_words(name);
+        let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
+        let words = first.to_uppercase() + rest;
+        let value = format_stated(of.value, 6);
+        let unit = if unit == "–" { "" } else { unit };
+        // Speeds of ships are read in knots.
+        let value = match unit {
+            "m/s" => format!("{value} ({} kn)", format_stated(of.value * KNOTS, 3)),
+            _ => value,
+        };
+        Self { name: name.to_owned(), words, value, unit, source: of.source.clone() }
     }
 }
 
@@ -197,6 +229,16 @@ impl ShipPageInputs {
         Ok(most_similar_ships(archive, zoo, self.vessel.clone(), SIMILAR).await?)
     }
 
+    fn situation(&self) -> ShipSituation<'_> {
+        ShipSituation {
+            name: &self.ship.name,
+            condition: &self.condition,
+            jobs: &self.jobs,
+            versions: &self.versions.0,
+            has_trials: !self.trials.is_empty(),
+        }
+    }
+
     /// Returns the page, with the ships that are most similar.
     ///
     /// # Errors
@@ -209,12 +251,13 @@ impl ShipPageInputs {
             of: self,
             shell: &self.shell,
             class: UrgencyClass::from_condition(&self.condition).name(),
+            next: NextStep::for_ship(&self.situation()),
             since: self.condition.since.as_ref().map(since_text),
             evidence: self.condition.diagnoses.iter().map(EvidenceRow::from_diagnosis).collect(),
             revision: champion.map(|alias| alias.revision),
             particulars: particulars
                 .iter()
-                .map(|(name, of)| (name.clone(), format_stated(of.value, 6), of.source.clone()))
+                .map(|(name, of)| ParticularRow::from_quantity(name, of))
                 .collect(),
             drawing: drawing.as_ref().map(render_svg).transpose()?,
             similar: similar.into_iter().map(SimilarRow::from_ranked).collect(),

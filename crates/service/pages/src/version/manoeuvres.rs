@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use askama::Template as _;
 use quick_cache::Weighter;
 use quick_cache::sync::Cache;
 use sistership_jobs::version::VersionDocument;
@@ -18,8 +19,7 @@ use sistership_simulation::{PlantError, Ship, Trajectory};
 
 use super::figures::{self, CriterionRow, FigureRow};
 use crate::error::Result;
-use crate::picture::render_svg;
-use crate::plot::{LINES, PlotTrack, legend_entries, plot_channels, plot_ground};
+use crate::plot::{LINES, PlotTrack, track_chart};
 
 /// Memory of the cache, bytes.
 const CACHE_BYTES: u64 = 32 << 20;
@@ -28,8 +28,8 @@ const CACHED_VERSIONS: usize = 500;
 /// Manoeuvres in the plots, by their index among the standard manoeuvres.
 const PLOTTED: [(usize, &str); 3] =
     [(0, "turn, 35 deg to starboard"), (1, "turn, 35 deg to port"), (4, "zigzag 20/20")];
-/// Manoeuvre that is plotted over time.
-const PLOTTED_OVER_TIME: &str = PLOTTED[2].1;
+/// Zigzag among them, which has a chart of its own.
+const ZIGZAG: &str = PLOTTED[2].1;
 
 /// Cache of manoeuvres by the version's id; the least recently used are removed first.
 #[derive(Debug)]
@@ -43,11 +43,8 @@ pub(super) struct ManoeuvreResults {
     pub banded: bool,
     pub wide: bool,
     pub notes: Vec<String>,
-    pub legend: Vec<(&'static str, String)>,
-    /// Turning circles over ground, SVG.
-    pub track: Option<String>,
-    /// The zigzag over time, SVG.
-    pub series: Option<String>,
+    /// Name and chart of the turning circles and of the zigzag, HTML.
+    pub charts: Vec<(&'static str, String)>,
 }
 
 #[derive(Debug, Clone)]
@@ -55,8 +52,7 @@ struct ManoeuvreSize;
 
 impl Weighter<String, Arc<ManoeuvreResults>> for ManoeuvreSize {
     fn weight(&self, _: &String, manoeuvres: &Arc<ManoeuvreResults>) -> u64 {
-        let drawn = [&manoeuvres.track, &manoeuvres.series];
-        let drawn: usize = drawn.into_iter().flatten().map(String::len).sum();
+        let drawn: usize = manoeuvres.charts.iter().map(|(_, chart)| chart.len()).sum();
         // Estimated bytes of one row.
         let row = 300;
         (drawn + row * (manoeuvres.figures.len() + manoeuvres.criteria.len() + 1)) as u64
@@ -101,27 +97,24 @@ impl ManoeuvreResults {
                 (StandardManoeuvres { failures, ..StandardManoeuvres::default() }, Vec::new())
             }
         };
-        let (notes, legend) = (figures.failures.clone(), legend_entries(&tracks));
+        let notes = figures.failures.clone();
         let (figures, criteria) = figures::figure_rows(&figures, &document.report);
-        // The zigzag is plotted over time, the circles over the ground.
         let (zigzags, circles): (Vec<PlotTrack>, Vec<PlotTrack>) =
-            tracks.into_iter().partition(|track| track.name == PLOTTED_OVER_TIME);
-        let label = format!("Turning circles of {}", model.name);
+            tracks.into_iter().partition(|track| track.name == ZIGZAG);
+        let hull = HullOutline::from_particulars(&model.particulars);
+        let mut charts = Vec::new();
+        for (name, tracks) in [("Turning circles, 35 deg", circles), ("Zigzag 20/20", zigzags)] {
+            if !tracks.is_empty() {
+                charts.push((name, track_chart(&tracks, hull, name).render()?));
+            }
+        }
         Ok(Self {
             banded: figures.iter().any(|figure| !figure.band.is_empty()),
             wide: figures.iter().any(|figure| figure.wide),
             figures,
             criteria,
             notes,
-            legend,
-            track: plot_ground(&circles, HullOutline::from_particulars(&model.particulars), &label)
-                .as_ref()
-                .map(render_svg)
-                .transpose()?,
-            series: match zigzags.as_slice() {
-                [] => None,
-                zigzags => Some(render_svg(&plot_channels(zigzags, "Zigzag 20/20 over time"))?),
-            },
+            charts,
         })
     }
 }
@@ -178,10 +171,8 @@ mod tests {
         let known = ManoeuvreCache::default();
         let first = known.get_or_simulate("a", &document, law).unwrap();
         assert!(Arc::ptr_eq(&first, &known.get_or_simulate("a", &document, law).unwrap()));
-        assert_eq!(
-            (first.legend.len(), first.track.is_some(), first.series.is_some()),
-            (3, true, true)
-        );
+        let names: Vec<&str> = first.charts.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["Turning circles, 35 deg", "Zigzag 20/20"]);
         let ship = Ship::new(&document.model, law).unwrap();
         let refined = simulate_standard_manoeuvres(&ship, &ManoeuvreSettings::default());
         document.report = json!({ "manoeuvres": { "refined": refined } });
@@ -190,6 +181,6 @@ mod tests {
             of.figures.iter().map(|row| row.value.clone()).collect::<Vec<_>>()
         };
         assert_eq!(values(&reported), values(&first));
-        assert_eq!((&reported.track, &reported.series), (&first.track, &first.series));
+        assert_eq!(reported.charts, first.charts);
     }
 }

@@ -14,9 +14,10 @@ use sistership_jobs::archive::version_document;
 use sistership_jobs::version::VersionDocument;
 use sistership_model::Law;
 use sistership_report::numbers::format_stated;
+use sistership_report::variable_words;
 use sistership_store::{PageRequest, Version};
 
-use self::coefficients::CoefficientRow;
+use self::coefficients::AxisCoefficients;
 use self::lineage::VersionLineage;
 use self::manoeuvres::ManoeuvreResults;
 use crate::date::format_date;
@@ -46,7 +47,8 @@ struct VersionPage<'a> {
     of: &'a VersionPageInputs,
     shell: &'a PageShell,
     created: String,
-    coefficients: Vec<CoefficientRow>,
+    coefficients: Vec<AxisCoefficients>,
+    speed: Option<String>,
     effects: Vec<EffectRow>,
     sailed: Arc<ManoeuvreResults>,
     validity: Vec<(String, String, String)>,
@@ -108,7 +110,8 @@ impl VersionPageInputs {
             of: self,
             shell: &self.shell,
             created: format_date(self.version.head.created_us),
-            coefficients: coefficients::coefficient_rows(model, &self.law),
+            coefficients: coefficients::coefficients_by_axis(model, &self.law),
+            speed: model.speed_m_s.map(speed_words),
             effects: effect_rows(model),
             sailed: known.get_or_simulate(&self.version.head.id, &self.document, &self.law)?,
             validity: validity_rows(model),
@@ -135,11 +138,19 @@ fn effect_rows(model: &sistership_model::Model) -> Vec<EffectRow> {
     model.effects.iter().map(row).collect()
 }
 
-/// Returns name, minimum and maximum of the ranges that the trials covered.
+/// Returns a speed in metres per second and knots.
+fn speed_words(speed_m_s: f64) -> String {
+    format!("{speed_m_s:.2} m/s ({:.1} kn)", speed_m_s * 3600.0 / 1852.0)
+}
+
+/// Returns name, minimum and maximum of the ranges that the trials covered, in words and units of
+/// readers.
 fn validity_rows(model: &sistership_model::Model) -> Vec<(String, String, String)> {
     let ranges = model.validity.iter().flat_map(|region| &region.ranges);
-    // Ranges are in SI units and radians, as the model states them.
-    ranges
-        .map(|(name, [low, high])| (name.clone(), format_stated(*low, 4), format_stated(*high, 4)))
-        .collect()
+    let row = |(name, [low, high]): (&String, &[f64; 2])| {
+        let (words, unit, shown) = variable_words(name);
+        let name = if unit == "SI" { words.to_owned() } else { format!("{words} [{unit}]") };
+        (name, format_stated(shown(*low), 4), format_stated(shown(*high), 4))
+    };
+    ranges.map(row).collect()
 }

@@ -208,7 +208,7 @@ fn imo_row(verdict: &CriterionComparison<'_>) -> TableRow {
     ])
 }
 
-pub(super) fn pass_cell(pass: Option<bool>) -> TableCell {
+pub(crate) fn pass_cell(pass: Option<bool>) -> TableCell {
     match pass {
         Some(true) => TableCell::new("").with_mark("✓ pass", "good"),
         Some(false) => TableCell::new("").with_mark("✗ fail", "bad"),
