@@ -4,6 +4,6 @@ mod channels;
 mod ground;
 mod track;
 
-pub(crate) use channels::plot_channels;
+pub(crate) use channels::{ExcludedInterval, TimePanels, plot_channels, plot_with_exclusions};
 pub(crate) use ground::plot_ground;
 pub(crate) use track::{LINES, PlotTrack, legend_entries};
