@@ -244,6 +244,15 @@ CREATE TABLE ship_tags (
 );
 CREATE INDEX ship_tags_by_tag ON ship_tags (tag, ship);
 
+-- How the columns of a form of file are read, kept by name for a ship or, without a ship, for the whole server.
+CREATE TABLE import_templates (
+    ship       TEXT COLLATE "C" NOT NULL,
+    name       TEXT COLLATE "C" NOT NULL,
+    document   TEXT NOT NULL,
+    changed_us BIGINT NOT NULL,
+    PRIMARY KEY (ship, name)
+);
+
 -- Ships that have changed since their facts and vectors were derived.
 CREATE TABLE search_queue (
     ship TEXT COLLATE "C" NOT NULL PRIMARY KEY REFERENCES ships (name),

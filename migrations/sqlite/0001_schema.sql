@@ -248,6 +248,15 @@ CREATE TABLE ship_tags (
 ) STRICT, WITHOUT ROWID;
 CREATE INDEX ship_tags_by_tag ON ship_tags (tag, ship);
 
+-- How the columns of a form of file are read, kept by name for a ship or, without a ship, for the whole server.
+CREATE TABLE import_templates (
+    ship       TEXT NOT NULL,
+    name       TEXT NOT NULL,
+    document   TEXT NOT NULL,
+    changed_us INTEGER NOT NULL,
+    PRIMARY KEY (ship, name)
+) STRICT, WITHOUT ROWID;
+
 -- Ships that have changed since their facts and vectors were derived.
 CREATE TABLE search_queue (
     ship TEXT NOT NULL PRIMARY KEY REFERENCES ships (name),

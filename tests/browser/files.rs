@@ -49,6 +49,46 @@ pub fn in_a_current(folder: &Path) -> Vec<String> {
     written(folder, &sailed(&programme, Some(("current", &current)), 22))
 }
 
+/// Columns of a German sheet, with the factor from SI to what is written.
+const GERMAN: [(&str, Channel, f64); 7] = [
+    ("Nord [m]", Channel::X, 1.0),
+    ("Ost [m]", Channel::Y, 1.0),
+    ("Kurs [Grad]", Channel::Psi, 180.0 / std::f64::consts::PI),
+    ("Fahrt voraus [kn]", Channel::U, 3600.0 / 1852.0),
+    ("Querfahrt [kn]", Channel::V, 3600.0 / 1852.0),
+    ("Drehrate [Grad/min]", Channel::R, 60.0 * 180.0 / std::f64::consts::PI),
+    ("Ruderwinkel [Grad]", Channel::Delta, 180.0 / std::f64::consts::PI),
+];
+
+/// Three German sheets: decimal commas, spikes of the heading, and an echo sounder of 200 m under a
+/// name that says nothing.
+pub fn german(folder: &Path) -> Vec<String> {
+    let programme = [
+        TrialManoeuvre::Zigzag(10.0, 10.0),
+        TrialManoeuvre::Turn(-12.0),
+        TrialManoeuvre::Zigzag(-20.0, 20.0),
+    ];
+    let trials = sailed(&programme, None, 23);
+    trials.iter().enumerate().map(|(at, trial)| german_sheet(folder, trial, at)).collect()
+}
+
+fn german_sheet(folder: &Path, trial: &Trial, at: usize) -> String {
+    let names: Vec<&str> = GERMAN.iter().map(|(name, ..)| *name).collect();
+    let mut text = format!("Zeit [s];{};Kanal 7\n", names.join(";"));
+    let comma = |value: f64| format!("{value:.4}").replace('.', ",");
+    for (row, (k, t_s)) in trial.t_s.iter().enumerate().step_by(2).enumerate() {
+        let spike = |channel| if channel == Channel::Psi && row % 97 == 41 { 25.0 } else { 0.0 };
+        let cell = |(_, channel, factor): &(&str, Channel, f64)| {
+            comma(trial.channel(*channel).unwrap()[k] * factor + spike(*channel))
+        };
+        let cells: Vec<String> = GERMAN.iter().map(cell).collect();
+        text += &format!("{};{};200,0\n", comma(*t_s), cells.join(";"));
+    }
+    let path = folder.join(format!("Fahrt {at}.csv"));
+    std::fs::write(&path, text).unwrap();
+    path.display().to_string()
+}
+
 fn sailed(
     programme: &[TrialManoeuvre],
     hidden: Option<(&str, &[(&str, f64)])>,

@@ -7,6 +7,7 @@ mod charts;
 mod driver;
 mod files;
 mod first_steps;
+mod german_sheet;
 
 use std::net::TcpListener;
 
@@ -64,8 +65,7 @@ async fn create(browser: &Browser, server: &TestServer) {
     assert_eq!(browser.path().await, format!("/ships/{SHIP}"));
 }
 
-/// Uploads files and corrects what the heading's column is taken for; `diagnosed` says whether a
-/// diagnosis follows.
+/// Uploads files, corrects what the heading's column is taken for, and stores the trials.
 async fn upload(browser: &Browser, server: &TestServer, files: &[String], name: &str) {
     browser.go(&format!("{}/ships/{SHIP}/upload", server.url())).await;
     browser.keys("#files", &files.join("\n")).await;
@@ -83,6 +83,7 @@ async fn upload(browser: &Browser, server: &TestServer, files: &[String], name: 
     browser.leave_by("button[value='look']").await;
     browser.until("All files can be read").await;
     browser.leave_by("button[value='keep']").await;
+    browser.until("stored").await;
 }
 
 /// Opens the ship's page with its menu of actions.
@@ -171,6 +172,7 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
     // A trial with a current that nobody has said.
     sign_in(&browser, &server, "ann", &ann).await;
     upload(&browser, &server, &files::in_a_current(folder.path()), "upload-current").await;
+    browser.leave_by("main a[href^='/jobs/']").await;
     browser.until("Diagnosis of").await;
     browser.until("succeeded").await;
     browser.go(&format!("{}/ships/{SHIP}", server.url())).await;

@@ -187,7 +187,10 @@ async fn upload(server: &TestServer) -> String {
     all.last_mut().expect("the button").1 = "keep".to_owned();
     let kept = ask(&all).await;
     assert_eq!(kept.status(), 200);
-    kept.url().path().to_owned()
+    let stored = read(kept, &at).await;
+    assert!(stored.contains("stored") && stored.contains(">Refine<"), "{stored}");
+    let job = stored.split_once("href=\"/jobs/").expect("the diagnosis").1;
+    format!("/jobs/{}", job.split('"').next().unwrap_or_default())
 }
 
 async fn journey(server: TestServer) {

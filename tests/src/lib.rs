@@ -5,6 +5,7 @@ pub mod esso_osaka;
 pub mod fleet;
 pub mod fuzzed;
 pub mod hidden_effects;
+pub mod planted_faults;
 pub mod server;
 pub mod shape;
 pub mod shared;

@@ -145,6 +145,7 @@ fn guess_sentence(name: &str, target: ColumnTarget) -> ColumnGuess {
         channel: Some(target.name().to_owned()),
         unit: Some(UnitKind::from_target(target).canonical_unit().to_owned()),
         reversed: false,
+        probability: 1.0,
         why: "defined by the NMEA 0183 sentence".into(),
         certain: true,
         question: None,
@@ -158,6 +159,7 @@ fn guess_column(column: &IdentifiedColumn, all: &Identification) -> ColumnGuess 
         channel: None,
         unit: None,
         reversed: false,
+        probability: column.probability,
         why,
         certain,
         question: alternative_question(column),
@@ -179,6 +181,7 @@ fn guess_column(column: &IdentifiedColumn, all: &Identification) -> ColumnGuess 
         channel: Some(role.name().to_owned()),
         unit: Some(column.unit.clone()),
         reversed: column.is_reversed,
+        probability: column.probability,
         why: guess_reason(column, role),
         // A percentage needs a declared maximum, and a changed role a confirmation by the user.
         certain: column.is_certain && column.unit != "%" && Some(role) == column.role,

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sistership_model::manifest::ColumnMapping;
 
+use crate::currents::TrialCurrent;
 use crate::exclusion::Exclusion;
 
 /// Properties of a file that the reader cannot know unless they are declared.
@@ -28,6 +29,8 @@ pub struct Declarations {
     pub derive: Vec<Derivable>,
     /// Values and rows that are excluded as faulty.
     pub exclude: Vec<Exclusion>,
+    /// Currents, which are subtracted.
+    pub currents: Vec<TrialCurrent>,
 }
 
 /// North reference of a heading.

@@ -50,6 +50,14 @@ impl Exclusion {
         self.rows = Some(RowRanges::merge(ranges.flat_map(|rows| rows.0.iter().cloned())));
     }
 
+    /// Restores a range of rows; an exclusion by times stays as it is. Returns true if something is
+    /// still excluded.
+    pub fn restore_rows(&mut self, range: &RangeInclusive<u32>) -> bool {
+        let Some(rows) = &mut self.rows else { return true };
+        *rows = rows.without_range(range);
+        !rows.0.is_empty()
+    }
+
     /// Returns the number of excluded values in words: `43 values of psi: spikes`.
     pub fn summary_text(&self) -> String {
         let count = self.rows.as_ref().map_or(0, RowRanges::count);
@@ -133,6 +141,19 @@ impl RowRanges {
             }
         }
         Self(merged)
+    }
+
+    /// Returns these rows without those of a range.
+    fn without_range(&self, range: &RangeInclusive<u32>) -> Self {
+        let parts = |own: &RangeInclusive<u32>| {
+            let before = *own.start()..=(*own.end()).min(range.start().saturating_sub(1));
+            let after = (*own.start()).max(range.end().saturating_add(1))..=*own.end();
+            // At the ends of the numbers nothing lies before or after the range.
+            let before = Some(before).filter(|_| *range.start() > 0);
+            let after = Some(after).filter(|_| *range.end() < u32::MAX);
+            [before, after].into_iter().flatten().filter(|part| !part.is_empty())
+        };
+        Self::merge(self.0.iter().flat_map(parts))
     }
 
     /// Returns the number of rows.
@@ -264,6 +285,16 @@ mod tests {
         all.add_rows(&exclusion(None, &RowRanges(vec![3..=3, 9..=12, u32::MAX..=u32::MAX])));
         assert_eq!(all.rows, Some(RowRanges(vec![1..=3, 5..=u32::MAX])));
         assert_eq!(RowRanges::from_rows([7, 3, 4, 4]).to_string(), "3-4, 7");
+    }
+
+    #[test]
+    fn a_restored_range_splits_the_rows() {
+        let mut one = exclusion(None, &RowRanges(vec![3..=9, 12..=12]));
+        assert!(one.restore_rows(&(5..=6)));
+        assert_eq!(one.rows, Some(RowRanges(vec![3..=4, 7..=9, 12..=12])));
+        assert!(one.restore_rows(&(0..=8)));
+        assert_eq!(one.rows, Some(RowRanges(vec![9..=9, 12..=12])));
+        assert!(!one.restore_rows(&(9..=u32::MAX)));
     }
 
     #[test]

@@ -51,6 +51,7 @@ fn read_checked(
         .chain(further(&file))
         .chain(convention_problem(manifest))
         .chain(exclusion_problems(&file))
+        .chain(current_problems(&file))
         .chain(declaration_problems(&file.declarations));
     // The line is found by a text near the problem, as parsing has lost the positions.
     let refused = |ManifestProblem { field, near, message }: ManifestProblem| FileError {
@@ -169,6 +170,15 @@ fn exclusion_problems(file: &ManifestFile) -> impl Iterator<Item = ManifestProbl
         }
         let is_open = one.rows.is_none() && one.from.is_none() && one.to.is_none();
         is_open.then(|| problem(&one.why, "give `rows`, or `from` and `to`".into()))
+    })
+}
+
+fn current_problems(file: &ManifestFile) -> impl Iterator<Item = ManifestProblem> {
+    let known = |one: &str| file.manifest.trials.iter().any(|trial| trial.trial_label() == one);
+    let unknown = file.declarations.currents.iter().filter(move |one| !known(&one.trial));
+    unknown.map(|one| {
+        let message = format!("`{}` is not a trial; write its file, as under `trials`", one.trial);
+        ManifestProblem { field: "currents".into(), near: one.trial.clone(), message }
     })
 }
 

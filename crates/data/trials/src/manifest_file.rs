@@ -9,6 +9,7 @@ use sistership_model::manifest::{
     ColumnMapping, FileTime, Manifest, ManifestTrial, TrialConventions, TrialsKind,
 };
 
+use crate::currents::TrialCurrent;
 use crate::declarations::{Antenna, Declarations, Derivable, Maximum, North, SensorFile};
 use crate::exclusion::Exclusion;
 use crate::mapping::Mapping;
@@ -67,6 +68,9 @@ pub(crate) struct Written {
     /// Values and rows that are excluded as faulty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     exclude: Vec<Exclusion>,
+    /// Currents of trials, which are subtracted from velocities over the ground and positions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    currents: Vec<TrialCurrent>,
     /// Files, relative to the manifest.
     trials: Vec<WrittenTrial>,
 }
@@ -119,8 +123,14 @@ impl ManifestFile {
         Mapping {
             declared: self.declarations.clone(),
             exclude: of_file.cloned().collect(),
+            current: self.current_of(trial).cloned(),
             ..Mapping::from_manifest(&self.manifest, trial)
         }
+    }
+
+    fn current_of(&self, trial: &ManifestTrial) -> Option<&TrialCurrent> {
+        let label = trial.trial_label();
+        self.declarations.currents.iter().find(|one| one.trial == label)
     }
 
     /// Returns the manifest reduced to one of its trials.
@@ -184,6 +194,7 @@ impl From<Written> for ManifestFile {
             antenna: written.antenna,
             derive: written.derive,
             exclude: written.exclude,
+            currents: written.currents,
         };
         Self { manifest, declarations, sensors }
     }
@@ -211,6 +222,7 @@ impl From<ManifestFile> for Written {
             columns: manifest.columns,
             ignore: declarations.ignore,
             exclude: declarations.exclude,
+            currents: declarations.currents,
             trials: trials.collect(),
         }
     }

@@ -2,6 +2,7 @@
 
 use sistership_model::manifest::{ColumnMapping, Manifest, ManifestTrial, TrialConventions};
 
+use crate::currents::TrialCurrent;
 use crate::declarations::{Declarations, SensorFile};
 use crate::exclusion::Exclusion;
 use crate::file_segments::FileSegment;
@@ -31,6 +32,8 @@ pub struct Mapping {
     pub room: usize,
     /// Values and rows that are excluded as faulty.
     pub exclude: Vec<Exclusion>,
+    /// Current of the trial, which is subtracted.
+    pub current: Option<TrialCurrent>,
     /// For columns that are yet to be identified: index and unit of a time that is written as text.
     /// Every column is then read as it is.
     pub(crate) unidentified: Option<WrittenTime>,
@@ -66,6 +69,7 @@ impl Mapping {
             limits: FileLimits::default(),
             room: 0,
             exclude: Vec::new(),
+            current: None,
             unidentified: None,
             seeks_faults: false,
         }

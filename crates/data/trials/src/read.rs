@@ -7,6 +7,7 @@ use crate::bridge::{BRIDGED_S, bridge_gaps};
 use crate::checks;
 use crate::convert::convert_table;
 use crate::csv_file::CsvRows;
+use crate::currents::subtract_current;
 use crate::exclusion::{Exclusion, apply_exclusions};
 use crate::faults;
 use crate::findings::Findings;
@@ -21,6 +22,7 @@ use crate::smoothing::smooth_recording;
 use crate::stream::TableRows;
 use crate::table::Table;
 use crate::trial_file::{InputContent, SensorInput, TrialFile};
+use crate::trial_rows::TrialWithRows;
 use crate::{csv_file, derived, ground, nmea_file, parquet_file, position, water, workbook};
 
 /// Reads, converts and checks a trial, and smooths it if the conventions require it.
@@ -38,6 +40,23 @@ pub fn read_trial(source: TrialFile, mapping: &Mapping) -> Result<Trial, Refusal
 pub fn read_in_full(source: TrialFile, mapping: &Mapping) -> Result<TrialReading, Refusal> {
     let file = source.name.clone();
     examine_source(source, mapping).into_reading(file)
+}
+
+/// Reads a trial with the row of each sample.
+///
+/// # Errors
+/// Returns the errors of [`read_trial`].
+pub fn read_with_rows(source: TrialFile, mapping: &Mapping) -> Result<TrialWithRows, Refusal> {
+    let file = source.name.clone();
+    let mut checked = examine_source(source, mapping);
+    let rows = std::mem::take(&mut checked.recording.rows);
+    Ok(TrialWithRows { trial: checked.into_trial(file)?, rows })
+}
+
+/// Returns faults of the values of a file that its mapping does not exclude yet.
+pub fn find_source_faults(source: TrialFile, mapping: &Mapping) -> Vec<Exclusion> {
+    let mapping = Mapping { seeks_faults: true, ..mapping.clone() };
+    examine_source(source, &mapping).recording.faults
 }
 
 /// Runs the checks of [`read_trial`] and returns their findings.
@@ -212,6 +231,9 @@ fn build_recording(
     let mut recording = convert_table(name, table, mapping, findings);
     recording.faults = faults;
     derive_channels(&mut recording, mapping, findings);
+    if let Some(current) = &mapping.current {
+        subtract_current(&mut recording, current, findings);
+    }
     checks::run_checks(&mut recording, findings);
     recording
 }

@@ -69,6 +69,7 @@ impl ThrusterColumns {
                 channel: Some((*channel).to_owned()),
                 unit: Some(self.unit.to_owned()),
                 reversed: column.reversed,
+                probability: 1.0,
                 why: self.why.clone(),
                 certain: true,
                 question: None,

@@ -33,3 +33,20 @@ for (const form of document.querySelectorAll("form[data-live]")) {
   };
   form.addEventListener("input", () => { clearTimeout(waiting); waiting = setTimeout(ask, 250); });
 }
+// Two clicks on a plot of channels name the range of an upload that is to be excluded or restored.
+for (const figure of document.querySelectorAll("figure[data-trial]")) {
+  const plot = figure.querySelector("svg"), of = figure.dataset, field = (name) => document.getElementById("range_" + name);
+  let first = null;
+  plot.addEventListener("click", (event) => {
+    const box = plot.getBoundingClientRect(), scale = of.width / box.width;
+    const share = ((event.clientX - box.left) * scale - of.left) / (of.right - of.left);
+    const time = Number(of.from) + Math.min(1, Math.max(0, share)) * (of.to - of.from);
+    const channel = of.channels.split(" ")[Math.floor((event.clientY - box.top) * scale / of.panel)];
+    const known = [...field("channel").options].some((option) => option.value === channel);
+    const ends = first === null ? [time, time] : [Math.min(first, time), Math.max(first, time)];
+    first = first === null ? time : null;
+    field("trial").value = of.trial;
+    if (known) field("channel").value = channel;
+    [field("from").value, field("to").value] = ends.map((end) => end.toFixed(1));
+  });
+}

@@ -106,6 +106,9 @@ statements! {
         ORDER BY b.id");
     TAG_SHIP = same("SELECT 'tag ' || ship || '/' || tag AS place, 'there is no such ship' AS \
         message FROM ship_tags WHERE ship NOT IN (SELECT name FROM ships) ORDER BY ship, tag");
+    TEMPLATE_SHIP = same("SELECT 'template ' || ship || '/' || name AS place, 'there is no such \
+        ship' AS message FROM import_templates WHERE ship <> '' AND ship NOT IN (SELECT name FROM \
+        ships) ORDER BY ship, name");
     // A ship is in the index, or in the queue of ships to be indexed.
     SEARCH_SHIP = same("SELECT 'ship ' || name AS place, 'is neither found by a search nor waits \
         to be' AS message FROM ships WHERE name NOT IN (SELECT ship FROM ship_vectors) AND name \
@@ -172,6 +175,7 @@ const CHECKS: &[(&str, Statement)] = &[
     ("outcome-version", OUTCOME_VERSION),
     ("outcome-count", OUTCOME_COUNT),
     ("tag-ship", TAG_SHIP),
+    ("template-ship", TEMPLATE_SHIP),
     ("search-ship", SEARCH_SHIP),
     ("search-fact", SEARCH_FACT),
     ("grant-principal", GRANT_PRINCIPAL),

@@ -66,6 +66,7 @@ mod statements;
 mod statistics;
 mod store;
 mod tags;
+mod templates;
 #[cfg(all(unix, feature = "testing"))]
 pub mod testing;
 mod trials;
@@ -126,6 +127,7 @@ pub use staged::StagedObject;
 pub use statistics::TrialStatistics;
 pub use store::Store;
 pub use tags::MAX_TAGS;
+pub use templates::{ImportTemplateRow, MAX_TEMPLATES, TemplateRepository};
 pub use trials::{InsertOutcome, NewTrial, Trial, TrialRepository};
 #[cfg(feature = "testing")]
 pub use unit::CrashPoint;

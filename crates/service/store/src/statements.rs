@@ -45,7 +45,8 @@ mod prepare {
         aliases, audit, bulks, chain, current, diagnoses, effects, families, free_space, garbage,
         grants, idempotency, identities, integrity, jobs, keys, laws, notes, overviews,
         queue_order, reports, row_seal, seal_check, search, search_index, sessions, settings,
-        ships, statistics, store, tags, trials, users, version, versions, webhooks, work,
+        ships, statistics, store, tags, templates, trials, users, version, versions, webhooks,
+        work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
@@ -78,6 +79,7 @@ mod prepare {
         ("sessions", sessions::STATEMENTS),
         ("settings", settings::STATEMENTS),
         ("ships", ships::STATEMENTS),
+        ("templates", templates::STATEMENTS),
         ("standings", overviews::STATEMENTS),
         ("statistics", statistics::STATEMENTS),
         ("store", store::STATEMENTS),

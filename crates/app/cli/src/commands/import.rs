@@ -7,14 +7,14 @@ use clap::Args;
 use sistership_model::trial::Trial;
 use sistership_model::{FileError, Vessel, Zoo};
 use sistership_trials::{
-    ColumnGuess, Exclusion, GivenColumn, LoadedTrials, ManifestFile, ProposalRequest, Role,
-    find_faults, load_path, missing_channels, propose_files,
+    ColumnGuess, GivenColumn, ImportTemplate, ManifestFile, ProposalRequest, Refusal, Role,
+    estimate_currents, find_faults, load_path, missing_channels, propose_files,
 };
 
 use super::import_bundle;
 use super::import_log::segment_logs;
 use super::import_outcome::{GuessRow, ImportDocument, LawNeeds};
-use super::import_template::{ImportTemplate, TemplateFolder, template_name};
+use super::import_template::{TemplateFolder, template_name};
 use super::import_text;
 use super::store::StoreArguments;
 use crate::failure::{Failure, about_file};
@@ -156,15 +156,31 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     // Segmentation first: faults are then searched only in the segments that become trials.
     let logs =
         segment_logs(&mut proposal.manifest, folder, ship_length(vessel.as_deref(), arguments));
-    let excluded = exclude_faults(&mut proposal.manifest, folder)?;
+    let excluded = with_draft(&proposal.manifest, folder, |draft| Ok(find_faults(draft)?))?;
+    proposal.manifest.declarations.exclude.clone_from(&excluded);
+    let trials = with_draft(&proposal.manifest, folder, |draft| Ok(load_path(draft)?.trials))?;
+    let (trials, errors) = accepted_trials(trials);
+    let currents = estimate_currents(&trials);
+    proposal.manifest.declarations.currents.clone_from(&currents);
     let text = proposal.manifest.to_yaml().map_err(|error| about_file(&out, error))?;
     promised.write(text.as_bytes())?;
     let (guesses, mut notes) = (proposal.guesses, proposal.notes);
     notes.extend(template_notes(arguments, &guesses)?);
     let guesses = guesses.into_iter().map(GuessRow::from).collect();
     let explain = arguments.explain;
-    let import =
-        ImportDocument { logs, notes, guesses, excluded, explain, ..check_manifest(zoo, out)? };
+    let import = ImportDocument {
+        manifest: out,
+        guesses,
+        notes,
+        logs,
+        excluded,
+        currents,
+        // The files of one manifest usually have the same channels: the first trial stands for all.
+        lacking: trials.first().map_or_else(Vec::new, |trial| law_needs(zoo, trial)),
+        trials: trials.into_iter().map(|trial| trial.name).collect(),
+        errors,
+        explain,
+    };
     output::print_result(arguments.json, &import, || import_text::format_import(&import))?;
     if import.errors.is_empty() { Ok(()) } else { Err(Failure::Told) }
 }
@@ -173,7 +189,8 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
 fn given_columns(arguments: &ImportArguments) -> Result<Vec<GivenColumn>, Failure> {
     let mut given = arguments.columns.clone();
     if let Some(name) = &arguments.template {
-        let kept = TemplateFolder::of_user()?.read_template(name)?.given_columns()?;
+        let template = TemplateFolder::of_user()?.read_template(name)?;
+        let kept = template.given_columns().map_err(Failure::Refused)?;
         let is_open = |one: &GivenColumn| given.iter().all(|other| other.header != one.header);
         let open: Vec<GivenColumn> = kept.into_iter().filter(is_open).collect();
         given.extend(open);
@@ -197,18 +214,20 @@ fn template_notes(
     Ok(folder.map_or_else(Vec::new, |folder| folder.matching_notes(guesses)))
 }
 
-/// Finds faults of the files and excludes them in the manifest. A temporary manifest in the same
-/// folder is read, so that relative paths stay valid.
-fn exclude_faults(manifest: &mut ManifestFile, folder: &Path) -> Result<Vec<Exclusion>, Failure> {
+/// Runs work on a temporary manifest in the folder of the manifest, so that relative paths stay
+/// valid.
+fn with_draft<T>(
+    manifest: &ManifestFile,
+    folder: &Path,
+    work: impl FnOnce(&Path) -> Result<T, Failure>,
+) -> Result<T, Failure> {
     let place = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     // Removed when it is dropped, also after an error.
     let draft = tempfile::Builder::new().prefix(".import").suffix(".yaml").tempfile_in(place);
     let draft = draft.map_err(|error| about_file(place, error))?;
     let text = manifest.to_yaml().map_err(|error| about_file(draft.path(), error))?;
     std::fs::write(draft.path(), text).map_err(|error| about_file(draft.path(), error))?;
-    let excluded = find_faults(draft.path())?;
-    manifest.declarations.exclude.clone_from(&excluded);
-    Ok(excluded)
+    work(draft.path())
 }
 
 fn default_manifest(files: &[PathBuf]) -> PathBuf {
@@ -260,9 +279,8 @@ fn join_errors(errors: Vec<FileError>) -> Failure {
     Failure::Refused(lines.join("\n"))
 }
 
-/// Reads the files by the manifest, and checks which laws the trials can identify.
-fn check_manifest(zoo: &Zoo, manifest: PathBuf) -> Result<ImportDocument, Failure> {
-    let LoadedTrials { trials: read, .. } = load_path(&manifest)?;
+/// Returns the trials that are accepted, and the errors of the others.
+fn accepted_trials(read: Vec<Result<Trial, Refusal>>) -> (Vec<Trial>, Vec<String>) {
     let (mut trials, mut errors) = (Vec::new(), Vec::new());
     for one in read {
         match one {
@@ -275,20 +293,7 @@ fn check_manifest(zoo: &Zoo, manifest: PathBuf) -> Result<ImportDocument, Failur
             ),
         }
     }
-    // The files of one manifest usually have the same channels: the first trial stands for all.
-    let needs = trials.first().map_or_else(Vec::new, |trial| law_needs(zoo, trial));
-    let names = trials.into_iter().map(|trial| trial.name).collect();
-    Ok(ImportDocument {
-        manifest,
-        guesses: Vec::new(),
-        notes: Vec::new(),
-        logs: Vec::new(),
-        excluded: Vec::new(),
-        trials: names,
-        errors,
-        lacking: needs,
-        explain: false,
-    })
+    (trials, errors)
 }
 
 fn law_needs(zoo: &Zoo, trial: &Trial) -> Vec<LawNeeds> {

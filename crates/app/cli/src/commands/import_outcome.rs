@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use sistership_trials::{ColumnGuess, Exclusion};
+use sistership_trials::{ColumnGuess, Exclusion, TrialCurrent};
 
 use super::import_log::SegmentedLog;
 
@@ -20,6 +20,9 @@ pub(super) struct ImportDocument {
     pub logs: Vec<SegmentedLog>,
     /// Faulty values that are excluded.
     pub excluded: Vec<Exclusion>,
+    /// Currents that are subtracted.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub currents: Vec<TrialCurrent>,
     pub trials: Vec<String>,
     pub errors: Vec<String>,
     /// Missing channels by law; empty for laws that the trials can identify.
@@ -36,6 +39,8 @@ pub(super) struct GuessRow {
     pub unit: Option<String>,
     pub reversed: bool,
     pub certain: bool,
+    /// Posterior probability of the reading.
+    pub probability: f64,
     pub why: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub question: Option<String>,
@@ -49,7 +54,17 @@ pub(super) struct LawNeeds {
 
 impl From<ColumnGuess> for GuessRow {
     fn from(guess: ColumnGuess) -> Self {
-        let ColumnGuess { file, column, channel, unit, reversed, why, certain, question } = guess;
-        Self { file, column, channel, unit, reversed, certain, why, question }
+        let ColumnGuess {
+            file,
+            column,
+            channel,
+            unit,
+            reversed,
+            probability,
+            why,
+            certain,
+            question,
+        } = guess;
+        Self { file, column, channel, unit, reversed, certain, probability, why, question }
     }
 }

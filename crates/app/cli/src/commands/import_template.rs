@@ -1,90 +1,11 @@
-//! Templates of imports: the readings of the columns of a form of file, kept by name for each user.
+//! Templates of imports, kept by name for each user.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
-use sistership_trials::{ColumnGuess, GivenColumn, Role};
+use sistership_trials::{ColumnGuess, ImportTemplate};
 
 use crate::failure::{Failure, about_file};
 use crate::zoo::read_text_file;
-
-/// Readings of the columns of a form of file.
-#[derive(Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ImportTemplate {
-    kind: TemplateKind,
-    /// Name by which it is used.
-    name: String,
-    columns: Vec<TemplateColumn>,
-}
-
-#[derive(Debug, PartialEq, Serialize, Deserialize)]
-enum TemplateKind {
-    #[serde(rename = "import template")]
-    ImportTemplate,
-}
-
-/// Reading of a column.
-#[derive(Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct TemplateColumn {
-    /// Header; `#3` for the third column of a file without a header.
-    column: String,
-    /// Channel; absent for a column that is not read.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    channel: Option<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    unit: Option<String>,
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    reversed: bool,
-}
-
-impl ImportTemplate {
-    /// Makes a template of the readings of an import, each header once.
-    pub(super) fn from_guesses(name: &str, guesses: &[ColumnGuess]) -> Self {
-        let mut known = BTreeSet::new();
-        let first = guesses.iter().filter(|guess| known.insert(&guess.column));
-        let columns = first.map(|guess| TemplateColumn {
-            column: guess.column.clone(),
-            channel: guess.channel.clone(),
-            unit: guess.unit.clone(),
-            reversed: guess.reversed,
-        });
-        let columns = columns.collect();
-        Self { kind: TemplateKind::ImportTemplate, name: name.to_owned(), columns }
-    }
-
-    /// Returns its readings as those that a user gives.
-    ///
-    /// # Errors
-    /// Returns an error that names the column whose channel is not known.
-    pub(super) fn given_columns(&self) -> Result<Vec<GivenColumn>, Failure> {
-        let given = |one: &TemplateColumn| {
-            let role = match one.channel.as_deref() {
-                None => None,
-                Some(name) => Some(Role::from_name(name).ok_or_else(|| {
-                    let TemplateColumn { column, .. } = one;
-                    let file = format!("template `{}`, column `{column}`", self.name);
-                    Failure::Refused(format!("{file}: `{name}` is not a channel"))
-                })?),
-            };
-            Ok(GivenColumn {
-                header: one.column.clone(),
-                role,
-                unit: one.unit.clone(),
-                is_reversed: Some(one.reversed),
-            })
-        };
-        self.columns.iter().map(given).collect()
-    }
-
-    /// Returns true if a file has these columns and no others.
-    fn fits_columns(&self, columns: &BTreeSet<&str>) -> bool {
-        let own: BTreeSet<&str> = self.columns.iter().map(|one| one.column.as_str()).collect();
-        own == *columns
-    }
-}
 
 /// Folder of the templates of a user.
 pub(super) struct TemplateFolder(PathBuf);
@@ -159,17 +80,12 @@ impl TemplateFolder {
 
     /// Returns a note for each template that has the columns of a file.
     pub(super) fn matching_notes(&self, guesses: &[ColumnGuess]) -> Vec<String> {
-        let files: BTreeSet<&str> = guesses.iter().map(|guess| guess.file.as_str()).collect();
-        let columns_of = |file: &str| -> BTreeSet<&str> {
-            let own = guesses.iter().filter(|guess| guess.file == file);
-            own.map(|guess| guess.column.as_str()).collect()
-        };
         // A template whose file is damaged is no reason to refuse an import without it.
         let names = self.template_names().into_iter();
         let known = names.filter_map(|name| self.read_template(&name).ok());
         let note = |template: ImportTemplate| {
             let name = template.name.clone();
-            let file = files.iter().find(|file| template.fits_columns(&columns_of(file)))?;
+            let file = template.matching_file(guesses)?;
             Some(format!("{file} has the same columns as template `{name}`: use --template {name}"))
         };
         known.filter_map(note).collect()
@@ -197,6 +113,7 @@ mod tests {
             channel: channel.map(Into::into),
             unit: channel.map(|_| "deg".into()),
             reversed,
+            probability: 1.0,
             why: String::new(),
             certain: true,
             question: None,
@@ -204,16 +121,13 @@ mod tests {
     }
 
     #[test]
-    fn a_template_is_kept_found_by_its_columns_and_gives_them() {
+    fn a_template_is_kept_and_found_by_its_columns() {
         let folder = tempfile::tempdir().unwrap();
         let templates = TemplateFolder(folder.path().join("templates"));
         let guesses = [guess("Azi", Some("delta"), true), guess("note", None, false)];
         let template = ImportTemplate::from_guesses("yard-x", &guesses);
         templates.write_template(&template).unwrap();
         assert_eq!(templates.read_template("yard-x").unwrap(), template);
-        let given = template.given_columns().unwrap();
-        assert_eq!(given[0].role, Some(Role::Delta));
-        assert_eq!((given[0].is_reversed, given[1].role), (Some(true), None));
         assert!(templates.matching_notes(&guesses)[0].contains("use --template yard-x"));
         assert!(templates.matching_notes(&guesses[..1]).is_empty());
         let missing = templates.read_template("yard-y").unwrap_err();

@@ -1,5 +1,7 @@
 //! Text output of `sistership import`: a summary, or every column on request.
 
+use sistership_trials::TrialCurrent;
+
 use super::import_outcome::{GuessRow, ImportDocument, LawNeeds};
 use crate::output::format_count;
 use crate::table::TextTable;
@@ -19,9 +21,10 @@ pub(super) fn format_import(import: &ImportDocument) -> String {
         texts.iter().map(|text| format!("{word}: {text}\n")).collect()
     };
     format!(
-        "{columns}{}{}\n{logs}{}{}\n{}: {} read\n",
+        "{columns}{}{}{}\n{logs}{}{}\n{}: {} read\n",
         lines("note", &import.notes),
         format_exclusions(import),
+        format_currents(import),
         lines("error", &import.errors),
         format_laws(&import.lacking),
         import.manifest.display(),
@@ -102,6 +105,13 @@ fn format_exclusions(import: &ImportDocument) -> String {
         .iter()
         .map(|one| format!("excluded of {}: {}\n", one.file, one.summary_text()))
         .collect()
+}
+
+fn format_currents(import: &ImportDocument) -> String {
+    let line = |one: &TrialCurrent| {
+        format!("current during {}: {}, subtracted; {}\n", one.trial, one.summary_text(), one.why)
+    };
+    import.currents.iter().map(line).collect()
 }
 
 /// Formats the laws that can be fitted, and what is missing for the others.

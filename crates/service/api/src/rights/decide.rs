@@ -137,6 +137,20 @@ pub(crate) async fn check_ship_role(store: &Store, role: Role, ship: &str) -> Re
     }
 }
 
+/// Checks that the current caller has a role for the whole server.
+///
+/// # Errors
+/// Returns 403 if the role is missing, and an internal error without a caller.
+pub(crate) fn check_server_role(role: Role) -> Result<()> {
+    let acting = current_actor().ok_or_else(|| {
+        Problem::internal("the request has no user or key; sign in, or send a key")
+    })?;
+    match acting.principal.rights.on_server(role) {
+        true => Ok(()),
+        false => Err(access_denied(&acting, role, RoleScope::Server)),
+    }
+}
+
 /// Returns those items that belong to ships for which the caller has a role.
 ///
 /// # Errors

@@ -4,7 +4,7 @@ mod decide;
 mod table;
 
 pub(crate) use decide::{
-    RightsRequest, check_access, check_ship_role, filter_visible, readable_trial,
+    RightsRequest, check_access, check_server_role, check_ship_role, filter_visible, readable_trial,
 };
 pub(crate) use sistership_web_support::acting::{
     AuthenticationKind, RequestActor, carry_actor, current_actor,

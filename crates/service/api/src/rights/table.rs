@@ -208,6 +208,7 @@ pub(crate) const ROLE_TABLE: &[RouteRow] = &[
     ("POST", "/ships/{ship}/upload", Engineer, SHIP),
     ("GET", "/ships/{ship}/uploads/{draft}", Engineer, SHIP),
     ("POST", "/ships/{ship}/uploads/{draft}", Engineer, SHIP),
+    ("GET", "/ships/{ship}/uploaded", Engineer, SHIP),
     ("GET", "/trials/{id}", Reader, RoleScope::Trial),
     ("GET", "/compare", Reader, RoleScope::Server),
     ("GET", "/playground", Reader, RoleScope::Server),

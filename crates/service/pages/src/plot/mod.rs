@@ -6,7 +6,7 @@ mod track;
 
 use sistership_report::plots::{ChartLine, HullOutline, LiveChart};
 
-pub(crate) use channels::plot_channels;
+pub(crate) use channels::{ExcludedInterval, TimePanels, plot_channels, plot_with_exclusions};
 pub(crate) use ground::plot_ground;
 pub(crate) use track::{LINES, PlotTrack};
 

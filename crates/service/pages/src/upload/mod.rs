@@ -2,18 +2,26 @@
 //! parsed data, corrected, and only then stored.
 
 mod corrected;
+mod exclusions;
 mod preview;
 mod proposed;
+mod stored;
+mod templates;
 
 use askama::Template;
 use sistership_model::manifest::{MissingValues, RudderSign, VelocityFrame};
-use sistership_trials::ColumnGuess;
+use sistership_store::ImportTemplateRow;
+use sistership_trials::{ColumnGuess, Exclusion};
 
-pub use corrected::correct_manifest;
+pub use corrected::correct_proposal;
+pub use exclusions::RangeRequest;
 pub use preview::FilePreview;
 pub use proposed::UploadProposal;
+pub use stored::{StoredUpload, stored_page};
+pub use templates::TemplatePlace;
 
-use self::proposed::{DERIVED, TARGETS, mapped_columns};
+use self::proposed::{DERIVED, TARGETS};
+use self::templates::TemplateOffer;
 use crate::error::Result;
 use crate::shell::PageShell;
 
@@ -53,6 +61,9 @@ struct MappingPage<'a> {
     refuse: bool,
     drop: bool,
     derived: [(&'static str, bool); 3],
+    excluded: Vec<ExclusionRow>,
+    channels: Vec<&'a str>,
+    offers: Vec<TemplateOffer>,
     manifest: String,
 }
 
@@ -62,9 +73,18 @@ struct ColumnRow<'a> {
     guess: &'a ColumnGuess,
     channel: &'a str,
     unit: &'a str,
+    reversed: bool,
+    confidence: String,
 }
 
-/// Returns the page on which the mapping is reviewed.
+/// Values that are excluded.
+struct ExclusionRow {
+    file: String,
+    summary: String,
+    rows: String,
+}
+
+/// Returns the page on which the mapping is reviewed, with the templates that are kept.
 ///
 /// # Errors
 /// Returns an error if the page cannot be rendered.
@@ -72,9 +92,10 @@ pub fn mapping_page(
     shell: &PageShell,
     of: &UploadProposal,
     previews: &[FilePreview],
+    templates: &[ImportTemplateRow],
 ) -> Result<String> {
     let conventions = &of.manifest.manifest.conventions;
-    let derive = &of.manifest.declarations.derive;
+    let declared = &of.manifest.declarations;
     let page = MappingPage {
         shell,
         of,
@@ -88,22 +109,49 @@ pub fn mapping_page(
         water: conventions.velocity == VelocityFrame::Water,
         refuse: conventions.missing == MissingValues::Refuse,
         drop: conventions.missing == MissingValues::Drop,
-        derived: DERIVED.map(|(name, one)| (name, derive.contains(&one))),
+        derived: DERIVED.map(|(name, one)| (name, declared.derive.contains(&one))),
+        excluded: declared.exclude.iter().map(exclusion_row).collect(),
+        channels: of.channel_names(),
+        offers: TemplateOffer::from_rows(templates, &of.guesses),
         manifest: of.manifest.to_yaml().unwrap_or_default(),
     };
     Ok(page.render()?)
 }
 
-/// Returns the guesses whose columns the manifest maps: those of the first file, which the other
-/// trials share, and those of further sensors. A sentence of NMEA 0183 needs no mapping.
+impl MappingPage<'_> {
+    /// Returns the first template that has the columns of a file, unless one is in use.
+    fn matching_offer(&self) -> Option<(&TemplateOffer, &str)> {
+        let open = self.offers.iter().filter(|_| self.of.template.is_none());
+        open.filter_map(|offer| Some((offer, offer.file.as_deref()?))).next()
+    }
+}
+
+/// Returns the guesses whose columns the manifest maps. A sentence of NMEA 0183 needs no mapping.
 fn column_rows(of: &UploadProposal) -> Vec<ColumnRow<'_>> {
-    let own = of.guesses.iter().enumerate().filter(|(_, guess)| of.is_mapped(&guess.file));
-    own.map(|(key, guess)| {
-        let columns = mapped_columns(&of.manifest, &guess.file);
-        let known = columns.iter().find(|(_, mapped)| mapped.column == guess.column);
-        let (channel, unit) =
-            known.map_or(("", ""), |(channel, mapped)| (channel.as_str(), mapped.unit.as_str()));
-        ColumnRow { key, guess, channel, unit }
-    })
-    .collect()
+    let files = of.mapped_files();
+    let own = of.guesses.iter().enumerate();
+    own.filter(|(_, guess)| files.contains(&guess.file.as_str()))
+        .map(|(key, guess)| {
+            let columns = of.mapped_columns(&guess.file);
+            let known = columns.iter().find(|(_, mapped)| mapped.column == guess.column);
+            let (channel, unit, reversed) = known.map_or(("", "", false), |(channel, mapped)| {
+                (*channel, mapped.unit.as_str(), mapped.reversed)
+            });
+            let confidence = format_confidence(guess.probability);
+            ColumnRow { key, guess, channel, unit, reversed, confidence }
+        })
+        .collect()
+}
+
+/// Formats a posterior probability, which is never certainty.
+fn format_confidence(probability: f64) -> String {
+    match probability {
+        sure if sure >= 0.995 => "over 99 %".into(),
+        other => format!("{:.0} %", 100.0 * other),
+    }
+}
+
+fn exclusion_row(one: &Exclusion) -> ExclusionRow {
+    let rows = one.rows.as_ref().map_or_else(String::new, ToString::to_string);
+    ExclusionRow { file: one.file.clone(), summary: one.summary_text(), rows }
 }

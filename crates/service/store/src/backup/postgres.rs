@@ -42,6 +42,7 @@ pub(crate) const TABLES: &[&str] = &[
     "ship_facts",
     "ship_vectors",
     "ship_tags",
+    "import_templates",
     "search_queue",
     "users",
     "grants",

@@ -25,6 +25,7 @@ mod search;
 mod ships;
 mod silent;
 mod standings;
+mod templates;
 mod trials;
 mod versions;
 mod webhooks;

@@ -35,6 +35,7 @@ pub(super) fn page_routes(limits: &Limits) -> Router<App> {
             "/ships/{ship}/uploads/{draft}",
             get(draft::review_draft).post(draft::apply_corrections),
         )
+        .route("/ships/{ship}/uploaded", get(draft::stored_upload))
         .route("/trials/{id}", get(views::trial_page))
         .route("/compare", get(views::compare_page))
         .route("/playground", get(views::playground_page))

@@ -107,6 +107,7 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     (CHUNK, "chunk-job", "bulk refinement b"),
     (OUTCOME, "outcome-version", "bulk refinement b"),
     (TAG, "tag-ship", "tag nobody/own"),
+    (TEMPLATE, "template-ship", "template nobody/yard"),
     ("DELETE FROM ship_vectors; DELETE FROM search_queue", "search-ship", "ship mariner"),
     (FACT, "search-fact", "ship nobody"),
     (GRANT, "grant-principal", "roles of user:nobody"),
@@ -146,6 +147,7 @@ const CHUNK: &str = "INSERT INTO bulk_chunks VALUES ('b', 1, 'none')";
 const OUTCOME: &str =
     "INSERT INTO bulk_outcomes VALUES ('b', 'mariner', 'champion', NULL, NULL, '{}', 0)";
 const TAG: &str = "INSERT INTO ship_tags VALUES ('nobody', 'own')";
+const TEMPLATE: &str = "INSERT INTO import_templates VALUES ('nobody', 'yard', '{}', 0)";
 const GRANT: &str = "INSERT INTO grants VALUES ('user:nobody', 'ship', 'none', 'reader')";
 const KEY: &str =
     "INSERT INTO service_keys VALUES ('0123456789ab', 'K', 'nobody', 'x', 0, NULL, NULL, NULL)";
@@ -228,7 +230,7 @@ async fn damaged(database: TestDatabase) {
     assert!(found(&archive).await.clean, "healed again");
 }
 
-const TABLES: [&str; 33] = [
+const TABLES: [&str; 34] = [
     "settings",
     "laws",
     "effect_libraries",
@@ -251,6 +253,7 @@ const TABLES: [&str; 33] = [
     "ship_facts",
     "ship_vectors",
     "ship_tags",
+    "import_templates",
     "search_queue",
     "users",
     "grants",

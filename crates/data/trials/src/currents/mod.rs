@@ -1,0 +1,103 @@
+//! Steady currents: estimated from recorded trials, stated in a manifest, and subtracted on reading.
+
+mod estimate;
+mod steady_turn;
+mod subtract;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use sistership_model::trial::Trial;
+
+pub(crate) use subtract::subtract_current;
+
+/// Velocity of the water over the ground during a trial.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrialCurrent {
+    /// Name of the trial: its file, with `#t=FROM,TO` for a segment.
+    pub trial: String,
+    /// Velocity of the water to the north, m/s.
+    pub north_m_s: f64,
+    /// Velocity of the water to the east, m/s.
+    pub east_m_s: f64,
+    /// Evidence.
+    pub why: String,
+}
+
+impl TrialCurrent {
+    /// Returns speed and direction in words: `0.50 m/s towards 37 deg`.
+    pub fn summary_text(&self) -> String {
+        let speed = self.north_m_s.hypot(self.east_m_s);
+        let towards = self.east_m_s.atan2(self.north_m_s).to_degrees().rem_euclid(360.0);
+        format!("{speed:.2} m/s towards {towards:.0} deg")
+    }
+}
+
+/// Components of a current with their largest standard error, m/s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CurrentEstimate {
+    north: f64,
+    east: f64,
+    error: f64,
+}
+
+/// Least current that is stated, as a multiple of its standard error and in m/s.
+const LEAST_ERRORS: f64 = 4.0;
+const LEAST_M_S: f64 = 0.05;
+/// Largest standard error of an estimate that is used, m/s.
+const LARGEST_ERROR: f64 = 0.05;
+/// Largest difference of two trials of one current, m/s.
+const ALIKE_M_S: f64 = 0.1;
+
+impl CurrentEstimate {
+    fn speed(&self) -> f64 {
+        self.north.hypot(self.east)
+    }
+
+    fn is_stated(&self) -> bool {
+        self.speed() > LEAST_M_S.max(LEAST_ERRORS * self.error)
+    }
+}
+
+/// Returns the current of each trial that shows one. Trials without evidence of their own, such as
+/// zigzags, take that of the others if these agree.
+pub fn estimate_currents(trials: &[Trial]) -> Vec<TrialCurrent> {
+    let own: Vec<Option<(CurrentEstimate, String)>> =
+        trials.iter().map(estimate::estimate_current).collect();
+    let known: Vec<CurrentEstimate> = own.iter().flatten().map(|(one, _)| *one).collect();
+    let common = common_current(&known);
+    let each = trials.iter().zip(own).filter_map(|(trial, own)| {
+        let (estimate, why) = match (own, common) {
+            (Some(own), _) => own,
+            (None, Some(common)) => (common, "that of the other trials".to_owned()),
+            (None, None) => return None,
+        };
+        estimate.is_stated().then(|| TrialCurrent {
+            trial: trial.name.clone(),
+            north_m_s: round_to_mm(estimate.north),
+            east_m_s: round_to_mm(estimate.east),
+            why,
+        })
+    });
+    each.collect()
+}
+
+/// Returns the mean of estimates weighted by their errors, if all are alike.
+fn common_current(known: &[CurrentEstimate]) -> Option<CurrentEstimate> {
+    let weights: f64 = known.iter().map(|one| one.error.powi(-2)).sum();
+    let mean = |of: fn(&CurrentEstimate) -> f64| {
+        known.iter().map(|one| of(one) * one.error.powi(-2)).sum::<f64>() / weights
+    };
+    let common = CurrentEstimate {
+        north: mean(|one| one.north),
+        east: mean(|one| one.east),
+        error: weights.powf(-0.5),
+    };
+    let distance = |one: &CurrentEstimate| (one.north - common.north).hypot(one.east - common.east);
+    let alike = known.iter().all(|one| distance(one) < ALIKE_M_S);
+    (alike && !known.is_empty()).then_some(common)
+}
+
+fn round_to_mm(value: f64) -> f64 {
+    (1e3 * value).round() / 1e3
+}
