@@ -351,6 +351,7 @@ impl<'a> HypothesisSearch<'a> {
             covariance: estimate.covariance,
             level,
             grams,
+            refusal: None,
         })
     }
 }
