@@ -106,6 +106,10 @@ fn keys(found: &Value) {
     for key in ["name", "parameters", "evidence", "confounded_with"] {
         assert!(!found["effects"][0][key].is_null(), "effects[].{key} is missing");
     }
+    for hypothesis in found["hypotheses"].as_array().expect("a list") {
+        let reason = hypothesis["refused"].as_str().unwrap_or_default();
+        assert_eq!(hypothesis["taken"] == true, reason.is_empty(), "{hypothesis}");
+    }
     let fields = found.as_object().expect("an object");
     assert!(fields.contains_key("next_trial"), "null where there is none");
     assert!(

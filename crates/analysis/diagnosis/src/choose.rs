@@ -13,6 +13,7 @@ use super::limits::detection_limits;
 use super::misfit::{is_as_published, misfit_share};
 use super::outcome::DetectionLimit;
 use super::placebo::is_placebo;
+use super::refusal::Refusal;
 use super::screening::{ScreenedEffect, screen_effects};
 use super::search::HypothesisSearch;
 use super::settings::Settings;
@@ -41,6 +42,8 @@ pub(super) struct ConvergedChoice<'a> {
     pub search: HypothesisSearch<'a>,
     pub base: FilteredBase<'a>,
     pub best: JudgedHypothesis,
+    /// Names of effects that were removed after the coefficients were fitted with them, and why.
+    pub removed: Vec<(String, Refusal)>,
 }
 
 /// Judges single effects, then further ones together with the best, and exchanges each of a set for
@@ -156,11 +159,12 @@ impl EffectChoice {
         base: &FilteredBase<'_>,
         count: usize,
     ) -> Result<bool, RefineError> {
-        let found = judge_companions(search, base, count)?;
+        let mut found = judge_companions(search, base, count)?;
         let mut believed = Vec::new();
-        for (place, hypothesis) in found.iter().enumerate() {
+        for (place, hypothesis) in found.iter_mut().enumerate() {
             let evidence = self.last_evidence(search, hypothesis)?;
-            if self.is_accepted(search, hypothesis, settings, evidence)? {
+            hypothesis.refusal = self.refuse_hypothesis(search, hypothesis, settings, evidence)?;
+            if hypothesis.refusal.is_none() {
                 believed.push((evidence, place));
             }
         }
@@ -172,11 +176,17 @@ impl EffectChoice {
         let mut better = None;
         // Placebos are costly, so they are judged only for those that could be accepted, best
         // first.
-        for place in accepted {
+        for &place in &accepted {
             if !is_placebo(search, &found[place], base)? {
                 better = Some(place);
                 break;
             }
+            found[place].refusal = found[place].last_effect().map(Refusal::Placebo);
+        }
+        let ahead = better.and_then(|better| found[better].last_effect());
+        for place in accepted.into_iter().filter(|place| Some(*place) != better) {
+            let behind = ahead.clone().map(Refusal::Behind);
+            found[place].refusal = found[place].refusal.take().or(behind);
         }
         self.accept_hypothesis(found, better);
         Ok(better.is_some())
@@ -195,19 +205,19 @@ impl EffectChoice {
             let mut others = kept.clone();
             others.remove(place);
             let base = search.filter_with_candidates(&others, &self.levels)?;
-            let found = judge_companions(search, &base, THRESHOLDS.search.companions)?;
+            let mut found = judge_companions(search, &base, THRESHOLDS.search.companions)?;
             // The evidence of the effect to be replaced has to be exceeded by a margin.
-            let best =
+            let mut least =
                 search.effect_evidence(self.best_hypothesis(), place)? + THRESHOLDS.search.exchange;
-            let mut better: Option<(f64, usize)> = None;
-            for (at, judged) in found.iter().enumerate() {
+            let mut better = None;
+            for (at, judged) in found.iter_mut().enumerate() {
                 let evidence = unlimited_last_evidence(search, judged)?;
-                let least = better.map_or(best, |(known, _)| known.max(best));
-                if evidence > least && self.is_evident(search, judged, settings, evidence)? {
-                    better = Some((evidence, at));
+                let refusal = self.refuse_last_effect(search, judged, settings, evidence)?;
+                judged.refusal = refusal.or((evidence <= least).then_some(Refusal::NotBetter));
+                if judged.refusal.is_none() {
+                    (least, better) = (evidence, Some(at));
                 }
             }
-            let better = better.map(|(_, at)| at);
             self.accept_hypothesis(found, better);
             // One exchange at a time: the other effects are then part of a different set.
             if better.is_some() {
@@ -249,7 +259,7 @@ impl EffectChoice {
         request: &DiagnosisInputs<'_>,
     ) -> Result<ConvergedChoice<'a>, RefineError> {
         let mut search = search.clone();
-        let mut rounds = THRESHOLDS.search.joint_rounds;
+        let (mut rounds, mut removed) = (THRESHOLDS.search.joint_rounds, Vec::new());
         loop {
             // Coefficients and effects are fitted in turn, each with the others at their last
             // values.
@@ -260,9 +270,11 @@ impl EffectChoice {
             if rounds > 0 {
                 continue;
             }
-            let Some(place) = self.redundant_effect(&search, &best, request.settings)? else {
-                return Ok(ConvergedChoice { search, base, best });
+            let redundant = self.redundant_effect(&search, &best, request.settings)?;
+            let Some((place, refusal)) = redundant else {
+                return Ok(ConvergedChoice { search, base, best, removed });
             };
+            removed.push((best.candidates[place].effect.clone(), refusal));
             best = self.judge_without(&search, &best, place)?;
             // After a removal one round suffices: the others are near their estimates.
             rounds = 1;
@@ -271,13 +283,18 @@ impl EffectChoice {
 
     /// Appends the hypotheses of an earlier search that this one has not judged again.
     pub(super) fn merge_earlier(mut self, earlier: Self) -> Self {
-        let keys = |judged: &JudgedHypothesis| {
-            judged.candidates.iter().map(EffectCandidate::candidate_key).collect::<Vec<_>>()
-        };
-        let again: BTreeSet<Vec<String>> = self.tried.iter().map(keys).collect();
-        self.tried
-            .extend(earlier.tried.into_iter().filter(|judged| !again.contains(&keys(judged))));
+        let again: BTreeSet<Vec<String>> =
+            self.tried.iter().map(JudgedHypothesis::candidate_keys).collect();
+        let is_new = |judged: &JudgedHypothesis| !again.contains(&judged.candidate_keys());
+        self.tried.extend(earlier.tried.into_iter().filter(is_new));
         self
+    }
+
+    /// Marks the accepted hypothesis as refused.
+    pub(super) fn refuse_accepted(&mut self, refusal: Refusal) {
+        if let Some(taken) = self.taken {
+            self.tried[taken].refusal = Some(refusal);
+        }
     }
 
     /// Judges a set of effects with one removed.
@@ -315,50 +332,64 @@ impl EffectChoice {
         Ok(unlimited_last_evidence(search, found)?.min(found.log_evidence - than))
     }
 
-    /// Returns true if a hypothesis is more probable by enough, also on held-out trials.
-    fn is_accepted(
+    /// Reason for which a hypothesis is not more probable by enough, also on held-out trials; none
+    /// where it is.
+    fn refuse_hypothesis(
         &self,
         search: &HypothesisSearch<'_>,
         found: &JudgedHypothesis,
         settings: &Settings,
         of_last: f64,
-    ) -> Result<bool, RefineError> {
+    ) -> Result<Option<Refusal>, RefineError> {
+        let refusal = self.refuse_last_effect(search, found, settings, of_last)?;
+        if refusal.is_some() {
+            return Ok(refusal);
+        }
         let held_out = |judged: &JudgedHypothesis| judged.held_out_log_probability(&search.fixed);
-        Ok(self.is_evident(search, found, settings, of_last)?
-            && held_out(found)? > held_out(self.best_hypothesis())?)
+        let gain = held_out(found)? - held_out(self.best_hypothesis())?;
+        Ok((gain <= 0.0).then_some(Refusal::HeldOut { gain }))
     }
 
-    /// Returns true if all forms agree with published coefficients, and the evidence for the last
-    /// one is sufficient and above the misfit allowance of the others.
-    fn is_evident(
+    /// Reason for which the last effect of a hypothesis is not evident: a form that does not agree
+    /// with published coefficients, or evidence that is not sufficient.
+    fn refuse_last_effect(
         &self,
         search: &HypothesisSearch<'_>,
         found: &JudgedHypothesis,
         settings: &Settings,
         of_last: f64,
-    ) -> Result<bool, RefineError> {
+    ) -> Result<Option<Refusal>, RefineError> {
         let last = found.candidates.len() - 1;
-        let evidence = all_evidence(search, found)?;
-        Ok(found.candidates.iter().all(is_as_published)
-            && of_last > settings.least_evidence.max(self.misfit_allowance(found, &evidence, last)))
+        let other = found.candidates.iter().find(|candidate| !is_as_published(candidate));
+        if let Some(other) = other {
+            return Ok(Some(Refusal::NotAsPublished(other.effect.clone())));
+        }
+        let allowance = self.misfit_allowance(found, &all_evidence(search, found)?, last);
+        Ok(refuse_evidence(found, (last, of_last), settings.least_evidence, allowance))
     }
 
     /// Index of an effect, of those judged together, that no longer agrees with its published form,
-    /// or of the weakest one, if the evidence for it is not sufficient.
+    /// or of the weakest one, if the evidence for it is not sufficient; with the reason.
     fn redundant_effect(
         &self,
         search: &HypothesisSearch<'_>,
         best: &JudgedHypothesis,
         settings: &Settings,
-    ) -> Result<Option<usize>, RefineError> {
-        let evidence = all_evidence(search, best)?;
-        let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
+    ) -> Result<Option<(usize, Refusal)>, RefineError> {
         // An effect whose form does not agree with published ones is removed first.
         let other = best.candidates.iter().position(|candidate| !is_as_published(candidate));
-        Ok(other.or(weakest.filter(|&place| {
-            evidence[place]
-                <= settings.least_evidence.max(self.misfit_allowance(best, &evidence, place))
-        })))
+        if let Some(place) = other {
+            let effect = best.candidates[place].effect.clone();
+            return Ok(Some((place, Refusal::NotAsPublished(effect))));
+        }
+        let evidence = all_evidence(search, best)?;
+        let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
+        let refused = |place: usize| {
+            let allowance = self.misfit_allowance(best, &evidence, place);
+            let weakest = (place, evidence[place]);
+            Some((place, refuse_evidence(best, weakest, settings.least_evidence, allowance)?))
+        };
+        Ok(weakest.and_then(refused))
     }
 
     /// Allowance for the misfit of the other effects of a set, whose published forms differ from
@@ -402,6 +433,21 @@ fn move_better_fits_forward(
             accepted[..=place].rotate_right(1);
         }
     }
+}
+
+/// Reason for which the evidence for the effect at a place is not above the least evidence, or the
+/// allowance for the forms of the others.
+fn refuse_evidence(
+    judged: &JudgedHypothesis,
+    (place, evidence): (usize, f64),
+    least: f64,
+    allowance: f64,
+) -> Option<Refusal> {
+    let effect = || judged.candidates[place].effect.clone();
+    if evidence <= least {
+        return Some(Refusal::LittleEvidence { effect: effect(), evidence, least });
+    }
+    (evidence <= allowance).then(|| Refusal::FormError { effect: effect(), evidence, allowance })
 }
 
 fn all_evidence(

@@ -16,7 +16,7 @@ use super::hypothesis::JudgedHypothesis;
 use super::linearised_trials::LinearisedTrials;
 use sistership_filtering::{
     AxisDiscrepancies, EffectCandidate, FilterColumns, GramMatrix, LinearisationDetail,
-    LinearisedPart, ResidualSystem, linearise, whiten_part,
+    LinearisedPart, ResidualSystem, linearise, whiten_columns, whiten_part,
 };
 use sistership_identification::refine::RefineError;
 
@@ -102,10 +102,17 @@ impl<'a> FilteredBase<'a> {
         GramMatrix::sum_parts(self.levels[level].grams.iter(), 1 + self.workspace.columns().len())
     }
 
-    /// Products of coefficients alone, trial by trial.
-    pub fn coefficient_products(&self, level: usize) -> Vec<GramMatrix> {
-        let columns: Vec<usize> = (0..self.coefficients).collect();
-        self.levels[level].grams.iter().map(|gram| gram.select_columns(&columns)).collect()
+    /// Columns of a hypothesis at whose values the base is linearised: the effects of the base, and
+    /// others at their absence. None where the base is linearised at other values.
+    fn matching_columns(&self, candidates: &[EffectCandidate]) -> Option<Vec<usize>> {
+        let columns = self.workspace.columns();
+        let one = |candidate: &EffectCandidate| {
+            let place = columns.candidates.iter().position(|known| known == candidate)?;
+            Some(columns.candidate_columns(place))
+        };
+        let own: Vec<_> = candidates.iter().map(one).collect::<Option<_>>()?;
+        let is_complete = self.taken.iter().all(|taken| candidates.contains(taken));
+        is_complete.then(|| (0..self.coefficients).chain(own.into_iter().flatten()).collect())
     }
 
     /// Whitened columns of the coefficients at a level. Those of levels that are not neighbours are
@@ -123,8 +130,9 @@ impl<'a> FilteredBase<'a> {
             return Ok(Arc::clone(coefficients));
         }
         let of_part = |part: &LinearisedPart| {
-            let rows = whitened_rows(&self.workspace, part, &at.discrepancies)?.0;
-            Ok(rows.rows(1, self.coefficients).into_owned())
+            // Only the coefficients pass the filter: the candidates' columns are many more.
+            let rows = whitened_rows(&self.workspace, (part, self.coefficients), &at.discrepancies);
+            Ok(rows?.0.remove_row(0))
         };
         let one = |parts: &Vec<LinearisedPart>| {
             parts.iter().map(of_part).collect::<Result<Vec<_>, RefineError>>()
@@ -134,6 +142,22 @@ impl<'a> FilteredBase<'a> {
         let fresh: WhitenedCoefficients = Arc::new(each);
         *kept = Some(Arc::clone(&fresh));
         Ok(fresh)
+    }
+
+    /// Returns a hypothesis at its values, whose products are those of the base where the base is
+    /// linearised there, and else come from a linearisation of its own.
+    ///
+    /// # Errors
+    /// Returns an error that names what the model or a trial lacks.
+    pub fn prepare_hypothesis(
+        &self,
+        learned: &CalibratedModel,
+        candidates: &[EffectCandidate],
+    ) -> Result<PreparedHypothesis<'_, 'a>, RefineError> {
+        Ok(match self.matching_columns(candidates) {
+            Some(columns) => PreparedHypothesis::Filtered(self, columns),
+            None => PreparedHypothesis::Linearised(self.linearise_hypothesis(learned, candidates)?),
+        })
     }
 
     /// Linearises readings and columns of a hypothesis at its values, to be filtered at any level.
@@ -173,21 +197,45 @@ fn trial_products(
 ) -> Result<GramMatrix, RefineError> {
     let mut gram = GramMatrix::zeros(1 + workspace.columns().len());
     for part in parts {
-        let (rows, log_variance) = whitened_rows(workspace, part, discrepancies)?;
+        let columns = part.sizes.columns;
+        let (rows, log_variance) = whitened_rows(workspace, (part, columns), discrepancies)?;
         gram.add(&GramMatrix::from_columns(&rows, log_variance));
     }
     Ok(gram)
 }
 
-/// Residual and columns of a part by readings, after the filter.
+/// Residual and the first columns of a part by readings, after the filter.
 fn whitened_rows(
     workspace: &LinearisedTrials<'_>,
-    part: &LinearisedPart,
+    (part, columns): (&LinearisedPart, usize),
     discrepancies: &AxisDiscrepancies,
 ) -> Result<(DMatrix<f64>, f64), RefineError> {
-    let (rows, log_variance) = whiten_part(part, &workspace.noise, discrepancies)?;
-    let width = 1 + part.sizes.columns;
+    let (rows, log_variance) = whiten_columns(part, columns, &workspace.noise, discrepancies)?;
+    let width = 1 + columns;
     Ok((DMatrix::from_vec(width, rows.len() / width, rows), log_variance))
+}
+
+/// A hypothesis at its values, ready for the products of its columns.
+pub(super) enum PreparedHypothesis<'b, 'a> {
+    /// Some columns of a base, which is linearised at these values.
+    Filtered(&'b FilteredBase<'a>, Vec<usize>),
+    Linearised(LinearisedHypothesis<'b, 'a>),
+}
+
+impl PreparedHypothesis<'_, '_> {
+    /// Returns the products of each trial: residual, coefficients, parameters of the hypothesis.
+    ///
+    /// # Errors
+    /// Returns an error if the noise of a channel is unknown.
+    pub fn products_per_trial(&self, level: usize) -> Result<Vec<GramMatrix>, RefineError> {
+        match self {
+            Self::Filtered(base, columns) => {
+                let grams = base.levels[level].grams.iter();
+                Ok(grams.map(|gram| gram.select_columns(columns)).collect())
+            }
+            Self::Linearised(linearised) => linearised.products_per_trial(level),
+        }
+    }
 }
 
 /// A hypothesis linearised at its values.
@@ -201,7 +249,7 @@ impl LinearisedHypothesis<'_, '_> {
     ///
     /// # Errors
     /// Returns an error if the noise of a channel is unknown.
-    pub fn products_per_trial(&self, level: usize) -> Result<Vec<GramMatrix>, RefineError> {
+    fn products_per_trial(&self, level: usize) -> Result<Vec<GramMatrix>, RefineError> {
         let (at, coefficients) =
             (&self.base.levels[level], self.base.whitened_coefficients(level)?);
         let trials: Vec<_> = self.linear.iter().zip(coefficients.iter().zip(&at.grams)).collect();

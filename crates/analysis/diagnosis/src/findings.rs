@@ -7,7 +7,7 @@ use sistership_model::Model;
 use sistership_model::quantity::Quantity;
 
 use super::DiagnosisInputs;
-use super::choose::EffectChoice;
+use super::choose::{ConvergedChoice, EffectChoice};
 use super::confounded::EffectResponses;
 use super::covariance::effect_covariance;
 use super::hypothesis::JudgedHypothesis;
@@ -15,7 +15,6 @@ use super::next_trial::propose_next_trial;
 use super::outcome::{HypothesisReport, MissingEffect, NextTrial, ValueWithError};
 use super::search::HypothesisSearch;
 use super::values::{form_target, own_covariance, values_with_errors};
-use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
 
 /// Effects found with those they are confounded with, the strongest first, and the trial that would
@@ -89,29 +88,62 @@ pub(super) fn refitted_parameters(
     if moved { all.map(one).collect() } else { BTreeMap::new() }
 }
 
-/// Returns the hypotheses that were judged at their estimates, the most probable first.
+/// Returns the hypotheses that were judged at their estimates, the most probable first: the one with
+/// the effects of the result is marked, and the others have the reason for which they are not.
 ///
 /// # Errors
 /// Returns an error if the information is not positive.
 pub(super) fn report_hypotheses(
     request: &DiagnosisInputs<'_>,
-    search: &HypothesisSearch<'_>,
+    settled: &ConvergedChoice<'_>,
     choice: &EffectChoice,
 ) -> Result<Vec<HypothesisReport>, RefineError> {
-    let alone = choice.alone.held_out_log_probability(&search.fixed)?;
-    let one = |(place, judged): (usize, &JudgedHypothesis)| {
+    let fixed = &settled.search.fixed;
+    let alone = choice.alone.held_out_log_probability(fixed)?;
+    let has_effects = !settled.best.candidates.is_empty();
+    let one = |judged: &JudgedHypothesis| {
+        let taken = has_effects && judged.has_same_effects(&settled.best);
         Ok(HypothesisReport {
-            effects: judged.candidates.iter().map(EffectCandidate::candidate_key).collect(),
+            effects: judged.candidate_keys(),
             evidence: judged.log_evidence - choice.alone.log_evidence,
-            held_out: Some(judged.held_out_log_probability(&search.fixed)? - alone),
+            held_out: Some(judged.held_out_log_probability(fixed)? - alone),
             parameters: hypothesis_parameters(request, judged),
-            taken: choice.taken == Some(place),
+            taken,
+            refused: (!taken).then(|| refusal_reason(settled, choice, judged)),
         })
     };
+    // A set of which effects were removed at the end may not have been judged before.
+    let is_new = choice.tried.iter().all(|tried| !tried.has_same_effects(&settled.best));
+    let last = (is_new && has_effects).then_some(&settled.best);
     let mut all: Vec<HypothesisReport> =
-        choice.tried.iter().enumerate().map(one).collect::<Result<_, RefineError>>()?;
+        choice.tried.iter().chain(last).map(one).collect::<Result<_, RefineError>>()?;
     all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     Ok(all)
+}
+
+/// Reason for which a hypothesis is not the result.
+fn refusal_reason(
+    settled: &ConvergedChoice<'_>,
+    choice: &EffectChoice,
+    judged: &JudgedHypothesis,
+) -> String {
+    if let Some(refusal) = &judged.refusal {
+        return refusal.to_string();
+    }
+    let accepted = choice.taken.map(|taken| &choice.tried[taken]);
+    if accepted.is_some_and(|accepted| accepted.has_same_effects(judged)) {
+        // It was accepted, and lost effects when the coefficients were fitted together with it.
+        let reasons = settled.removed.iter().map(|(name, refusal)| {
+            format!("`{name}` was removed after the coefficients were fitted with it: {refusal}")
+        });
+        return reasons.collect::<Vec<_>>().join("; ");
+    }
+    let names: Vec<String> =
+        settled.best.candidates.iter().map(|one| format!("`{}`", one.effect)).collect();
+    match names.is_empty() {
+        true => "what it explains is a change within trials".to_owned(),
+        false => format!("{} explains the trials better", names.join(" with ")),
+    }
 }
 
 fn hypothesis_parameters(

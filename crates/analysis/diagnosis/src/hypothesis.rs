@@ -5,6 +5,7 @@ use sistership_model::effect::EffectParameter;
 
 use super::coefficient_prior::CoefficientPrior;
 use super::evidence::{HypothesisEstimate, MarginalInformation, NormalPrior, not_positive_error};
+use super::refusal::Refusal;
 use sistership_filtering::{EffectCandidate, GramMatrix};
 use sistership_identification::refine::RefineError;
 
@@ -23,9 +24,27 @@ pub(super) struct JudgedHypothesis {
     pub grams: Vec<GramMatrix>,
     /// Values of the candidates at which the columns are tangents.
     pub linearised_at: Vec<EffectCandidate>,
+    /// Reason for which it was not accepted, where it was considered and refused.
+    pub refusal: Option<Refusal>,
 }
 
 impl JudgedHypothesis {
+    /// Keys of the effects, in their order.
+    pub fn candidate_keys(&self) -> Vec<String> {
+        self.candidates.iter().map(EffectCandidate::candidate_key).collect()
+    }
+
+    /// Name of the effect that was added last.
+    pub fn last_effect(&self) -> Option<String> {
+        self.candidates.last().map(|candidate| candidate.effect.clone())
+    }
+
+    /// Returns true if another hypothesis has the same effects, in any order.
+    pub fn has_same_effects(&self, other: &Self) -> bool {
+        let (own, others) = (self.candidate_keys(), other.candidate_keys());
+        own.len() == others.len() && own.iter().all(|key| others.contains(key))
+    }
+
     /// Distance of each parameter from the values of the linearisation.
     pub fn parameter_changes(&self) -> Vec<f64> {
         let pairs = self.candidates.iter().zip(&self.linearised_at);

@@ -28,6 +28,7 @@ mod origin;
 mod outcome;
 mod placebo;
 mod refit;
+mod refusal;
 mod remainder;
 mod run;
 mod screening;

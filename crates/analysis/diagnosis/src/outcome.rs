@@ -299,8 +299,11 @@ pub struct HypothesisReport {
     pub held_out: Option<f64>,
     /// Parameters.
     pub parameters: BTreeMap<String, ValueWithError>,
-    /// True if it was accepted.
+    /// True if its effects are those of the result.
     pub taken: bool,
+    /// Reason for which it is not the result.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refused: Option<String>,
 }
 
 /// Errors on one trial.

@@ -81,7 +81,7 @@ fn fit_and_simulate(
     request: &DiagnosisInputs<'_>,
     settled: &ConvergedChoice<'_>,
 ) -> Result<FittedModel, RefineError> {
-    let ConvergedChoice { search, base, best } = settled;
+    let ConvergedChoice { search, base, best, .. } = settled;
     let length_s = base.workspace.lpp_m / base.workspace.speed_m_s;
     let restart_s = request.settings.restart_s.unwrap_or(THRESHOLDS.trials.restart * length_s);
     let mut refits = refit_alternatives(request, search, best, restart_s)?;
@@ -135,7 +135,7 @@ fn build_diagnosis(
     (fitted, named): (FittedModel, NamedEffects),
 ) -> Result<Diagnosis, RefineError> {
     let SelectedEffects { choice, settled, remaining, changes, .. } = selected;
-    let ConvergedChoice { search, base, best } = &settled;
+    let ConvergedChoice { search, base, best, .. } = &settled;
     let names: Vec<String> = named.found.iter().map(|found| found.name.clone()).collect();
     let limits = excluding(choice.limits.clone(), &names);
     let FittedModel { errors, taken } = fitted;
@@ -157,7 +157,7 @@ fn build_diagnosis(
         noise: noise_by_channel(&base.workspace),
         how: describe_method(request, taken.how.as_deref()),
         diagnosed: request.model.name.clone(),
-        hypotheses: report_hypotheses(request, search, &choice)?,
+        hypotheses: report_hypotheses(request, &settled, &choice)?,
         trials: errors.trials,
         manoeuvres: errors.manoeuvres,
         residuals,

@@ -219,15 +219,9 @@ impl<'a> HypothesisSearch<'a> {
         is_weighed: &dyn Fn(DiscrepancyFactor) -> bool,
     ) -> Result<(usize, JudgedHypothesis), RefineError> {
         // The linearisation is the same at each level.
-        let stand = match base.taken.is_empty() {
-            true => None,
-            false => Some(base.linearise_hypothesis(&self.calibrated_model, &base.taken)?),
-        };
+        let stand = base.prepare_hypothesis(&self.calibrated_model, &base.taken)?;
         let at = |level: usize| {
-            let grams = stand.as_ref().map_or_else(
-                || Ok(base.coefficient_products(level)),
-                |s| s.products_per_trial(level),
-            )?;
+            let grams = stand.products_per_trial(level)?;
             Ok((level, self.judge_products((base, level), &base.taken, grams)?))
         };
         let levels = 0..base.levels.len();
@@ -315,7 +309,7 @@ impl<'a> HypothesisSearch<'a> {
         candidates: &[EffectCandidate],
         level: usize,
     ) -> Result<(usize, JudgedHypothesis), RefineError> {
-        let stand = base.linearise_hypothesis(&self.calibrated_model, candidates)?;
+        let stand = base.prepare_hypothesis(&self.calibrated_model, candidates)?;
         let at = |level: usize| {
             Ok((
                 level,
@@ -351,6 +345,7 @@ impl<'a> HypothesisSearch<'a> {
             covariance: estimate.covariance,
             level,
             grams,
+            refusal: None,
         })
     }
 }

@@ -10,6 +10,7 @@ use super::hypothesis::JudgedHypothesis;
 use super::linearised_trials::LinearisedTrials;
 use super::misfit::shape_error;
 use super::outcome::{EffectChange, UnexplainedSegment};
+use super::refusal::Refusal;
 use super::remainder::find_unexplained;
 use super::search::HypothesisSearch;
 use super::thresholds::THRESHOLDS;
@@ -64,6 +65,9 @@ pub(super) fn select_effects<'a>(
         // Refused effects are removed from the search before it is repeated.
         let names = state.effect_names(|place| varying.contains(&place)).into_iter();
         refused.extend(names.inspect(|name| search.remove_effect(name)));
+        if let Some(name) = refused.last() {
+            choice.refuse_accepted(Refusal::NotConstant(name.clone()));
+        }
         report_progress(progress, "removing effects with inconsistent sizes")?;
         choice = choose_effects(&search, base, request.settings)?.merge_earlier(choice);
     }
@@ -94,7 +98,7 @@ impl<'a> RemainderState<'a> {
 
     /// Indices of the effects that are not constant in time, where something remains unexplained.
     fn inconstant_places(&self, margin: f64) -> Result<Vec<usize>, RefineError> {
-        let ConvergedChoice { search, base, best } = &self.settled;
+        let ConvergedChoice { search, base, best, .. } = &self.settled;
         match self.remaining.is_empty() {
             true => Ok(Vec::new()),
             false => inconstant_effects(search, base, best, margin),

@@ -45,9 +45,17 @@ pub(super) fn values_with_errors(
         let gradient =
             DVector::from_iterator(names.len(), (0..names.len()).map(|i| slope(i).unwrap_or(0.0)));
         let se = (gradient.transpose() * covariance * &gradient)[(0, 0)].max(0.0).sqrt();
-        values.insert(name.clone(), ValueWithError { value, se });
+        values.insert(name.clone(), ValueWithError { value: full_circle(name, value), se });
     }
     values
+}
+
+/// Quantities that are directions, deg.
+const BEARINGS: [&str; 2] = ["towards_deg", "from_deg"];
+
+/// Returns a direction from 0 to 360 deg, and any other quantity as it is.
+fn full_circle(name: &str, value: f64) -> f64 {
+    if BEARINGS.contains(&name) { value.rem_euclid(360.0) } else { value }
 }
 
 /// Part of a joint covariance that belongs to a candidate.
@@ -103,5 +111,17 @@ pub(super) fn form_target(candidate: &EffectCandidate) -> ActsOn {
         (false, _) => ActsOn::Force,
         (true, false) => ActsOn::Measurement,
         _ => ActsOn::Inflow,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_are_from_0_to_360_deg() {
+        assert!((full_circle("towards_deg", -38.7) - 321.3).abs() < 1e-9);
+        assert_eq!(full_circle("from_deg", 360.0), 0.0);
+        assert_eq!(full_circle("offset_deg", -1.5), -1.5);
     }
 }

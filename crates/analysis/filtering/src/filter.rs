@@ -83,7 +83,11 @@ pub fn whiten_part(
     whiten_columns(linear, linear.sizes.columns, noise, discrepancies)
 }
 
-fn whiten_columns(
+/// Returns prediction errors and the contributions of the first columns, as [`whiten_part`].
+///
+/// # Errors
+/// Returns an error if the noise of a channel is unknown.
+pub fn whiten_columns(
     linear: &LinearisedPart,
     columns: usize,
     noise: &InstrumentNoise,

@@ -47,7 +47,8 @@ pub use columns::{
 };
 pub use discrepancies::AxisDiscrepancies;
 pub use filter::{
-    WhitenedRows, column_responses, filter_columns, filter_part, prediction_errors, whiten_part,
+    WhitenedRows, column_responses, filter_columns, filter_part, prediction_errors, whiten_columns,
+    whiten_part,
 };
 pub use filter_noise::unknown_noise_error;
 pub use gram::GramMatrix;

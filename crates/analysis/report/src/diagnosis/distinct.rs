@@ -37,6 +37,7 @@ mod tests {
             held_out: None,
             parameters: Default::default(),
             taken,
+            refused: None,
         };
         let all = [
             hypothesis(&["a", "b"], 9.0, false),

@@ -41,7 +41,7 @@ fn hypothesis_columns() -> Vec<TableColumn> {
         TableColumn::text_column("that is", ""),
         TableColumn::number_column("held-out", "ln"),
         TableColumn::prose_column("parameters ± standard error"),
-        TableColumn::text_column("", ""),
+        TableColumn::prose_column("selected"),
     ]
 }
 
@@ -52,7 +52,7 @@ fn hypothesis_row(hypothesis: &HypothesisReport) -> TableRow {
     let taken = if hypothesis.taken {
         TableCell::new("").with_mark("✓ taken", "chosen")
     } else {
-        TableCell::new("")
+        TableCell::new(hypothesis.refused.clone().unwrap_or_default())
     };
     let cells = vec![
         TableCell::new(name),

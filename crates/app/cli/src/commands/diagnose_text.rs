@@ -187,12 +187,14 @@ fn format_hypotheses(hypotheses: &[HypothesisReport]) -> TextTable {
         } else {
             hypothesis.effects.join(" + ")
         };
-        let taken = if hypothesis.taken { "yes" } else { "" };
+        let refused = || hypothesis.refused.as_ref().map(|reason| format!("no: {reason}"));
+        let selected =
+            if hypothesis.taken { "yes".to_owned() } else { refused().unwrap_or_default() };
         table.add_row([
             name,
             format_number(hypothesis.evidence),
             format_optional(hypothesis.held_out),
-            taken.to_owned(),
+            selected,
         ]);
     }
     table

@@ -117,6 +117,7 @@ fn hypothesis(effects: &[&str], evidence: f64, taken: bool) -> HypothesisReport 
         held_out: taken.then_some(30.5),
         parameters: current().parameters,
         taken,
+        refused: None,
     }
 }
 
