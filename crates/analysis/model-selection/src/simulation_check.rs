@@ -46,6 +46,7 @@ fn rudder_orders() -> Vec<RudderOrder> {
 /// records lack an input of its law.
 pub fn simulation_fault(model: &Model, law: &Law, trials: &[&Trial]) -> Option<SimulationFault> {
     let helms = rudder_records((model, law), trials, (&rudder_orders(), SIMULATION_CHECK.lengths))?;
+    // Motions of the trials may be astern already.
     let moving = motion_records((model, law), trials).unwrap_or_default();
     let ship = prepare_ship(model, law, trials).ok()?;
     // A craft that is steered by a difference of thrust has one thruster astern in a hard turn.

@@ -41,6 +41,7 @@ struct TemplateColumn {
 impl ImportTemplate {
     /// Makes a template of the readings of an import, each header once.
     pub fn from_guesses(name: &str, guesses: &[ColumnGuess]) -> Self {
+        // Files of one set repeat their headers.
         let mut known = BTreeSet::new();
         let first = guesses.iter().filter(|guess| known.insert(&guess.column));
         let columns = first.map(|guess| TemplateColumn {
@@ -86,6 +87,7 @@ impl ImportTemplate {
             let of_file = guesses.iter().filter(|guess| guess.file == file);
             of_file.map(|guess| guess.column.as_str()).collect()
         };
+        // The order of the columns is left to the logger: names decide.
         let files: BTreeSet<&str> = guesses.iter().map(|guess| guess.file.as_str()).collect();
         files.into_iter().find(|file| columns_of(file) == own)
     }

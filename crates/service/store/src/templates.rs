@@ -67,13 +67,16 @@ impl TemplateRepository<'_> {
         checks::check_name("name", name)?;
         checks::check_json("document", document)?;
         let mut tx = self.0.begin().await?;
+        // The server's templates belong to no ship that could be missing.
         if !ship.is_empty() {
             ships::find_ship(&mut tx, ship).await?;
         }
+        // The audit has what was replaced, by its hash.
         let before = find_template(&mut tx, ship, name).await?;
         let now_us = self.0.now_us();
         let values = args![ship: ship, name: name, document: document, changed_us: now_us];
         tx.execute(PUT, values).await?;
+        // Counted after the statement: replacing one of a hundred is no addition.
         check_count(&mut tx, ship).await?;
         let before = before.as_ref().map(|row| audit_state(&row.document));
         let after = Some(audit_state(document));

@@ -58,6 +58,7 @@ impl LiveChart {
     pub fn new(plots: Vec<SvgPlot>, lines: &[ChartLine], hull: Option<HullOutline>) -> Self {
         let mut legend: Vec<(&'static str, String)> = Vec::new();
         for line in lines {
+            // Lines of one class share its entry: measured and simulated, not trial by trial.
             if legend.iter().all(|(class, _)| *class != line.class) {
                 legend.push((line.class, line.name.clone()));
             }
@@ -98,8 +99,10 @@ fn encode_line(line: &ChartLine) -> Value {
 fn encode_values(values: impl Iterator<Item = f64> + Clone) -> Value {
     let finite = values.clone().filter(|value| value.is_finite());
     let (low, high) = finite.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
+    // A constant line has no range of its own; its size gives one.
     let range = (high - low).max(1e-3 * high.abs().max(low.abs()).min(1e9)).max(1e-9);
     let exponent = (range / 1e4).log10().floor() as i32;
+    // Differences of rounded values: errors do not add up along the line.
     let mut last = 0;
     let mut difference = |value: f64| {
         let whole = (value / 10_f64.powi(exponent)).round() as i64;

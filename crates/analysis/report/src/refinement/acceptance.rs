@@ -57,6 +57,7 @@ fn imo_verdict(imo: &[CriterionComparison<'_>]) -> (String, &'static str) {
         some.map(|one| one.criterion.to_owned()).collect()
     };
     let (failed, unknown) = (with(Some(false)), with(None));
+    // One failure decides; what could not be evaluated is never counted as met.
     match (imo.is_empty(), failed.is_empty(), unknown.is_empty()) {
         (true, ..) => ("The criteria of MSC.137(76) could not be evaluated.".to_owned(), "open"),
         (_, false, _) => {
@@ -79,6 +80,7 @@ fn ship_facts(input: &RefinementInput<'_>) -> Vec<SummaryFact> {
     let metres = |name: &str| known(name).map(|value| format!("{} m", format_stated(value, 5)));
     let fact = |name, value: Option<String>, place| SummaryFact { name, value: value.ok_or(place) };
     let particulars = "Particulars of the ship (its document, `particulars`)";
+    // The speed of the trials, which may be below that of service.
     let speed = input.refinement.model.speed_m_s.map(|speed| with_knots(speed, 2));
     let trim = known("draught_aft_m").zip(known("draught_fore_m"));
     let trim = trim.map(|(aft, fore)| format!("{} m by the stern", format_fixed(aft - fore, 2)));
@@ -100,6 +102,7 @@ fn condition_facts(trials: &[&Trial]) -> Vec<SummaryFact> {
     let blank = |name| SummaryFact { name, value: Err(by_hand) };
     let wind = channel_range(trials, &[Channel::WindSpeed, Channel::ApparentWindSpeed])
         .map(|(low, high)| format!("{} to {}", with_knots(low, 1), with_knots(high, 1)));
+    // A recorded depth changes along the track and says more than a stated one.
     let depth = channel_range(trials, &[Channel::Depth]).or_else(|| stated_depth(trials));
     let depth = depth.map(|(low, high)| match high - low < 0.05 {
         true => format!("{} m", format_fixed(low, 1)),
@@ -173,6 +176,7 @@ fn criteria_table(imo: &[CriterionComparison<'_>], lpp_m: Option<f64>) -> Report
 }
 
 fn criterion_row(one: &CriterionComparison<'_>, lpp_m: Option<f64>) -> TableRow {
+    // Criteria are in ship lengths, people measure in metres.
     let metres = |value: f64| match (one.unit, lpp_m) {
         ("L", Some(length)) => format!(" ({} m)", format_stated((value * length).round(), 5)),
         _ => String::new(),

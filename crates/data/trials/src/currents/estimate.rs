@@ -4,17 +4,22 @@ use nalgebra::{DMatrix, DVector};
 use sistership_model::manifest::VelocityFrame;
 use sistership_model::trial::{Channel, Trial};
 
+use super::current_estimate::{CurrentEstimate, LARGEST_ERROR};
 use super::steady_turn::steady_turn;
-use super::{CurrentEstimate, LARGEST_ERROR};
 
 /// Number of blocks whose means are compared: errors of neighbouring samples are not independent.
 const BLOCKS: usize = 12;
+/// Longest trial of which a steady current is stated, s.
+const LONGEST_S: f64 = 3600.0;
 
 /// Returns the current of a trial and the evidence; `None` if the trial does not determine it.
 pub(super) fn estimate_current(trial: &Trial) -> Option<(CurrentEstimate, String)> {
-    if trial.velocity == VelocityFrame::Water {
+    // Velocities through the water have no current in them. A tidal stream changes within an hour,
+    // so that one value does not describe a longer record.
+    if trial.velocity == VelocityFrame::Water || duration_s(trial) > LONGEST_S {
         return None;
     }
+    // Two logs tell the current directly; a turn tells it by its drift.
     let usable = |one: &CurrentEstimate| one.error < LARGEST_ERROR;
     if let Some(estimate) = by_log(trial).filter(usable) {
         let why = "speeds over the ground less those through the water";
@@ -28,6 +33,11 @@ pub(super) fn estimate_current(trial: &Trial) -> Option<(CurrentEstimate, String
         estimate.error
     );
     Some((estimate, why))
+}
+
+fn duration_s(trial: &Trial) -> f64 {
+    let ends = trial.t_s.first().zip(trial.t_s.last());
+    ends.map_or(0.0, |(first, last)| last - first)
 }
 
 /// Returns the current by logs through the water and over the ground: along the heading, and
@@ -64,6 +74,7 @@ fn by_turn(trial: &Trial, samples: &std::ops::Range<usize>) -> Option<CurrentEst
         // Scaled to the order of 1, so that the equations are well conditioned.
         let time = 2.0 * (t_s[k] - first) / (last - first) - 1.0;
         let rate = r[k] / mean_rate - 1.0;
+        // Velocities of the ship turn with its heading and change slowly; a current does neither.
         let north = [cos, cos * time, cos * rate, -sin, -sin * time, -sin * rate, 1.0, 0.0];
         let east = [sin, sin * time, sin * rate, cos, cos * time, cos * rate, 0.0, 1.0];
         equations.add_row(&north, u[k] * cos - v[k] * sin);
@@ -95,6 +106,7 @@ impl CurrentEquations {
     /// the scatter of the means of blocks (ITTC 7.5-02-07-03.2 on uncertainty by batch means).
     fn solve(&self, at: [usize; 2]) -> Option<CurrentEstimate> {
         let count = self.values.len();
+        // Fewer rows leave too few residuals in a block for a standard error.
         if count < 4 * self.unknowns {
             return None;
         }

@@ -1,5 +1,6 @@
 //! Steady currents: estimated from recorded trials, stated in a manifest, and subtracted on reading.
 
+mod current_estimate;
 mod estimate;
 mod steady_turn;
 mod subtract;
@@ -8,6 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sistership_model::trial::Trial;
 
+use current_estimate::CurrentEstimate;
 pub(crate) use subtract::subtract_current;
 
 /// Velocity of the water over the ground during a trial.
@@ -33,31 +35,8 @@ impl TrialCurrent {
     }
 }
 
-/// Components of a current with their largest standard error, m/s.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct CurrentEstimate {
-    north: f64,
-    east: f64,
-    error: f64,
-}
-
-/// Least current that is stated, as a multiple of its standard error and in m/s.
-const LEAST_ERRORS: f64 = 4.0;
-const LEAST_M_S: f64 = 0.05;
-/// Largest standard error of an estimate that is used, m/s.
-const LARGEST_ERROR: f64 = 0.05;
 /// Largest difference of two trials of one current, m/s.
 const ALIKE_M_S: f64 = 0.1;
-
-impl CurrentEstimate {
-    fn speed(&self) -> f64 {
-        self.north.hypot(self.east)
-    }
-
-    fn is_stated(&self) -> bool {
-        self.speed() > LEAST_M_S.max(LEAST_ERRORS * self.error)
-    }
-}
 
 /// Returns the current of each trial that shows one. Trials without evidence of their own, such as
 /// zigzags, take that of the others if these agree.
@@ -84,6 +63,7 @@ pub fn estimate_currents(trials: &[Trial]) -> Vec<TrialCurrent> {
 
 /// Returns the mean of estimates weighted by their errors, if all are alike.
 fn common_current(known: &[CurrentEstimate]) -> Option<CurrentEstimate> {
+    // Inverse variances, so that a short turn counts less than a long one.
     let weights: f64 = known.iter().map(|one| one.error.powi(-2)).sum();
     let mean = |of: fn(&CurrentEstimate) -> f64| {
         known.iter().map(|one| of(one) * one.error.powi(-2)).sum::<f64>() / weights
@@ -94,6 +74,7 @@ fn common_current(known: &[CurrentEstimate]) -> Option<CurrentEstimate> {
         error: weights.powf(-0.5),
     };
     let distance = |one: &CurrentEstimate| (one.north - common.north).hypot(one.east - common.east);
+    // Trials that disagree were in different water: none of them speaks for the others.
     let alike = known.iter().all(|one| distance(one) < ALIKE_M_S);
     (alike && !known.is_empty()).then_some(common)
 }

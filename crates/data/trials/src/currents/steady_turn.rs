@@ -36,10 +36,12 @@ pub(super) fn steady_turn(trial: &Trial) -> Option<SteadyTurn> {
 fn even_runs(r: &[f64], segment: Range<usize>) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for side in [1.0, -1.0] {
+        // The approach and the pull-out are in the record too, so that a mean would be too small.
         let usual = upper_quartile(r[segment.clone()].iter().map(|r| side * r));
         let turns = |k: &usize| usual > 0.0 && side * r[*k] > (1.0 - UNEVEN) * usual;
         for k in segment.clone().filter(turns) {
             match runs.last_mut().filter(|last| last.end == k) {
+                // The next sample of the same run.
                 Some(last) => last.end = k + 1,
                 None => runs.push(k..k + 1),
             }

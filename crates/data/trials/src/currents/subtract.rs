@@ -22,6 +22,7 @@ pub(crate) fn subtract_current(
     };
     let (north, east) = (current.north_m_s, current.east_m_s);
     let water = trial.velocity == VelocityFrame::Water;
+    // A channel that was not recorded stays so.
     let mut subtract = |channel: Channel, amount: &dyn Fn(usize) -> f64| {
         let values = trial.channels.get_mut(&channel).into_iter().flatten();
         values.enumerate().for_each(|(k, value)| *value -= amount(k));
@@ -31,6 +32,7 @@ pub(crate) fn subtract_current(
         subtract(Channel::U, &|k| north * psi[k].cos() + east * psi[k].sin());
         subtract(Channel::V, &|k| east * psi[k].cos() - north * psi[k].sin());
     }
+    // Positions keep their first value: what the water has carried is counted from there.
     let t_s = std::mem::take(&mut recording.trial.t_s);
     let start = t_s.first().copied().unwrap_or_default();
     for (channel, speed) in [(Channel::X, north), (Channel::Y, east)] {

@@ -25,6 +25,7 @@ impl FirstSteps {
     /// Returns an error if the store fails.
     pub async fn find(archive: &Archive, ships: &[&str]) -> Result<Option<Self>> {
         let Some(ship) = ships.first() else { return Ok(Some(Self::default())) };
+        // Whoever has a fleet knows the way.
         if ships.len() > FEW_SHIPS {
             return Ok(None);
         }
@@ -44,6 +45,7 @@ impl FirstSteps {
     pub fn steps(&self) -> [FirstStep; 3] {
         let at = |place: &str| self.ship.as_ref().map(|ship| format!("/ships/{ship}{place}"));
         let done = [self.ship.is_some(), self.has_trials, self.has_model];
+        // Steps can be done in another order: the first gap is next.
         let next = done.iter().position(|done| !done);
         let state = |index: usize| match (done[index], next == Some(index)) {
             (true, _) => "done",

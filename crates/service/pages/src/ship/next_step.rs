@@ -66,6 +66,7 @@ impl NextStep {
         let newest = of.versions.first().map(|version| version.number);
         let (condition, champion) = (of.condition, of.condition.version);
         match (condition.model, &condition.with_effects, champion) {
+            // A model that does not hold comes before everything else.
             (ModelValidity::DoesNotHold, Some(made), _) => Self::open_place(
                 format!("Version {} has the missing effects.", made.number),
                 &format!("Look at version {}", made.number),
@@ -83,6 +84,7 @@ impl NextStep {
                     format!("/compare?v={name}/{champion}&v={name}/{}", newest.unwrap_or(champion)),
                 )
             }
+            // Trials may be there that the champion has not seen.
             (ModelValidity::Unknown, _, Some(champion)) => Self {
                 text: format!("Version {champion} was not diagnosed since it came into use."),
                 button: "Diagnose it".to_owned(),
@@ -93,6 +95,7 @@ impl NextStep {
     }
 
     fn report_step(of: &ShipSituation<'_>, champion: i64) -> Self {
+        // The report may have been removed, or never made.
         let own = of.versions.iter().find(|version| version.number == champion);
         match own.and_then(|version| version.report.as_ref()) {
             Some(report) => Self::open_place(

@@ -36,6 +36,7 @@ impl RangeRequest {
             fields.optional_number(name)?.ok_or_else(missing)
         };
         let trial = usize::try_from(fields.whole_number("range_trial")?).ok();
+        // The index is from a form, which may be older than the proposal.
         let trial = trial.filter(|at| *at < of.manifest.manifest.trials.len());
         let trial = trial.ok_or_else(|| {
             PageError::invalid_field("range_trial", "is not a file of this upload")
@@ -74,6 +75,7 @@ impl RangeRequest {
             });
             return Ok(());
         }
+        // Whether anything changed is what tells a restored range from one that excluded nothing.
         let before = exclude.clone();
         let is_meant = |one: &Exclusion| {
             one.file == file && (self.channel.is_none() || one.channel == self.channel)
