@@ -35,9 +35,13 @@ pub(super) enum PriorMeasure {
 
 impl PriorMeasure {
     /// Returns the measure for a source of the law that is fitted. A source that cannot be
-    /// simulated has no envelope.
+    /// simulated, and a law of several actuators, have no envelope.
     pub fn for_own_law(source: &Model, law: &Law, trials: &[&Trial], in_parts: bool) -> Self {
-        let envelope = in_parts.then(|| OperatingEnvelope::new(source, law, trials).ok()).flatten();
+        // The states of an envelope have one helm and one number of revolutions, which do not tell
+        // the inputs of several actuators.
+        let has_states = in_parts && law.helm_inputs().next().is_none();
+        let envelope =
+            has_states.then(|| OperatingEnvelope::new(source, law, trials).ok()).flatten();
         envelope.map_or(Self::Trials, Self::Envelope)
     }
 

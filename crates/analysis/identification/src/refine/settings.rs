@@ -125,7 +125,7 @@ pub struct TuningRange {
 pub struct RefinementSettings {
     /// Revision of the algorithm. Versions keep it, so that another revision is never taken for the
     /// one that made them.
-    #[schemars(range(min = 2, max = 2))]
+    #[schemars(range(min = ALGORITHM_REVISION, max = ALGORITHM_REVISION))]
     pub algorithm_revision: u32,
     /// The estimator.
     pub method: EstimationMethod,

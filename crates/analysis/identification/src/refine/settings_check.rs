@@ -111,7 +111,7 @@ pub(super) fn combined_error(faults: Vec<SettingFault>) -> RefineError {
 }
 
 /// Refusal of settings for another revision of the algorithm.
-const OTHER_REVISION: &str = "must be 1, the only revision that this program supports; omit it, \
+const OTHER_REVISION: &str = "must be the one revision that this program supports; omit it, \
                               or use the version of sistership that made these settings";
 
 /// A rule: field, allowed values, and true if it is kept.

@@ -119,7 +119,10 @@ async fn people_sign_in_and_out(database: TestDatabase) {
     let eve = harness.browser("eve").await;
     let (status, page) = eve.looks("/audit?actor=ann").await;
     assert_eq!(status, StatusCode::OK);
-    assert!(page.contains("ship.tag") && page.contains("session.begin"), "{page}");
+    assert!(
+        page.contains("tagged the ship mariner") && page.contains("began the session"),
+        "{page}"
+    );
     let (status, _) = ann.sends("/account", "/sign-out", &[]).await;
     assert_eq!(status, StatusCode::SEE_OTHER);
     assert_eq!(ann.looks("/").await.0, StatusCode::SEE_OTHER, "to sign in again");

@@ -100,7 +100,7 @@ mod tests {
     fn proposed() -> (UploadProposal, TrialWithRows) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.csv");
-        std::fs::write(&path, "t_s,psi_deg\n0,1\n1,2\n2,3\n3,4\n").unwrap();
+        std::fs::write(&path, "t_s,psi_deg\n0,50\n1,50.7\n2,51.4\n3,52.1\n").unwrap();
         let proposal = propose_manifest("kcs", &[&path]).unwrap();
         let (guesses, manifest) = (proposal.guesses, proposal.manifest);
         let of = UploadProposal {
