@@ -46,8 +46,12 @@ async fn read(response: Response, path: &str) -> String {
 }
 
 fn without_plots(text: &str) -> String {
-    let parts = text.split("<svg");
-    parts.map(|part| part.rsplit("</svg>").next().unwrap_or(part)).collect()
+    let without = |text: &str, from: &str, to: &str| -> String {
+        let parts = text.split(from);
+        parts.map(|part| part.rsplit(to).next().unwrap_or(part)).collect()
+    };
+    // The values of the drawn lines are a part of the plots.
+    without(&without(text, "<svg", "</svg>"), "<script type=\"application/json\"", "</script>")
 }
 
 /// The token that the forms of a page send.

@@ -17,7 +17,7 @@ use sistership_simulation::state::{RECORDED_CHANNELS, StateVector, Trajectory, a
 use super::blocks::{RegressionBlock, RegressionBlocks};
 use super::outcome::RefineError;
 use super::rows::{RegressionTable, known_tables};
-use super::thresholds::{SOURCE, SPEED_SCALES};
+use super::thresholds::SOURCE;
 use sistership_numerics::{RegressionMoments, merge_trials};
 use sistership_priors::transfer::prepare_ship;
 
@@ -146,19 +146,12 @@ impl OperatingEnvelope {
             &STANDARD_MANOEUVRES.map(|manoeuvre| (manoeuvre, &[][..])),
             &ManoeuvreSettings::default(),
         );
-        let sailed: Vec<Trajectory> =
-            sailed.into_iter().flatten().map(|sailed| sailed.track).collect();
-        let at_scale = |scale: f64| {
-            let group = |track: &Trajectory| {
-                asked.sample_group(None, scaled_points(asked.track_points(track), scale))
-            };
-            sailed.iter().filter_map(group).collect::<Vec<SampleGroup>>()
-        };
-        let recorded: Vec<SampleGroup> = recorded.collect();
-        let [sailed, slower] = match cover_slower(trials) {
-            true => [at_scale(1.0), Vec::new()],
-            false => SPEED_SCALES.map(at_scale),
-        };
+        let sailed = sailed
+            .into_iter()
+            .flatten()
+            .filter_map(|sailed| asked.sample_group(None, asked.track_points(&sailed.track)));
+        let (recorded, sailed): (Vec<SampleGroup>, Vec<SampleGroup>) =
+            (recorded.collect(), sailed.collect());
         if recorded.is_empty() && sailed.is_empty() {
             return Err(RefineError::Data(format!(
                 "`{}` completes neither the standard manoeuvres nor the trials; choose another \
@@ -166,9 +159,9 @@ impl OperatingEnvelope {
                 source.name
             )));
         }
-        // Trials and manoeuvres at each speed are weighted separately: each counts as
-        // `SOURCE.samples` samples.
-        let groups = [recorded, sailed, slower].into_iter().flat_map(with_equal_weight).collect();
+        // Trials and manoeuvres are weighted separately: each of the two counts as `SOURCE.samples`
+        // samples.
+        let groups = [recorded, sailed].into_iter().flat_map(with_equal_weight).collect();
         Ok(Self {
             source: source.name.clone(),
             law: law.name.clone(),
@@ -415,25 +408,6 @@ impl<'a> SourceResponse<'a> {
             ..Trial::default()
         }
     }
-}
-
-/// True if the trials themselves reach the revolutions of the slowest of [`SPEED_SCALES`].
-fn cover_slower(trials: &[&Trial]) -> bool {
-    let recorded = trials.iter().filter_map(|trial| trial.channel(Channel::N)).flatten();
-    let [least, most] = recorded.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], n_rps| {
-        [least.min(n_rps.abs()), most.max(n_rps.abs())]
-    });
-    SPEED_SCALES.iter().all(|scale| least <= scale * most)
-}
-
-/// The points at another speed of the ship and its propeller, with the same angles: the ratios of
-/// drift, turning and advance, on which nondimensional forces depend, stay.
-fn scaled_points(mut points: Vec<OperatingPoint>, scale: f64) -> Vec<OperatingPoint> {
-    for (state, n_rps) in &mut points {
-        [at::U, at::V, at::P, at::R].into_iter().for_each(|place| state[place] *= scale);
-        *n_rps *= scale;
-    }
-    points
 }
 
 /// Speed and direction of the wind that makes the apparent wind zero. The source's aerodynamic

@@ -168,12 +168,6 @@ pub(super) const SOURCE: SourceThresholds = SourceThresholds {
     ridges: [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8],
 };
 
-/// Speeds and revolutions, by those of the approach, at which sources are asked and models are
-/// compared and checked, dimensionless. Trials at one speed do not tell a force in its square from
-/// one in another power. Source: one half is between half and slow ahead, at which harbours are
-/// entered; without it and with it in docs/evidence/foreign_ships.md.
-pub(super) const SPEED_SCALES: [f64; 2] = [1.0, 0.5];
-
 /// Constants of the rudder orders that no trial had, under which the models of folds are compared.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HelmThresholds {

@@ -13,7 +13,7 @@ pub(super) struct CurrentEstimate {
 
 /// Least current that is stated, as a multiple of its standard error and in m/s.
 const LEAST_ERRORS: f64 = 4.0;
-const LEAST_M_S: f64 = 0.05;
+const LEAST_M_S: f64 = 0.1;
 /// Largest standard error of an estimate that is used, m/s.
 pub(super) const LARGEST_ERROR: f64 = 0.05;
 
