@@ -347,7 +347,8 @@ impl EffectChoice {
         }
         let held_out = |judged: &JudgedHypothesis| judged.held_out_log_probability(&search.fixed);
         let gain = held_out(found)? - held_out(self.best_hypothesis())?;
-        Ok((gain <= 0.0).then_some(Refusal::HeldOut { gain }))
+        // A gain that is not a number is none.
+        Ok((gain.is_nan() || gain <= 0.0).then_some(Refusal::HeldOut { gain }))
     }
 
     /// Reason for which the last effect of a hypothesis is not evident: a form that does not agree
