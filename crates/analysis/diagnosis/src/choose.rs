@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::DiagnosisInputs;
 use super::discount::is_external;
+use super::effect_size::has_no_size;
 use super::evidence::DiscrepancyFactor;
 use super::filtered_base::FilteredBase;
 use super::hypothesis::JudgedHypothesis;
@@ -352,7 +353,7 @@ impl EffectChoice {
     }
 
     /// Reason for which the last effect of a hypothesis is not evident: a form that does not agree
-    /// with published coefficients, or evidence that is not sufficient.
+    /// with published coefficients, no size, or evidence that is not sufficient.
     fn refuse_last_effect(
         &self,
         search: &HypothesisSearch<'_>,
@@ -361,27 +362,30 @@ impl EffectChoice {
         of_last: f64,
     ) -> Result<Option<Refusal>, RefineError> {
         let last = found.candidates.len() - 1;
-        let other = found.candidates.iter().find(|candidate| !is_as_published(candidate));
-        if let Some(other) = other {
-            return Ok(Some(Refusal::NotAsPublished(other.effect.clone())));
+        let of_form = (0..=last).find_map(|place| refuse_form(found, place));
+        let of_size = || refuse_size(found, last);
+        if let Some(refusal) = of_form.or_else(of_size) {
+            return Ok(Some(refusal));
         }
         let allowance = self.misfit_allowance(found, &all_evidence(search, found)?, last);
         Ok(refuse_evidence(found, (last, of_last), settings.least_evidence, allowance))
     }
 
-    /// Index of an effect, of those judged together, that no longer agrees with its published form,
-    /// or of the weakest one, if the evidence for it is not sufficient; with the reason.
+    /// Index of an effect, of those judged together, that no longer agrees with its published form or
+    /// has no size, or of the weakest one, if the evidence for it is not sufficient; with the reason.
     fn redundant_effect(
         &self,
         search: &HypothesisSearch<'_>,
         best: &JudgedHypothesis,
         settings: &Settings,
     ) -> Result<Option<(usize, Refusal)>, RefineError> {
-        // An effect whose form does not agree with published ones is removed first.
-        let other = best.candidates.iter().position(|candidate| !is_as_published(candidate));
-        if let Some(place) = other {
-            let effect = best.candidates[place].effect.clone();
-            return Ok(Some((place, Refusal::NotAsPublished(effect))));
+        // An effect that its parameters exclude is removed first.
+        let mut places = 0..best.candidates.len();
+        let by_parameters =
+            |place: usize| refuse_form(best, place).or_else(|| refuse_size(best, place));
+        let refused = places.find_map(|place| Some((place, by_parameters(place)?)));
+        if refused.is_some() {
+            return Ok(refused);
         }
         let evidence = all_evidence(search, best)?;
         let weakest = (0..evidence.len()).min_by(|&a, &b| evidence[a].total_cmp(&evidence[b]));
@@ -434,6 +438,17 @@ fn move_better_fits_forward(
             accepted[..=place].rotate_right(1);
         }
     }
+}
+
+/// Reason for which the form of the effect at a place does not agree with published ones.
+fn refuse_form(judged: &JudgedHypothesis, place: usize) -> Option<Refusal> {
+    let candidate = &judged.candidates[place];
+    (!is_as_published(candidate)).then(|| Refusal::NotAsPublished(candidate.effect.clone()))
+}
+
+/// Reason for which the size of the effect at a place is none.
+fn refuse_size(judged: &JudgedHypothesis, place: usize) -> Option<Refusal> {
+    has_no_size(judged, place).then(|| Refusal::NoSize(judged.candidates[place].effect.clone()))
 }
 
 /// Reason for which the evidence for the effect at a place is not above the least evidence, or the

@@ -41,7 +41,7 @@ pub(super) struct FilteredLevel {
     coefficients: Mutex<Option<WhitenedCoefficients>>,
 }
 
-/// Whitened columns of the coefficients, by trial and part: columns by readings.
+/// Whitened residual and columns of the coefficients, by trial and part: columns by readings.
 type WhitenedCoefficients = Arc<Vec<Vec<DMatrix<f64>>>>;
 
 impl FilteredLevel {
@@ -132,7 +132,7 @@ impl<'a> FilteredBase<'a> {
         let of_part = |part: &LinearisedPart| {
             // Only the coefficients pass the filter: the candidates' columns are many more.
             let rows = whitened_rows(&self.workspace, (part, self.coefficients), &at.discrepancies);
-            Ok(rows?.0.remove_row(0))
+            Ok(rows?.0)
         };
         let one = |parts: &Vec<LinearisedPart>| {
             parts.iter().map(of_part).collect::<Result<Vec<_>, RefineError>>()
@@ -295,8 +295,8 @@ impl LinearisedHypothesis<'_, '_> {
             for (piece, gram) in pieces.iter_mut().enumerate() {
                 // Readings are divided by their number, so that pieces have nearly equal durations.
                 let (from, to) = (piece * readings / count, (piece + 1) * readings / count);
-                let (known, own) =
-                    (coefficients.columns(from, to - from), own.rows(from, to - from));
+                let known = coefficients.view((1, from), (self.base.coefficients, to - from));
+                let own = own.rows(from, to - from);
                 let square = GramMatrix::from_columns(&known.into_owned(), 0.0).products;
                 gram.products.view_mut((1, 1), square.shape()).add_assign(&square);
                 add_products(gram, &(known * own), &own.tr_mul(&own));
@@ -317,7 +317,7 @@ impl LinearisedHypothesis<'_, '_> {
         gram.products.view_mut((1, 1), (c, c)).copy_from(&all.products.view((1, 1), (c, c)));
         for (part, coefficients) in parts.iter().zip(known) {
             let (rows, log_variance) = self.own_rows(part, discrepancies)?;
-            add_products(&mut gram, &(coefficients * &rows), &rows.tr_mul(&rows));
+            add_products(&mut gram, &(coefficients.rows(1, c) * &rows), &rows.tr_mul(&rows));
             gram.log_variance += log_variance;
             gram.count += rows.nrows();
         }

@@ -12,6 +12,7 @@ mod corrected;
 mod covariance;
 mod dependence;
 mod discount;
+mod effect_size;
 mod evidence;
 mod expected;
 mod filtered_base;

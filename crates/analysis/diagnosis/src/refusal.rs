@@ -7,6 +7,8 @@ use std::fmt;
 pub(super) enum Refusal {
     /// The coefficients of a form are far from all published ones.
     NotAsPublished(String),
+    /// The size of an effect is zero within its error.
+    NoSize(String),
     /// The evidence for an effect is below the least.
     LittleEvidence { effect: String, evidence: f64, least: f64 },
     /// Differences between published forms of the other effects may explain as much.
@@ -29,6 +31,7 @@ impl fmt::Display for Refusal {
             Self::NotAsPublished(effect) => {
                 write!(f, "the coefficients of `{effect}` would be far from all published ones")
             }
+            Self::NoSize(effect) => write!(f, "the size of `{effect}` is zero within its error"),
             Self::LittleEvidence { effect, evidence, least } => write!(
                 f,
                 "the evidence for `{effect}` given the others is {evidence:.1}, after the discount \

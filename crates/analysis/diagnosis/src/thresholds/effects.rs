@@ -37,6 +37,9 @@ pub(crate) struct EffectThresholds {
     /// chi-squares by their degrees of freedom were at most 1.4 where the effect was present, and
     /// 4.5 to 15 where a force of no effect was attributed to it; 22.5 of 6 is this limit.
     pub shape_quantile: f64,
+    /// `z_0`: least size of an effect that is named, by its standard error, dimensionless. Source:
+    /// derived: the half width of an interval of 95 % that does not contain zero.
+    pub least_size: f64,
     /// `h`: step of numerical derivatives of reported values, by the parameter's standard error,
     /// dimensionless. Source: derived: central differences err by its square.
     pub report_step: f64,
@@ -52,6 +55,7 @@ pub(super) const EFFECT: EffectThresholds = EffectThresholds {
     placebo_shifts: [0.25, 0.5, 0.75],
     least_variation: 0.15,
     shape_quantile: 3.09,
+    least_size: 2.0,
     report_step: 1e-3,
 };
 
