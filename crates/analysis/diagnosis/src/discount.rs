@@ -14,12 +14,7 @@ pub(super) fn information_discount(
     trials: usize,
 ) -> f64 {
     let Some(known) = uncertainty else { return THRESHOLDS.effect.unknown_discount };
-    let of = |level: &FalseAlarmLevel| {
-        // The improvement by one common size of the effect grows with the number of trials.
-        let together =
-            1.0 + (level.together - 1.0) * trials as f64 / known.trials.len().max(1) as f64;
-        level.each.max(together).max(1.0)
-    };
+    let of = |level: &FalseAlarmLevel| level_discount(known, level, trials);
     // An external influence was present on clean trials too, if it is recorded: it is judged by
     // records of other times instead, and by the levels of other forces and flows there, as a law
     // that cannot follow the ship has them; errors of instruments are excluded.
@@ -33,13 +28,24 @@ pub(super) fn information_discount(
         .filter(|_| !is_external(candidate))
         .map(of);
     own.unwrap_or_else(|| {
-        let levels = known.false_alarm_levels.iter().filter(|(key, _)| !of_instruments(key));
+        let is_effect = |key: &String| !of_instruments(key) && !key.starts_with(PATTERN_KEYS);
+        let levels = known.false_alarm_levels.iter().filter(|(key, _)| is_effect(key));
         // The median of the other levels.
         let mut all: Vec<f64> = levels.map(|(_, level)| of(level)).collect();
         all.sort_by(f64::total_cmp);
         all.get(all.len() / 2).copied().unwrap_or(1.0)
     })
 }
+
+/// Divisor of information by a false-alarm level on the clean trials of a model.
+pub(super) fn level_discount(known: &Uncertainty, level: &FalseAlarmLevel, trials: usize) -> f64 {
+    // The improvement by one common size grows with the number of trials.
+    let together = 1.0 + (level.together - 1.0) * trials as f64 / known.trials.len().max(1) as f64;
+    level.each.max(together).max(1.0)
+}
+
+/// Start of the keys of the false-alarm levels of patterns of the remainder.
+pub(super) const PATTERN_KEYS: &str = "remainder/";
 
 /// Channels of external influences, which do not depend on the ship's motion alone.
 pub(super) const EXTERNAL_CHANNELS: [Channel; 4] =

@@ -12,7 +12,9 @@ use super::confounded::EffectResponses;
 use super::covariance::effect_covariance;
 use super::hypothesis::JudgedHypothesis;
 use super::next_trial::propose_next_trial;
-use super::outcome::{HypothesisReport, MissingEffect, NextTrial, ValueWithError};
+use super::outcome::{
+    HypothesisReport, MissingEffect, NextTrial, RemainderPattern, ValueWithError,
+};
 use super::search::HypothesisSearch;
 use super::values::{form_target, own_covariance, values_with_errors};
 use sistership_identification::refine::RefineError;
@@ -173,6 +175,24 @@ pub(super) fn describe_method(request: &DiagnosisInputs<'_>, refit: Option<&str>
         ),
         None => fitted,
     }
+}
+
+/// Remark on a pattern of the remainder.
+pub(super) fn pattern_remark(pattern: &RemainderPattern) -> String {
+    let variable = match (pattern.variable.as_str(), pattern.period_s) {
+        ("psi", _) => "depends on the heading".to_owned(),
+        ("t", _) => "depends on the time since the start of a trial".to_owned(),
+        ("u", _) => "depends on the speed".to_owned(),
+        ("delta", _) => "depends on the rudder angle".to_owned(),
+        ("n", _) => "depends on the revolutions".to_owned(),
+        (_, Some(period_s)) => format!("oscillates with a period of about {period_s:.0} s"),
+        (other, None) => format!("depends on `{other}`"),
+    };
+    format!(
+        "the residual of the acceleration `{}` {variable} (evidence {:.1}), although no single \
+         segment of a trial exceeds the noise",
+        pattern.channel, pattern.evidence
+    )
 }
 
 /// Remarks on effects that were refused, and on the resulting model.

@@ -229,6 +229,12 @@ impl<'a> LinearisedTrials<'a> {
         }
     }
 
+    /// Highest recorded revolutions, 1/s; 0 where none were recorded.
+    pub fn highest_revolutions(&self) -> f64 {
+        let recorded = self.trials.iter().filter_map(|trial| trial.channel(Channel::N));
+        recorded.flatten().fold(0.0, |most, n| n.abs().max(most))
+    }
+
     pub fn motion_scales(&self) -> MotionScales {
         let rate = self.speed_m_s / self.lpp_m;
         let of = |axis: &Axis| {

@@ -45,3 +45,10 @@ pub(super) fn is_as_published(candidate: &EffectCandidate) -> bool {
 pub(super) fn misfit_share(candidate: &EffectCandidate) -> f64 {
     (THRESHOLDS.effect.misfits * form_misfit(candidate)).powi(2)
 }
+
+/// Returns true if the errors of a candidate's form have columns: it acts on accelerations, and is
+/// present.
+pub(super) fn has_form_errors(candidate: &EffectCandidate) -> bool {
+    form_target(candidate) != ActsOn::Measurement
+        && candidate.parameter_changes().iter().any(|change| *change != 0.0)
+}

@@ -31,6 +31,9 @@ pub struct Diagnosis {
     pub effects: Vec<MissingEffect>,
     /// Segments that no effect explains.
     pub unexplained: Vec<UnexplainedSegment>,
+    /// Patterns of the remainder where no segment stands out by itself, the most evident first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub patterns: Vec<RemainderPattern>,
     /// Changes in time that explain the remainder of a trial, the most evident first: they belong
     /// to one day, and no model carries them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -184,6 +187,23 @@ pub struct RemainderOrigin {
     pub first_in: usize,
     /// Number of trials that were examined.
     pub trials: usize,
+}
+
+/// Dependence of the remainder of an acceleration over all trials, where no segment stands out by
+/// itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RemainderPattern {
+    /// `u`, `v`, `r` or `p`.
+    pub channel: String,
+    /// Channel on which it depends: `psi`, `u`, `delta`, `n`; `t` for the time of a trial, `period`
+    /// where it oscillates.
+    pub variable: String,
+    /// The period, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period_s: Option<f64>,
+    /// Natural logarithm of the ratio of the trials' probability with it to that without, less that
+    /// of the number of patterns that were tested, discounted by its level on clean trials.
+    pub evidence: f64,
 }
 
 /// Kind of an origin.

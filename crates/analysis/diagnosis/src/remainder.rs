@@ -65,6 +65,31 @@ pub(super) fn unexplained_in_trial(
     Ok(sums.into_iter().flat_map(of).collect())
 }
 
+/// Returns a whole trial as the segment of a channel; none where the channel was not recorded.
+///
+/// # Errors
+/// Returns an error if the noise of a channel is unknown.
+pub(super) fn trial_remainder(
+    (workspace, place): (&LinearisedTrials<'_>, usize),
+    discrepancies: &AxisDiscrepancies,
+    parameters: &[f64],
+    channel: &str,
+) -> Result<Option<UnexplainedSegment>, RefineError> {
+    let parts = &workspace.linearised_parts()[place];
+    let sums = channel_sums(workspace, parts, discrepancies, (parameters, None))?;
+    let own = sums.iter().filter(|(known, _)| known.name() == channel);
+    let all: Vec<f64> = own.flat_map(|(_, sums)| sums.sums.iter().copied()).collect();
+    let times = || parts.iter().flat_map(|part| part.t_s.iter().copied());
+    let ends = times().next().zip(times().next_back()).filter(|_| !all.is_empty());
+    Ok(ends.map(|(from_s, to_s)| UnexplainedSegment {
+        channel: channel.to_owned(),
+        rms_over_noise: root_mean_square(&all),
+        trial: workspace.trials[place].name.clone(),
+        from_s,
+        to_s,
+    }))
+}
+
 /// Returns the largest remainder of any segment of a trial, by channel.
 ///
 /// # Errors

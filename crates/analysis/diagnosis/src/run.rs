@@ -6,8 +6,10 @@ use super::DiagnosisInputs;
 use super::choose::{ConvergedChoice, choose_effects};
 use super::dependence::remainder_dependence;
 use super::findings::{
-    collect_remarks, describe_method, found_with_confounded, refitted_parameters, report_hypotheses,
+    collect_remarks, describe_method, found_with_confounded, pattern_remark, refitted_parameters,
+    report_hypotheses,
 };
+use super::hidden_patterns::{pattern_origin, pattern_segments, remainder_patterns};
 use super::judge::{SimulatedErrors, simulate_errors};
 use super::limits::{excluding, undetectable_effects};
 use super::linearised_trials::LinearisedTrials;
@@ -140,9 +142,25 @@ fn build_diagnosis(
     let limits = excluding(choice.limits.clone(), &names);
     let FittedModel { errors, taken } = fitted;
     let residuals = residual_series(first, search, best)?;
-    let origins = remainder_origins(&settled, &remaining, request.settings.least_evidence)?;
+    let least_evidence = request.settings.least_evidence;
+    // Where a segment stands out already, what it depends on is found by its residual.
+    let patterns = match remaining.is_empty() {
+        true => remainder_patterns(&settled, least_evidence)?,
+        false => Vec::new(),
+    };
+    let (remaining, origins) = match patterns.first() {
+        Some(first) => {
+            (pattern_segments(&settled, first)?, vec![pattern_origin(first, request.trials.len())])
+        }
+        None => {
+            let origins = remainder_origins(&settled, &remaining, least_evidence)?;
+            (remaining, origins)
+        }
+    };
     Ok(Diagnosis {
         verdict: derive_verdict(&remaining, &named.found),
+        remarks: named.remarks.into_iter().chain(patterns.first().map(pattern_remark)).collect(),
+        patterns,
         changes,
         depends_on: remainder_dependence(first.trials, &residuals, (&remaining, &origins)),
         origins,
@@ -164,7 +182,6 @@ fn build_diagnosis(
         discrepancies: discrepancy_levels(search, &base.workspace, &choice.alone, best),
         model: named.model,
         settings: request.settings.clone(),
-        remarks: named.remarks,
     })
 }
 

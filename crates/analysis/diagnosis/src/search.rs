@@ -141,6 +141,21 @@ impl<'a> HypothesisSearch<'a> {
         judged: &JudgedHypothesis,
         place: usize,
     ) -> Result<f64, RefineError> {
+        let discount = self.candidate_discount(&judged.candidates[place]);
+        self.discounted_evidence(judged, place, discount)
+    }
+
+    /// Returns the evidence for one of the effects judged together, as
+    /// [`HypothesisSearch::effect_evidence`], with the information on it divided by `discount`.
+    ///
+    /// # Errors
+    /// Returns an error if the information is not positive.
+    pub fn discounted_evidence(
+        &self,
+        judged: &JudgedHypothesis,
+        place: usize,
+        discount: f64,
+    ) -> Result<f64, RefineError> {
         let candidate = &judged.candidates[place];
         let sizes: Vec<usize> =
             judged.linearised_at.iter().map(|linearised_at| linearised_at.at.len()).collect();
@@ -159,7 +174,7 @@ impl<'a> HypothesisSearch<'a> {
             MarginalInformation::new(&GramMatrix::sum_parts(&judged.grams, width), &self.fixed)?
                 .marginalise_others(&others, &of(&others), &own)
                 .ok_or_else(not_positive_error)?;
-        let reduced = reduced.divide_by(self.candidate_discount(candidate));
+        let reduced = reduced.divide_by(discount);
         let estimate = reduced
             .estimate_parameters(&(0..own.len()).collect::<Vec<_>>(), &of(&own))
             .ok_or_else(not_positive_error)?;

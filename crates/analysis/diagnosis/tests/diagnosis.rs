@@ -26,6 +26,15 @@ fn trials(zoo: &Zoo, hidden: Option<AppliedEffect>) -> Vec<Trial> {
 }
 
 fn recorded(zoo: &Zoo, hidden: Option<AppliedEffect>, noise: [f64; 6]) -> Vec<Trial> {
+    recorded_with_seed(zoo, hidden, noise, 7)
+}
+
+fn recorded_with_seed(
+    zoo: &Zoo,
+    hidden: Option<AppliedEffect>,
+    noise: [f64; 6],
+    seed: u64,
+) -> Vec<Trial> {
     let mut truth = zoo.find_model("mariner").unwrap();
     truth.effects.extend(hidden);
     let ship = Ship::new(&truth, zoo.law(&truth.law).unwrap()).unwrap();
@@ -38,7 +47,7 @@ fn recorded(zoo: &Zoo, hidden: Option<AppliedEffect>, noise: [f64; 6]) -> Vec<Tr
         simulate_turn(&ship, 15.0, &settings).unwrap().track,
         simulate_zigzag(&ship, 10.0, 10.0, &settings).unwrap().track,
     ];
-    let mut random = ChaCha12Rng::seed_from_u64(7);
+    let mut random = ChaCha12Rng::seed_from_u64(seed);
     let mut record = |(place, track): (usize, &sistership_simulation::Trajectory)| {
         let mut trial = Trial { name: format!("trial-{place}"), ..Trial::default() };
         trial.t_s = track.t_s.iter().copied().step_by(5).collect();
@@ -192,6 +201,30 @@ fn a_force_that_no_effect_has_is_told_by_its_equation() {
     assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{:?}", diagnosis.before);
     let first = &diagnosis.origins[0];
     assert_eq!((first.of, first.channel.as_str()), (OriginKind::Acceleration, "u"), "{first:?}");
+}
+
+/// A force by the heading, too weak for any segment to exceed the noise, is told by its dependence
+/// on the heading; trials of the same instruments without it have none.
+#[test]
+fn a_weak_force_is_told_by_its_dependence_on_the_heading() {
+    let zoo = Zoo::load_embedded().unwrap();
+    let mut model = zoo.find_model("mariner").unwrap();
+    let (law, effects) = (zoo.law(&model.law).unwrap(), [zoo.effect("yaw-rate-bias").unwrap()]);
+    let clean: Vec<Trial> =
+        (20..23).flat_map(|seed| recorded_with_seed(&zoo, None, NOISE, seed)).collect();
+    let own: Vec<&Trial> = clean.iter().collect();
+    let known = calibrate_model(&model, law, &effects.map(Arc::clone), &own, None).unwrap();
+    model.uncertainty = Some(known);
+    let asked = |hidden| {
+        let trials = recorded_with_seed(&zoo, hidden, NOISE, 30);
+        among(&["yaw-rate-bias"], &zoo, &model, &trials, &Settings::default())
+    };
+    let drift = [("north", 1e-5), ("east", 0.0), ("surge_share", 0.4), ("yaw_lever", 0.0)];
+    let weak = asked(Some(hidden(&zoo, "wave-drift", &drift)));
+    assert_eq!(weak.verdict, Verdict::Unexplained, "{:?}", weak.patterns);
+    assert!(weak.patterns.iter().any(|found| found.variable == "psi"), "{:?}", weak.patterns);
+    let without = asked(None);
+    assert_eq!((without.verdict, without.patterns.as_slice()), (Verdict::Complete, &[][..]));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Sums over samples of the products of whitened columns, which suffice for fitting and comparing
 //! hypotheses.
 
-use nalgebra::{DMatrix, DMatrixView};
+use nalgebra::{Cholesky, DMatrix, DMatrixView};
 
 use super::symmetric_products::symmetric_products;
 
@@ -48,6 +48,23 @@ impl GramMatrix {
         let size = 1 + columns.len();
         let products = DMatrix::from_fn(size, size, |i, j| self.products[(place(i), place(j))]);
         Self { products, log_variance: self.log_variance, count: self.count }
+    }
+
+    /// Integrates out the last columns under standard normal priors; none where the products are
+    /// not positive.
+    pub fn integrate_last(self, count: usize) -> Option<Self> {
+        if count == 0 {
+            return Some(self);
+        }
+        let kept = self.products.nrows() - count;
+        let own = self.products.view((kept, kept), (count, count));
+        let factor = Cholesky::new(own + DMatrix::<f64>::identity(count, count))?;
+        let cross = self.products.view((kept, 0), (count, kept)).into_owned();
+        let products =
+            self.products.view((0, 0), (kept, kept)) - cross.tr_mul(&factor.solve(&cross));
+        let log_determinant: f64 =
+            2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
+        Some(Self { products, log_variance: self.log_variance + log_determinant, ..self })
     }
 
     /// Adds the sums of other samples.
@@ -101,6 +118,22 @@ fn blocked_products(readings: DMatrixView<'_, f64>) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A column that is integrated out widens the covariance of the readings by its square.
+    #[test]
+    fn an_integrated_column_is_part_of_the_covariance() {
+        let gram = GramMatrix {
+            products: DMatrix::from_row_slice(2, 2, &[9.0, 6.0, 6.0, 4.0]),
+            log_variance: 1.0,
+            count: 1,
+        };
+        // One reading of 3 with variance 1 + 2^2.
+        let without = gram.integrate_last(1).map(|gram| (gram.products[(0, 0)], gram.log_variance));
+        let (square, log_variance) = without.unwrap_or_default();
+        assert!(
+            (square - 9.0 / 5.0).abs() < 1e-12 && (log_variance - 1.0 - 5.0_f64.ln()).abs() < 1e-12
+        );
+    }
 
     #[test]
     fn products_are_those_of_blocks_to_the_last_bit() {

@@ -20,6 +20,7 @@ mod filter;
 mod filter_noise;
 mod filter_value;
 mod followed;
+mod form_errors;
 mod gram;
 mod instruments;
 mod jumps;
@@ -51,6 +52,7 @@ pub use filter::{
     whiten_part,
 };
 pub use filter_noise::unknown_noise_error;
+pub use form_errors::{AxisColumn, FORM_ERRORS};
 pub use gram::GramMatrix;
 pub use likelihood::part_deviances;
 pub use linearise::linearise;

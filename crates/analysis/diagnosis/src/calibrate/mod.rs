@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use representative::representative_trials;
 use sistership_model::law::Law;
 use sistership_model::trial::Channel;
-use sistership_model::uncertainty::{Discrepancy, InstrumentFit, Uncertainty};
+use sistership_model::uncertainty::{Discrepancy, FalseAlarmLevel, InstrumentFit, Uncertainty};
 use sistership_model::{Effect, Model, Trial};
 use trial_information::{TrialInformation, expected_columns};
 
@@ -26,6 +26,7 @@ use super::linearised_trials::LinearisedTrials;
 use super::nuisance::{
     TermForms, learned_terms, missing_terms, term_regressor, uncalibrated_prior,
 };
+use super::patterns::PatternInformation;
 use super::remainder::largest_per_channel;
 use super::setup::listed_candidates;
 use super::thresholds::THRESHOLDS;
@@ -264,16 +265,25 @@ impl<'a> CalibrationInputs<'a> {
         // The learned errors of instruments are part of the model here, and are stored with its
         // uncertainty.
         let errs = model.uncertainty.as_ref().map(|known| known.systematic_errors.clone());
+        let mut levels = false_alarm::false_alarm_levels(all, (known, but_one), &candidates)?;
+        levels.extend(self.pattern_levels(learned, but_one)?);
         Ok(Uncertainty {
             systematic_errors: errs.unwrap_or_default(),
-            false_alarm_levels: false_alarm::false_alarm_levels(
-                all,
-                (known, but_one),
-                &candidates,
-            )?,
+            false_alarm_levels: levels,
             remainder,
             ..root_uncertainty(all, known, learned)?
         })
+    }
+
+    /// False-alarm levels of the patterns of remainders.
+    fn pattern_levels(
+        &self,
+        learned: &LearnedCalibration<'_>,
+        but_one: &[CoefficientPrior],
+    ) -> Result<BTreeMap<String, FalseAlarmLevel>, RefineError> {
+        let all = self.without_effects(learned, self.trials)?;
+        let discrepancies = &learned.found.discrepancies;
+        Ok(PatternInformation::new(&all, discrepancies, &[], (but_one, None))?.clean_levels(&all))
     }
 }
 

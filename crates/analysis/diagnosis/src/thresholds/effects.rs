@@ -14,6 +14,9 @@ pub(crate) struct EffectThresholds {
     /// remainder is attributed to a further effect, dimensionless. Source: derived: a misfit is a
     /// root mean square over authors, of which 95 % are within twice as much.
     pub misfits: f64,
+    /// `T_f`: time by which another published form may be later, by `L/U`, dimensionless. Source:
+    /// chosen, the order of the time constants of steering gear.
+    pub form_memory: f64,
     /// `D_0`: divisor of the information on an effect where a model brings no uncertainty,
     /// dimensionless. Source: chosen; published coefficients have no clean trials on which a
     /// false-alarm level could be measured.
@@ -50,6 +53,7 @@ pub(super) const EFFECT: EffectThresholds = EffectThresholds {
     size: 0.03,
     shape: 0.003,
     misfits: 2.0,
+    form_memory: 0.2,
     unknown_discount: 10.0,
     mass_deviation: 0.08,
     placebo_shifts: [0.25, 0.5, 0.75],

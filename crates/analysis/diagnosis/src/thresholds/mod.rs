@@ -21,7 +21,8 @@ use effects::{
 };
 use limits::{LIMITS, LimitThresholds};
 use remainder::{
-    DEPENDENCE, DependenceThresholds, ORIGIN, OriginThresholds, REMAINDER, RemainderThresholds,
+    DEPENDENCE, DependenceThresholds, ORIGIN, OriginThresholds, PATTERNS, PatternThresholds,
+    REMAINDER, RemainderThresholds,
 };
 use search::{REFIT, RefitThresholds, SEARCH, SearchThresholds};
 use trials::{NEXT_TRIAL, NextTrialThresholds, SERIES, SeriesThresholds, TRIALS, TrialThresholds};
@@ -47,6 +48,8 @@ pub(crate) struct DiagnosisThresholds {
     pub limits: LimitThresholds,
     /// Detection of an unexplained remainder.
     pub remainder: RemainderThresholds,
+    /// Patterns of the remainder.
+    pub patterns: PatternThresholds,
     /// Changes within a trial.
     pub changes: ChangeThresholds,
     /// Origin of a remainder.
@@ -73,6 +76,7 @@ pub(crate) const THRESHOLDS: DiagnosisThresholds = DiagnosisThresholds {
     confounding: CONFOUNDING,
     limits: LIMITS,
     remainder: REMAINDER,
+    patterns: PATTERNS,
     changes: CHANGES,
     origin: ORIGIN,
     dependence: DEPENDENCE,

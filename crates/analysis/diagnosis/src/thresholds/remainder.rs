@@ -96,3 +96,33 @@ pub(super) const DEPENDENCE: DependenceThresholds = DependenceThresholds {
     share: 0.05,
     shown: 3,
 };
+
+/// Patterns of the remainder.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PatternThresholds {
+    /// `s_k`: standard deviation of the size of a pattern, by the typical acceleration (`U^2/L`, or
+    /// `(U/L)^2`), dimensionless. Source: chosen, the order of the smallest force that changes a
+    /// manoeuvre.
+    pub size: f64,
+    /// `n_k`: number of harmonics of the heading, a count. Source: chosen; forces by the direction
+    /// of an influence have two, and one more shows any other dependence.
+    pub harmonics: i32,
+    /// `s_u`: loss of speed by the approach speed that is one unit, dimensionless. Source: chosen,
+    /// that of a turn.
+    pub speed: f64,
+    /// `s_d`: rudder angle that is one unit, rad. Source: derived: 20 deg, a usual order.
+    pub rudder_rad: f64,
+    /// `T_k`: periods that are evaluated, by `L/U`, dimensionless. Source: chosen: factors of 1.25
+    /// from a few samples to the half of a short trial; a sine between two of them over ten periods
+    /// has half of the power at the nearest.
+    pub periods: [f64; 12],
+}
+
+/// Values of patterns.
+pub(super) const PATTERNS: PatternThresholds = PatternThresholds {
+    size: 0.01,
+    harmonics: 3,
+    speed: 0.3,
+    rudder_rad: 0.349,
+    periods: [0.8, 1.0, 1.25, 1.56, 1.95, 2.44, 3.05, 3.81, 4.77, 5.96, 7.45, 9.31],
+};

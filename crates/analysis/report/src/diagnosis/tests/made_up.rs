@@ -260,6 +260,7 @@ fn diagnosis(after: Model) -> Diagnosis {
         verdict: Verdict::Effects,
         effects: vec![current()],
         unexplained: vec![stretch],
+        patterns: Vec::new(),
         changes: vec![damage()],
         origins: origins(),
         depends_on: vec![depends_on()],
