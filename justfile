@@ -23,8 +23,8 @@ ci:
 
 # Rewrites every generated file: schemas, the page of the zoo, the REST contract, the table of rights.
 generate:
-    UPDATE_SCHEMAS=1 UPDATE_ZOO=1 UPDATE_LAWS=1 cargo test -p sistership-tests --test zoo
-    UPDATE_OPENAPI=1 cargo test -p sistership-api --test openapi
+    UPDATE_SCHEMAS=1 UPDATE_ZOO=1 UPDATE_LAWS=1 cargo test --workspace --test zoo
+    UPDATE_OPENAPI=1 cargo test --workspace --test openapi
     UPDATE_RIGHTS=1 cargo test -p sistership-api --lib the_table_is_written_down
 
 # Wings, circles between modules, language of the sources.

@@ -133,8 +133,8 @@ fn coverage(ship: &str, method: EstimationMethod, replicas: usize) -> (f64, f64)
 #[test]
 fn intervals_of_95_per_cent_cover_90_to_98() {
     let replicas: usize = setting("COVERAGE_REPLICAS", "16").parse().expect("a number");
-    let method =
-        EstimationMethod::by_name(&setting("COVERAGE_METHOD", "weak")).expect("an estimator");
+    let method = EstimationMethod::by_name(&setting("COVERAGE_METHOD", "weak"))
+        .expect("COVERAGE_METHOD is the name of an estimator");
     let (coefficients, diameter) = coverage(&setting("COVERAGE_SHIP", "mariner"), method, replicas);
     // Chance: two standard errors of a share over so few replicas. Coefficients of one replica
     // depend on each other.

@@ -99,8 +99,8 @@ fn of(
 #[test]
 fn zigzags_never_spoil_the_turn_by_more_than_the_band() {
     let count: usize = setting("ZIGZAG_SHIPS", "10").parse().expect("a number");
-    let method =
-        EstimationMethod::by_name(&setting("ZIGZAG_METHOD", "weak")).expect("an estimator");
+    let method = EstimationMethod::by_name(&setting("ZIGZAG_METHOD", "weak"))
+        .expect("ZIGZAG_METHOD is the name of an estimator");
     let seed: u64 = setting("ZIGZAG_SEED", "3").parse().expect("a number");
     let zoo = Zoo::load_embedded().unwrap_or_else(|error| panic!("{error}"));
     let all: Vec<Turned> =

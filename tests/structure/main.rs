@@ -66,7 +66,10 @@ fn every_crate_stands_in_a_wing() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
     for entry in std::fs::read_dir(root).expect("the folder of crates") {
         let name = entry.expect("a listed folder").file_name().to_string_lossy().into_owned();
-        assert!(WINGS.iter().any(|(wing, _)| *wing == name), "crates/{name} is no wing");
+        assert!(
+            WINGS.iter().any(|(wing, _)| *wing == name),
+            "crates/{name} is no wing: move it into one of those of ARCHITECTURE.md"
+        );
     }
 }
 
@@ -80,7 +83,8 @@ fn wings_depend_in_one_direction() {
         for (other, wing) in own.filter_map(|other| Some((other, wing_of(other)?))) {
             assert!(
                 wing == one.wing || allowed.contains(&wing),
-                "{} ({}) may not depend on {other} ({wing})",
+                "{} ({}) may not depend on {other} ({wing}): move what it needs into a wing below \
+                 both, or let the caller pass it (ARCHITECTURE.md, \"Five wings\")",
                 one.name,
                 one.wing
             );
@@ -94,7 +98,7 @@ fn the_database_and_the_web_are_confined() {
         for (outside, only) in RESTRICTED {
             assert!(
                 only.contains(&one.name.as_str()) || !one.dependencies.iter().any(|d| d == outside),
-                "{} may not depend on {outside}: only {only:?} may",
+                "{} may not depend on {outside}: do it in one of {only:?}, which may",
                 one.name
             );
         }
@@ -105,7 +109,11 @@ fn the_database_and_the_web_are_confined() {
 fn core_data_and_analysis_do_not_wait() {
     for one in crates().iter().filter(|one| !["service", "app"].contains(&one.wing)) {
         let waits = one.dependencies.iter().find(|name| ASYNC.contains(&name.as_str()));
-        assert!(waits.is_none(), "{} may not depend on {waits:?}", one.name);
+        assert!(
+            waits.is_none(),
+            "{} may not depend on {waits:?}: do what waits in the service wing, and pass its result",
+            one.name
+        );
     }
 }
 
@@ -127,7 +135,11 @@ fn no_modules_of_a_crate_refer_to_each_other_in_a_circle() {
             found.push(format!("crates/{name}:\n{}", edges.join("\n")));
         }
     }
-    assert!(found.is_empty(), "modules in circles:\n{}", found.join("\n"));
+    assert!(
+        found.is_empty(),
+        "modules in circles; move what both sides use into a module of its own:\n{}",
+        found.join("\n")
+    );
 }
 
 /// Words that say nothing to a naval architect, and what to say in their place
@@ -186,5 +198,8 @@ fn the_language_does_not_get_worse() {
         println!("{name:<48} {value:8.2} of at most {bound}");
     }
     let worse: Vec<_> = rows.iter().filter(|(_, value, bound)| value > bound).collect();
-    assert!(worse.is_empty(), "worse than before: {worse:?}");
+    assert!(
+        worse.is_empty(),
+        "{worse:?} (name, value, bound): see \"Style\" in CONTRIBUTING.md for what was added"
+    );
 }

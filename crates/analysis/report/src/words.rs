@@ -1,6 +1,7 @@
 //! Names and units in the terms of naval architecture.
 
 use serde::Serialize;
+use sistership_identification::refine::EstimationMethod;
 use sistership_model::vessel::Status;
 
 /// Channel as it is displayed: angles in degrees.
@@ -105,14 +106,20 @@ pub(crate) fn status_meaning(status: Status) -> &'static str {
 
 /// Estimator in words.
 pub(crate) fn method_words(name: &str) -> &'static str {
-    match name {
-        "published" => {
+    match EstimationMethod::by_name(name) {
+        Some(EstimationMethod::Published) => {
             "one-step differences, ridge regression with the source as prior (Kanazawa 2023)"
         }
-        "weak" => "equations integrated over windows, ridge regression with the source as prior",
-        "trajectory" => "least squares on simulated segments with the source as prior",
-        "cma-es" => "evolutionary search (CMA-ES) on simulated subsequences (Miyauchi 2024)",
-        _ => "",
+        Some(EstimationMethod::Weak) => {
+            "equations integrated over windows, ridge regression with the source as prior"
+        }
+        Some(EstimationMethod::Trajectory) => {
+            "least squares on simulated segments with the source as prior"
+        }
+        Some(EstimationMethod::CmaEs) => {
+            "evolutionary search (CMA-ES) on simulated subsequences (Miyauchi 2024)"
+        }
+        None => "",
     }
 }
 

@@ -16,8 +16,8 @@ fn the_document_is_the_one_in_the_repository() {
     let there = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(
         there == now,
-        "the endpoints have changed: run `UPDATE_OPENAPI=1 cargo test -p sistership-api --test \
-         openapi`"
+        "the endpoints have changed: run `UPDATE_OPENAPI=1 cargo test --workspace --test openapi`, \
+         and read the difference of api/openapi.json"
     );
 }
 

@@ -83,6 +83,7 @@ mod tests {
             let name = format!("\"{}\"", format.name());
             serde_json::from_str::<ExportFormat>(&name).map_or("", ExportFormat::name)
         });
-        assert_eq!(asked, FORMATS.map(|format| format.name()));
+        let known = FORMATS.map(|format| format.name());
+        assert_eq!(asked, known, "add each of `FORMATS` to `ExportFormat`, by the same name");
     }
 }

@@ -100,12 +100,15 @@ fn the_table_has_every_route() {
         known.chain(IDENTIFIED_ROUTES).chain(HEALTH_ROUTES).chain(OPEN_ROUTES).collect();
     let set: BTreeSet<(String, String)> =
         rows.iter().map(|(method, path)| ((*method).to_owned(), (*path).to_owned())).collect();
-    assert_eq!(set.len(), rows.len(), "a route is there twice");
+    assert_eq!(set.len(), rows.len(), "rights/table.rs has a row twice");
     let routes = routes();
     assert!(routes.len() > 100, "{}", routes.len());
     let missing: Vec<_> = routes.difference(&set).collect();
     let gone: Vec<_> = set.difference(&routes).collect();
-    assert!(missing.is_empty() && gone.is_empty(), "missing {missing:?}, gone {gone:?}");
+    assert!(
+        missing.is_empty() && gone.is_empty(),
+        "rights/table.rs: add a row for each of {missing:?}, remove the rows of {gone:?}"
+    );
 }
 
 /// The table as people read it.
@@ -142,7 +145,10 @@ fn the_table_is_written_down() {
         std::fs::write(&path, written()).unwrap();
     }
     let there = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(there == written(), "run this test with UPDATE_RIGHTS=1, and read the difference");
+    assert!(
+        there == written(),
+        "docs/rights.md is not current: run this test with UPDATE_RIGHTS=1, and read the difference"
+    );
 }
 
 /// Returns a path with names that do not exist, so that an allowed request changes nothing.
