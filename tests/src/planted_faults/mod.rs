@@ -8,10 +8,10 @@ use std::path::Path;
 
 use sistership_model::Trial;
 use sistership_trials::samples::to_csv;
-use sistership_trials::{ManifestFile, find_faults, load_path, propose_files};
+use sistership_trials::{ManifestFile, load_cleaned, load_path, propose_files};
 
 pub use plant::{FaultKind, PlantedTrial, plant};
-pub use refinement::{RefinementJudge, judge_trials};
+pub use refinement::{RefinementJudge, judge_circles, judge_trials};
 
 /// What import finds of planted faults.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -60,7 +60,8 @@ pub fn import_planted(folder: &Path, trials: &[PlantedTrial]) -> CleanedTrials {
         propose_files(&request).unwrap_or_else(|errors| panic!("{errors:?}")).manifest;
     let place = folder.join("trials.yaml");
     let accepted = read_trials(&place, &manifest);
-    manifest.declarations.exclude = find_faults(&place).unwrap_or_else(|error| panic!("{error}"));
+    manifest.declarations.exclude =
+        load_cleaned(&place).unwrap_or_else(|error| panic!("{error}")).excluded;
     let count = count_faults(&manifest, trials);
     CleanedTrials { cleaned: read_trials(&place, &manifest), accepted, count }
 }

@@ -11,10 +11,11 @@ use sistership_simulation::Ship;
 use sistership_simulation::error::SquaredError;
 use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 
+use crate::synthetic::replica;
 use crate::truth::container::container;
 use crate::truth::files::vessel;
 use crate::truth::instruments::Instruments;
-use crate::truth::manoeuvre::Manoeuvre;
+use crate::truth::manoeuvre::{Approach, Manoeuvre};
 use crate::truth::motion::Truth;
 use crate::truth::trials;
 
@@ -40,6 +41,20 @@ pub fn judge_trials(seed: u64) -> Vec<Trial> {
     trials(&container(), &RECORDED, &Instruments::SEA_TRIAL, seed)
 }
 
+/// Returns such trials with circles of 45 lengths, so that the turns become steady.
+pub fn judge_circles(seed: u64) -> Vec<Trial> {
+    let ship = container();
+    let approach = Approach { speed: 1.0, lengths: 0.5 };
+    let record = |(index, manoeuvre): (usize, &Manoeuvre)| {
+        let lengths = if matches!(manoeuvre, Manoeuvre::Turn(_)) { 45.0 } else { 25.0 };
+        let duration_s = lengths * ship.dimensions().length_time_s();
+        let track = manoeuvre.sailed_for(&ship, approach, duration_s);
+        let name = format!("{}.csv", manoeuvre.name());
+        Instruments::SEA_TRIAL.record(&ship, &name, &track, &mut replica(seed, 100 + index))
+    };
+    RECORDED.iter().enumerate().map(record).collect()
+}
+
 impl RefinementJudge {
     /// Returns the judge of refinements of the Mariner's model for the container ship.
     ///
@@ -59,6 +74,16 @@ impl RefinementJudge {
     /// Returns the error of a model refined on trials: its yaw rate on the unseen ones, deg/s;
     /// `None` without trials, or where it does not complete them.
     pub fn error_deg_s(&self, trials: &[Trial]) -> Option<f64> {
+        Some(self.unseen_errors(trials, [Channel::R])?[0].to_degrees())
+    }
+
+    /// Returns the root mean square errors of channels on the unseen trials of a model refined on
+    /// trials; `None` without trials, or where it does not complete them.
+    pub fn unseen_errors<const N: usize>(
+        &self,
+        trials: &[Trial],
+        channels: [Channel; N],
+    ) -> Option<[f64; N]> {
         let trials: Vec<&Trial> = trials.iter().collect();
         let settings =
             RefinementSettings { method: EstimationMethod::Weak, ..RefinementSettings::default() };
@@ -73,14 +98,18 @@ impl RefinementJudge {
         };
         let refined = refine(&request, &|_, _| true).ok()?;
         let ship = Ship::new(&refined.model, &self.law).ok()?;
-        let squares = self.unseen.iter().map(|trial| {
+        let mut squares = [0.0; N];
+        for trial in &self.unseen {
             let run = replay_trial(&ship, trial, &ReplaySettings::default()).ok()?;
-            let error = SquaredError::from_trial(trial, &run).channel_rmse(Channel::R)?;
-            run.stopped.is_none().then_some(error * error)
-        });
-        let squares: Option<Vec<f64>> = squares.collect();
-        let mean = squares?.iter().sum::<f64>() / self.unseen.len() as f64;
-        Some(mean.sqrt().to_degrees())
+            if run.stopped.is_some() {
+                return None;
+            }
+            let error = SquaredError::from_trial(trial, &run);
+            for (sum, channel) in squares.iter_mut().zip(channels) {
+                *sum += error.channel_rmse(channel)?.powi(2);
+            }
+        }
+        Some(squares.map(|sum| (sum / self.unseen.len() as f64).sqrt()))
     }
 }
 

@@ -30,7 +30,7 @@ mod vocabulary;
 mod words;
 
 pub use data::{ColumnData, RecordingSample};
-pub use faults::{FilteredChannel, SampleFault, backward_times, sample_faults};
+pub use faults::{FilteredChannel, SampleFault, backward_times, repeated_rows, sample_faults};
 pub use identify::{GivenColumn, identify_columns};
 pub use outcome::{AlternativeReading, Identification, IdentifiedColumn, ThrusterPair};
 pub use role::{QuantityKind, Role, Side, Unit};

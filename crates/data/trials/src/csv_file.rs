@@ -225,15 +225,15 @@ impl RowReader {
         loop {
             // The position before the record, for messages: after an error it no longer names the
             // row.
-            let next = usize::try_from(reader.position().line()).unwrap_or(usize::MAX);
-            let next = next.saturating_add_signed(self.shift);
-            let more = reader
-                .read_byte_record(&mut record)
-                .map_err(|error| (next, format!("cannot be read further: {error}")))?;
+            let before = reader.position().line();
+            let more = reader.read_byte_record(&mut record).map_err(|error| {
+                let next = line_number(before).saturating_add_signed(self.shift);
+                (next, format!("cannot be read further: {error}"))
+            })?;
             if !more {
                 return Ok(());
             }
-            let row = record_line(reader, &record).saturating_add_signed(self.shift);
+            let row = record_line(reader, &record, before).saturating_add_signed(self.shift);
             meter.end_row();
             if std::mem::take(&mut self.units) {
                 continue;
@@ -299,10 +299,19 @@ impl RowReader {
 }
 
 /// Returns the line in which the record just read starts: its end is the current line, less one
-/// line end after it and those within it.
-fn record_line(reader: &csv::Reader<impl Read>, record: &ByteRecord) -> usize {
+/// line end after it and those within it. `before` is the line at which reading began.
+fn record_line(reader: &csv::Reader<impl Read>, record: &ByteRecord, before: u64) -> usize {
+    let end = reader.position().line();
+    // Most records are one line, with no blank line before it.
+    if end == before + 1 {
+        return line_number(before);
+    }
     let inside = record.as_slice().iter().filter(|&&byte| byte == b'\n').count();
-    usize::try_from(reader.position().line()).unwrap_or(usize::MAX).saturating_sub(1 + inside)
+    line_number(end).saturating_sub(1 + inside)
+}
+
+fn line_number(line: u64) -> usize {
+    usize::try_from(line).unwrap_or(usize::MAX)
 }
 
 #[cfg(test)]

@@ -2,69 +2,124 @@
 
 use std::collections::BTreeMap;
 
-use sistership_columns::{FilteredChannel, Role, SampleFault, backward_times, sample_faults};
+use sistership_columns::{
+    FilteredChannel, Role, SampleFault, backward_times, repeated_rows, sample_faults,
+};
 
 use crate::exclusion::{Exclusion, RowRanges};
+use crate::kinematics::{
+    METRES_PER_RADIAN, column_integral, column_rate, is_position, kinematic_order,
+};
 use crate::series::is_angle;
-use crate::table::{ColumnTarget, Table};
+use crate::table::{ColumnTarget, Table, TableValues};
 
-/// Channels and their measured rates.
-const RATES: [(&str, &str); 2] = [("psi", "r"), ("phi", "p")];
 /// Multiple of the usual largest magnitude above which a value is no reading.
 const IMPOSSIBLE: f64 = 3.0;
 /// Fraction of the lower bound of the usual largest magnitude below which a distance is no fault.
 const LEAST: f64 = 0.1;
+/// Smallest deviation of a position that is a fault, m.
+const LEAST_M: f64 = 0.1;
+/// Reasons as written in a manifest.
+const BACKWARD: &str = "times that are repeated or decrease";
+const REPEATED: &str = "repeats of the row before";
 
 /// Returns the faults of every channel, one exclusion for each kind of fault with its rows.
 pub(crate) fn table_faults(file: &str, table: &Table) -> Vec<Exclusion> {
-    let Some(t) = values_of(table, "t") else { return Vec::new() };
-    let mut found: Vec<Exclusion> = Vec::new();
-    let backward = backward_times(t);
-    if !backward.is_empty() {
-        let rows = backward.into_iter().map(|k| table.rows[k]);
-        let why = "times that are repeated or decrease";
-        found.push(fault_exclusion(file, None, rows, why));
-    }
-    for (column, values) in table.columns.iter().zip(&table.values) {
-        let name = column.target.name();
-        let Some(role) = Role::from_name(name).filter(|role| *role != Role::Time) else { continue };
-        if is_command(role) {
-            continue;
-        }
-        let rate = RATES.iter().find(|(whole, _)| *whole == name);
-        let channel = FilteredChannel {
-            values,
-            rate: rate.and_then(|(_, rate)| values_of(table, rate)),
-            is_direction: is_angle(column.target),
-            least: LEAST * role.usual_range()[0],
-            impossible: impossible_magnitude(role),
-        };
-        let mut by_kind: BTreeMap<SampleFault, Vec<u32>> = BTreeMap::new();
-        for (k, fault) in sample_faults(t, &channel) {
-            by_kind.entry(fault).or_default().push(table.rows[k]);
-        }
-        found.extend(
-            by_kind
-                .into_iter()
-                .map(|(kind, rows)| fault_exclusion(file, Some(name), rows, kind.manifest_text())),
-        );
-    }
-    found
+    let Some(t) = table.column_values(ColumnTarget::Time) else { return Vec::new() };
+    let mut search =
+        FaultSearch { file, table, t_s: t.to_vec(), cleaned: BTreeMap::new(), found: Vec::new() };
+    search.exclude_backward_times();
+    search.exclude_repeated_rows();
+    // In an order that compares each channel with others without their faults.
+    let mut targets: Vec<ColumnTarget> = table.columns.iter().map(|column| column.target).collect();
+    targets.sort_by_key(|target| kinematic_order(*target));
+    targets.into_iter().for_each(|target| search.exclude_faults(target));
+    search.found
 }
 
-fn fault_exclusion(
-    file: &str,
-    channel: Option<&str>,
-    rows: impl IntoIterator<Item = u32>,
-    why: &str,
-) -> Exclusion {
-    Exclusion {
-        file: file.to_owned(),
-        channel: channel.map(str::to_owned),
-        rows: Some(RowRanges::from_rows(rows)),
-        from: None,
-        to: None,
-        why: why.to_owned(),
+/// Faults of a table that were found so far, and its columns without them.
+struct FaultSearch<'a> {
+    file: &'a str,
+    table: &'a Table,
+    /// Times; those of rows with a fault are no numbers.
+    t_s: Vec<f64>,
+    cleaned: BTreeMap<ColumnTarget, Vec<f64>>,
+    found: Vec<Exclusion>,
+}
+
+impl TableValues for FaultSearch<'_> {
+    fn column_values(&self, target: ColumnTarget) -> Option<&[f64]> {
+        let cleaned = self.cleaned.get(&target).map(Vec::as_slice);
+        cleaned.or_else(|| self.table.column_values(target))
+    }
+}
+
+impl FaultSearch<'_> {
+    fn exclude_backward_times(&mut self) {
+        let backward = backward_times(&self.t_s);
+        self.add_exclusion(None, &backward, BACKWARD);
+        backward.into_iter().for_each(|k| self.t_s[k] = f64::NAN);
+    }
+
+    /// Excludes every value of rows that repeat the row before. The rows themselves stay, so that
+    /// short gaps are interpolated.
+    fn exclude_repeated_rows(&mut self) {
+        let columns = self.table.columns.iter().zip(&self.table.values);
+        let columns: Vec<_> =
+            columns.filter(|(column, _)| column.target != ColumnTarget::Time).collect();
+        let values: Vec<&[f64]> = columns.iter().map(|(_, values)| values.as_slice()).collect();
+        let repeated = repeated_rows(&values);
+        if repeated.is_empty() {
+            return;
+        }
+        for (column, _) in columns {
+            self.add_exclusion(Some(column.target), &repeated, REPEATED);
+        }
+        repeated.into_iter().for_each(|k| self.t_s[k] = f64::NAN);
+    }
+
+    fn exclude_faults(&mut self, target: ColumnTarget) {
+        let role = Role::from_name(target.name()).filter(|role| *role != Role::Time);
+        let Some(role) = role.filter(|role| !is_command(*role)) else { return };
+        let Some(values) = self.table.column_values(target) else { return };
+        let (rate, integral) = (column_rate(self, target), column_integral(self, target));
+        let channel = FilteredChannel {
+            values,
+            rate: rate.as_deref(),
+            integral: integral.as_deref(),
+            is_direction: is_angle(target),
+            is_position: is_position(target),
+            least: least_deviation(role),
+            impossible: impossible_magnitude(role),
+        };
+        let faults = sample_faults(&self.t_s, &channel);
+        if faults.is_empty() {
+            return;
+        }
+        let mut cleaned = values.to_vec();
+        let mut by_kind: BTreeMap<SampleFault, Vec<usize>> = BTreeMap::new();
+        for (k, fault) in faults {
+            cleaned[k] = f64::NAN;
+            by_kind.entry(fault).or_default().push(k);
+        }
+        self.cleaned.insert(target, cleaned);
+        for (kind, samples) in by_kind {
+            self.add_exclusion(Some(target), &samples, kind.manifest_text());
+        }
+    }
+
+    fn add_exclusion(&mut self, target: Option<ColumnTarget>, samples: &[usize], why: &str) {
+        if samples.is_empty() {
+            return;
+        }
+        self.found.push(Exclusion {
+            file: self.file.to_owned(),
+            channel: target.map(|target| target.name().to_owned()),
+            rows: Some(RowRanges::from_rows(samples.iter().map(|&k| self.table.rows[k]))),
+            from: None,
+            to: None,
+            why: why.to_owned(),
+        });
     }
 }
 
@@ -85,8 +140,10 @@ fn impossible_magnitude(role: Role) -> f64 {
     }
 }
 
-fn values_of<'a>(table: &'a Table, name: &str) -> Option<&'a [f64]> {
-    let target = ColumnTarget::from_name(name)?;
-    let at = table.columns.iter().position(|column| column.target == target)?;
-    table.values.get(at).map(Vec::as_slice)
+fn least_deviation(role: Role) -> f64 {
+    match role {
+        Role::X | Role::Y => LEAST_M,
+        Role::Latitude | Role::Longitude => LEAST_M / METRES_PER_RADIAN,
+        _ => LEAST * role.usual_range()[0],
+    }
 }

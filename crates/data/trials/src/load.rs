@@ -12,7 +12,7 @@ use sistership_model::trial::{Finding, Trial};
 use crate::declarations::SensorFile;
 use crate::exclusion::Exclusion;
 use crate::manifest::read_local_manifest;
-use crate::mapping::Mapping;
+use crate::mapping::{FaultHandling, Mapping};
 use crate::outcome::{CheckOutcome, Refusal};
 use crate::read::{CheckedRecording, SegmentRequest, examine_source, read_segments};
 use crate::trial_file::TrialFile;
@@ -33,10 +33,11 @@ pub struct LoadedTrials {
 /// Returns an error if the manifest is invalid or the path cannot be read. A single trial that is
 /// refused is no error of the whole.
 pub fn load_path(path: &Path) -> Result<LoadedTrials, FileError> {
-    let (manifest, mut trials) = read_each(path, false, |name, examined| match examined {
-        Ok(examined) => examined.into_trial(name),
-        Err(error) => Err(Refusal { file: name, findings: vec![unreadable_finding(&error)] }),
-    })?;
+    let (manifest, mut trials) =
+        read_each(path, FaultHandling::Ignore, |name, examined| match examined {
+            Ok(examined) => examined.into_trial(name),
+            Err(error) => Err(Refusal { file: name, findings: vec![unreadable_finding(&error)] }),
+        })?;
     if manifest.is_none()
         && let (Some(Ok(trial)), Some(name)) = (trials.first_mut(), path.file_name())
     {
@@ -51,7 +52,7 @@ pub fn load_path(path: &Path) -> Result<LoadedTrials, FileError> {
 /// # Errors
 /// Returns the errors of [`load_path`].
 pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
-    let outcomes = read_each(path, true, |name, examined| match examined {
+    let outcomes = read_each(path, FaultHandling::Report, |name, examined| match examined {
         Ok(examined) => examined.into_outcome(name),
         Err(error) => CheckOutcome {
             file: name,
@@ -64,31 +65,42 @@ pub fn check_path(path: &Path) -> Result<Vec<CheckOutcome>, FileError> {
     Ok(outcomes.1)
 }
 
-/// Returns faults of the values of a manifest's files that it does not exclude yet, by file and
-/// channel.
+/// Trials read from a manifest without the faults of their values.
+#[derive(Debug)]
+pub struct CleanedTrials {
+    /// Trial of each entry, in the order of the manifest.
+    pub trials: Vec<Result<Trial, Refusal>>,
+    /// Faults that the manifest does not exclude yet, by file and channel.
+    pub excluded: Vec<Exclusion>,
+}
+
+/// Reads the trials of a manifest, and excludes faults of their values.
 ///
 /// # Errors
 /// Returns the errors of [`load_path`].
-pub fn find_faults(path: &Path) -> Result<Vec<Exclusion>, FileError> {
-    let (manifest, mut listed) = list_files(path)?;
-    listed.iter_mut().for_each(|one| one.mapping.seeks_faults = true);
-    let found = examine_each(&listed, |_, examined| {
-        examined.map(|examined| examined.found_faults().to_vec()).unwrap_or_default()
-    });
-    let trials = manifest.iter().flat_map(|manifest| &manifest.trials);
-    let mut all: Vec<Exclusion> = Vec::new();
-    for (trial, faults) in trials.zip(found) {
-        for fault in faults {
-            let fault = Exclusion { file: trial.file.clone(), ..fault };
-            // Segments of one file are checked separately; faults of the same kind become one
-            // entry.
-            match all.iter_mut().find(|one| one.is_like(&fault)) {
-                Some(known) => known.add_rows(&fault),
-                None => all.push(fault),
+pub fn load_cleaned(path: &Path) -> Result<CleanedTrials, FileError> {
+    let (manifest, read) =
+        read_each(path, FaultHandling::Exclude, |name, examined| match examined {
+            Ok(mut examined) => (examined.take_faults(), examined.into_trial(name)),
+            Err(error) => {
+                let findings = vec![unreadable_finding(&error)];
+                (Vec::new(), Err(Refusal { file: name, findings }))
             }
+        })?;
+    let (found, trials): (Vec<Vec<Exclusion>>, Vec<_>) = read.into_iter().unzip();
+    let files = manifest.iter().flat_map(|manifest| &manifest.trials).map(|trial| &trial.file);
+    let mut excluded: Vec<Exclusion> = Vec::new();
+    for (file, fault) in
+        files.zip(found).flat_map(|(file, all)| all.into_iter().map(move |one| (file, one)))
+    {
+        let fault = Exclusion { file: file.clone(), ..fault };
+        // Segments of one file are checked separately; faults of the same kind become one entry.
+        match excluded.iter_mut().find(|one| one.is_like(&fault)) {
+            Some(known) => known.add_rows(&fault),
+            None => excluded.push(fault),
         }
     }
-    Ok(all)
+    Ok(CleanedTrials { trials, excluded })
 }
 
 /// File to be read, and the files of sensors that belong to it.
@@ -115,13 +127,11 @@ impl ListedFile {
 /// files are read in parallel.
 fn read_each<T: Send>(
     path: &Path,
-    seeks_faults: bool,
+    faults: FaultHandling,
     take: impl Fn(String, io::Result<CheckedRecording>) -> T + Sync,
 ) -> Result<(Option<Manifest>, Vec<T>), FileError> {
     let (manifest, mut listed) = list_files(path)?;
-    if seeks_faults {
-        listed.iter_mut().for_each(|one| one.mapping.seeks_faults = true);
-    }
+    listed.iter_mut().for_each(|one| one.mapping.faults = faults);
     Ok((manifest, examine_each(&listed, take)))
 }
 

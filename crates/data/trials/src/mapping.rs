@@ -37,8 +37,20 @@ pub struct Mapping {
     /// For columns that are yet to be identified: index and unit of a time that is written as text.
     /// Every column is then read as it is.
     pub(crate) unidentified: Option<WrittenTime>,
-    /// True if faults are searched.
-    pub(crate) seeks_faults: bool,
+    /// Search for faults of the values.
+    pub(crate) faults: FaultHandling,
+}
+
+/// Handling of faults of the values of a file that its mapping does not exclude.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum FaultHandling {
+    /// Faults are not searched.
+    #[default]
+    Ignore,
+    /// Faults are reported, and the values stay.
+    Report,
+    /// Faults are reported, and their values are excluded.
+    Exclude,
 }
 
 /// Column of times written as text, if there is one: its index and unit.
@@ -71,7 +83,7 @@ impl Mapping {
             exclude: Vec::new(),
             current: None,
             unidentified: None,
-            seeks_faults: false,
+            faults: FaultHandling::Ignore,
         }
     }
 

@@ -11,7 +11,7 @@ use crate::currents::subtract_current;
 use crate::exclusion::{Exclusion, apply_exclusions};
 use crate::faults;
 use crate::findings::Findings;
-use crate::mapping::Mapping;
+use crate::mapping::{FaultHandling, Mapping};
 use crate::outcome::{CheckOutcome, Refusal, TrialReading};
 use crate::parquet_file::ParquetRows;
 use crate::recording::Recording;
@@ -55,7 +55,7 @@ pub fn read_with_rows(source: TrialFile, mapping: &Mapping) -> Result<TrialWithR
 
 /// Returns faults of the values of a file that its mapping does not exclude yet.
 pub fn find_source_faults(source: TrialFile, mapping: &Mapping) -> Vec<Exclusion> {
-    let mapping = Mapping { seeks_faults: true, ..mapping.clone() };
+    let mapping = Mapping { faults: FaultHandling::Report, ..mapping.clone() };
     examine_source(source, &mapping).recording.faults
 }
 
@@ -85,9 +85,9 @@ impl CheckedRecording {
         })
     }
 
-    /// Returns the faults, if they were searched.
-    pub(crate) fn found_faults(&self) -> &[Exclusion] {
-        &self.recording.faults
+    /// Takes the faults, if they were searched.
+    pub(crate) fn take_faults(&mut self) -> Vec<Exclusion> {
+        std::mem::take(&mut self.recording.faults)
     }
 
     pub(crate) fn into_trial(self, file: String) -> Result<Trial, Refusal> {
@@ -224,7 +224,13 @@ fn build_recording(
     }
     apply_exclusions(&mut table, &mapping.exclude, findings);
     // Faults are searched before gaps are bridged: interpolated values are no readings.
-    let faults = if mapping.seeks_faults { faults::table_faults(name, &table) } else { Vec::new() };
+    let faults = match mapping.faults {
+        FaultHandling::Ignore => Vec::new(),
+        FaultHandling::Report | FaultHandling::Exclude => faults::table_faults(name, &table),
+    };
+    if mapping.faults == FaultHandling::Exclude {
+        apply_exclusions(&mut table, &faults, findings);
+    }
     if mapping.conventions.missing == MissingValues::Bridge {
         bridge_gaps(&mut table, mapping.conventions.bridge_s.unwrap_or(BRIDGED_S), findings);
     }

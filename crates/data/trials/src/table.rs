@@ -130,3 +130,26 @@ pub(crate) struct Table {
     /// Calendar time of time zero, if the file contains it.
     pub start: Option<TimeOrigin>,
 }
+
+/// Source of the values of a table; a gap is NaN.
+pub(crate) trait TableValues {
+    /// Returns the values of a column in SI units, where there is one.
+    fn column_values(&self, target: ColumnTarget) -> Option<&[f64]>;
+
+    /// Returns the values of a channel, where it is recorded.
+    fn channel_values(&self, channel: Channel) -> Option<&[f64]> {
+        self.column_values(ColumnTarget::Channel(channel))
+    }
+
+    /// Returns the values of a quantity from which channels are computed, where it is recorded.
+    fn raw_values(&self, raw: RawQuantity) -> Option<&[f64]> {
+        self.column_values(ColumnTarget::Raw(raw))
+    }
+}
+
+impl TableValues for Table {
+    fn column_values(&self, target: ColumnTarget) -> Option<&[f64]> {
+        let at = self.columns.iter().position(|column| column.target == target)?;
+        self.values.get(at).map(Vec::as_slice)
+    }
+}

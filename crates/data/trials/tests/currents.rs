@@ -58,6 +58,38 @@ fn still_water_and_a_zigzag_alone_state_no_current() {
     assert_eq!(estimate_currents(&[trial("zigzag.csv", false, (0.5, 0.0))]), []);
 }
 
+/// A wind from the north, which carries the ship so fast to the south and slows it when it is ahead.
+fn with_wind(mut one: Trial, leeway: f64) -> Trial {
+    let psi = one.channels[&Channel::Psi].clone();
+    for (channel, factor, part) in
+        [(Channel::U, 0.4, f64::cos as fn(f64) -> f64), (Channel::V, -1.0, f64::sin)]
+    {
+        let values = one.channels.get_mut(&channel).unwrap();
+        values.iter_mut().zip(&psi).for_each(|(value, psi)| *value -= factor * leeway * part(*psi));
+    }
+    one
+}
+
+#[test]
+fn leeway_in_a_wind_is_no_current() {
+    let windy = with_wind(trial("turn.csv", true, (0.0, 0.0)), 0.15);
+    assert_eq!(estimate_currents(&[windy]), []);
+}
+
+#[test]
+fn a_ship_that_still_slows_down_has_no_current() {
+    // A large ship in its first turn and a half: surge and sway settle over ten minutes.
+    let mut one = trial("turn.csv", true, (0.0, 0.0));
+    let settling = |t: f64| (-t / 600.0).exp();
+    let added: Vec<(f64, f64)> =
+        one.t_s.iter().map(|t| (2.5 * settling(*t), 0.4 * settling(*t))).collect();
+    for (channel, at) in [(Channel::U, 0), (Channel::V, 1)] {
+        let values = one.channels.get_mut(&channel).unwrap();
+        values.iter_mut().zip(&added).for_each(|(value, add)| *value += [add.0, add.1][at]);
+    }
+    assert_eq!(estimate_currents(&[one]), []);
+}
+
 #[test]
 fn logs_over_the_ground_and_through_the_water_give_the_current() {
     let planted = (0.25, 0.35);

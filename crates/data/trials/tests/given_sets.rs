@@ -10,7 +10,9 @@ use std::path::{Path, PathBuf};
 
 use sistership_model::manifest::RudderSign;
 use sistership_model::trial::{Channel, Trial};
-use sistership_trials::{ManifestProposal, ProposalRequest, find_faults, load_path, propose_files};
+use sistership_trials::{
+    ManifestProposal, ProposalRequest, load_cleaned, load_path, propose_files,
+};
 
 /// Files of a set by the ending of their names, in order.
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
@@ -33,7 +35,7 @@ fn import(files: &[PathBuf]) -> (ManifestProposal, Vec<Result<Trial, String>>) {
         std::fs::write(&place, proposal.manifest.to_yaml().unwrap()).unwrap();
     };
     write(&proposal);
-    proposal.manifest.declarations.exclude = find_faults(&place).unwrap();
+    proposal.manifest.declarations.exclude = load_cleaned(&place).unwrap().excluded;
     write(&proposal);
     for one in &proposal.manifest.declarations.exclude {
         println!("{}: {} ({})", one.file, one.summary_text(), one.rows.clone().unwrap_or_default());

@@ -7,8 +7,8 @@ use clap::Args;
 use sistership_model::trial::Trial;
 use sistership_model::{FileError, Vessel, Zoo};
 use sistership_trials::{
-    ColumnGuess, GivenColumn, ImportTemplate, ManifestFile, ProposalRequest, Refusal, Role,
-    estimate_currents, find_faults, load_path, missing_channels, propose_files,
+    CleanedTrials, ColumnGuess, GivenColumn, ImportTemplate, ManifestFile, ProposalRequest,
+    Refusal, Role, estimate_currents, load_cleaned, missing_channels, propose_files,
 };
 
 use super::import_bundle;
@@ -156,9 +156,10 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     // Segmentation first: faults are then searched only in the segments that become trials.
     let logs =
         segment_logs(&mut proposal.manifest, folder, ship_length(vessel.as_deref(), arguments));
-    let excluded = with_draft(&proposal.manifest, folder, |draft| Ok(find_faults(draft)?))?;
+    // One pass: trials as the manifest with the exclusions gives them.
+    let CleanedTrials { trials, excluded } =
+        with_draft(&proposal.manifest, folder, |draft| Ok(load_cleaned(draft)?))?;
     proposal.manifest.declarations.exclude.clone_from(&excluded);
-    let trials = with_draft(&proposal.manifest, folder, |draft| Ok(load_path(draft)?.trials))?;
     let (trials, errors) = accepted_trials(trials);
     let currents = estimate_currents(&trials);
     proposal.manifest.declarations.currents.clone_from(&currents);

@@ -1,6 +1,6 @@
 //! Text output of `sistership import`: a summary, or every column on request.
 
-use sistership_trials::TrialCurrent;
+use sistership_trials::{Exclusion, TrialCurrent};
 
 use super::import_outcome::{GuessRow, ImportDocument, LawNeeds};
 use crate::output::format_count;
@@ -99,12 +99,25 @@ fn format_questions<'a>(rows: impl Iterator<Item = &'a GuessRow>) -> String {
     all.into_iter().map(|question| format!("  {question}\n")).collect()
 }
 
+/// Formats one line for each file, reason and set of rows; channels that lack the same rows share it.
 fn format_exclusions(import: &ImportDocument) -> String {
-    import
-        .excluded
-        .iter()
-        .map(|one| format!("excluded of {}: {}\n", one.file, one.summary_text()))
-        .collect()
+    let mut lines: Vec<(&Exclusion, Vec<&str>)> = Vec::new();
+    for one in &import.excluded {
+        let alike = |other: &Exclusion| {
+            (&one.file, &one.rows, &one.why) == (&other.file, &other.rows, &other.why)
+        };
+        let channel = one.channel.as_deref();
+        match lines.iter_mut().find(|(other, _)| alike(other)) {
+            Some((_, channels)) => channels.extend(channel),
+            None => lines.push((one, channel.into_iter().collect())),
+        }
+    }
+    let line = |(one, channels): (&Exclusion, Vec<&str>)| {
+        let channel = Some(channels.join(", ")).filter(|names| !names.is_empty());
+        let all = Exclusion { channel, ..one.clone() };
+        format!("excluded of {}: {}\n", one.file, all.summary_text())
+    };
+    lines.into_iter().map(line).collect()
 }
 
 fn format_currents(import: &ImportDocument) -> String {

@@ -20,6 +20,10 @@ const HEADING_RATE: f64 = 0.1;
 /// m/s and m/s2; a step of a speed sensor, and an acceleration beyond any ship's.
 const SPEED_STEP: f64 = 5.0;
 const ACCELERATION: f64 = 2.0;
+/// Largest fraction of positions that jump, and their number in a short trial: with more, the column
+/// or its unit is wrong, and the trial is refused.
+const MAX_JUMPS: f64 = 0.01;
+const FEW_JUMPS: usize = 4;
 /// Multiple of the usual position step from which a step is reported.
 const UNUSUAL: f64 = 10.0;
 
@@ -31,32 +35,88 @@ pub(crate) fn check_jumps(recording: &Recording, findings: &mut Findings) {
     }
 }
 
-fn check_position(recording: &Recording, findings: &mut Findings) {
-    let (Some(x), Some(y)) = (recording.channel(Channel::X), recording.channel(Channel::Y)) else {
+/// Skips the row at each jump of the position if these are few, so that a segment ends there and
+/// nothing is fitted across it.
+pub(crate) fn split_at_jumps(recording: &mut Recording, findings: &mut Findings) {
+    let Some(steps) = PositionSteps::new(recording) else { return };
+    let samples = 1..recording.trial.len();
+    let jumps: Vec<usize> = samples.clone().filter(|&k| steps.is_new_jump(k)).collect();
+    if jumps.is_empty() || jumps.len() > FEW_JUMPS.max((MAX_JUMPS * steps.t.len() as f64) as usize)
+    {
         return;
-    };
-    let (t, header) = (recording.time(), recording.column_header(Channel::X));
-    let step = |k: usize| (x[k] - x[k - 1]).hypot(y[k] - y[k - 1]);
-    let jumps = |k: usize| step(k) > FIX_STEP + MAX_SPEED * (t[k] - t[k - 1]);
-    // A jump across a gap is only a warning: segments begin there, and nothing is fitted across it.
-    let begins = |k: usize| recording.segments.iter().any(|segment| segment.start == k);
-    let gaps = recording.find_samples(1..t.len(), |k| jumps(k) && begins(k));
+    }
+    let hits = recording.find_samples(samples, |k| steps.is_new_jump(k));
+    findings.report_rows(Severity::Warning, recording.column_header(Channel::X), &hits, |k| {
+        format!(
+            "the position jumps {:.1} m in {:.3} s: the row is skipped, and the trial is not fitted \
+             across it",
+            steps.step(k),
+            steps.interval(k)
+        )
+    });
+    let ranges: Vec<_> = jumps.into_iter().map(|k| k..k + 1).collect();
+    recording.leave_out(&ranges);
+    recording.settle_time();
+}
+
+/// Steps between the positions of neighbouring samples.
+struct PositionSteps<'a> {
+    recording: &'a Recording,
+    t: &'a [f64],
+    x: &'a [f64],
+    y: &'a [f64],
+}
+
+impl<'a> PositionSteps<'a> {
+    fn new(recording: &'a Recording) -> Option<Self> {
+        let (x, y) = (recording.channel(Channel::X)?, recording.channel(Channel::Y)?);
+        Some(Self { recording, t: recording.time(), x, y })
+    }
+
+    fn step(&self, k: usize) -> f64 {
+        (self.x[k] - self.x[k - 1]).hypot(self.y[k] - self.y[k - 1])
+    }
+
+    fn interval(&self, k: usize) -> f64 {
+        self.t[k] - self.t[k - 1]
+    }
+
+    fn is_jump(&self, k: usize) -> bool {
+        self.step(k) > FIX_STEP + MAX_SPEED * self.interval(k)
+    }
+
+    /// Returns true for a jump at which no segment begins.
+    fn is_new_jump(&self, k: usize) -> bool {
+        self.is_jump(k) && !self.begins_segment(k)
+    }
+
+    fn begins_segment(&self, k: usize) -> bool {
+        self.recording.segments.iter().any(|segment| segment.start == k)
+    }
+}
+
+fn check_position(recording: &Recording, findings: &mut Findings) {
+    let Some(steps) = PositionSteps::new(recording) else { return };
+    let (samples, header) = (1..steps.t.len(), recording.column_header(Channel::X));
+    // Segments begin at a gap, and nothing is fitted across it.
+    let gaps =
+        recording.find_samples(samples.clone(), |k| steps.is_jump(k) && steps.begins_segment(k));
     findings.report_rows(Severity::Warning, header, &gaps, |k| {
         format!(
             "the position jumps {:.1} m across a gap; the trial is not fitted across it",
-            step(k)
+            steps.step(k)
         )
     });
-    let hits = recording.find_samples(1..t.len(), |k| jumps(k) && !begins(k));
+    let hits = recording.find_samples(samples, |k| steps.is_new_jump(k));
     findings.report_rows(Severity::Error, header, &hits, |k| {
         format!(
             "the position jumps {:.1} m in {:.3} s; remove the faulty fix, or split the file there",
-            step(k),
-            t[k] - t[k - 1]
+            steps.step(k),
+            steps.interval(k)
         )
     });
     if hits.is_empty() {
-        report_unusual_steps(recording, step, findings);
+        report_unusual_steps(recording, |k| steps.step(k), findings);
     }
 }
 

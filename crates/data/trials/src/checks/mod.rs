@@ -22,6 +22,7 @@ pub(crate) fn run_checks(recording: &mut Recording, findings: &mut Findings) {
     // Sampling interval and segments are only defined once time increases; the checks below use
     // them.
     recording.settle_time();
+    jumps::split_at_jumps(recording, findings);
     time::report_gaps(recording, findings);
     jumps::check_jumps(recording, findings);
     yaw::check_yaw(recording, findings);

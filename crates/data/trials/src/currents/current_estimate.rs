@@ -11,11 +11,9 @@ pub(super) struct CurrentEstimate {
     pub error: f64,
 }
 
-/// Least current that is stated, as a multiple of its standard error and in m/s. The standard error
-/// is too small where a turn is not steady: a simulated log without a current shows 0.09 m/s with one
-/// of 0.021.
-const LEAST_ERRORS: f64 = 4.0;
-const LEAST_M_S: f64 = 0.1;
+/// Multiple of the standard error beyond which a current is stated, and two currents differ: 0.1 % of
+/// normal errors of two components are beyond (chi-squared of two degrees of freedom, 13.8).
+const CLEAR_ERRORS: f64 = 3.7;
 /// Largest standard error of an estimate that is used, m/s.
 pub(super) const LARGEST_ERROR: f64 = 0.05;
 
@@ -25,8 +23,31 @@ impl CurrentEstimate {
         self.north.hypot(self.east)
     }
 
-    /// True if the current is large enough to be stated, and beyond its error.
+    /// True if the current is distinguishable from none.
     pub fn is_stated(&self) -> bool {
-        self.speed() > LEAST_M_S.max(LEAST_ERRORS * self.error)
+        self.speed() > CLEAR_ERRORS * self.error
     }
+
+    /// True if two estimates may be of one current.
+    pub fn agrees_with(&self, other: &Self) -> bool {
+        let distance = (self.north - other.north).hypot(self.east - other.east);
+        distance <= CLEAR_ERRORS * self.error.hypot(other.error)
+    }
+}
+
+/// Returns the mean of estimates weighted by their errors, if all may be of one current.
+pub(super) fn common_current(known: &[CurrentEstimate]) -> Option<CurrentEstimate> {
+    // Inverse variances, so that a short turn counts less than a long one.
+    let weights: f64 = known.iter().map(|one| one.error.powi(-2)).sum();
+    let mean = |of: fn(&CurrentEstimate) -> f64| {
+        known.iter().map(|one| of(one) * one.error.powi(-2)).sum::<f64>() / weights
+    };
+    let common = CurrentEstimate {
+        north: mean(|one| one.north),
+        east: mean(|one| one.east),
+        error: weights.powf(-0.5),
+    };
+    // Turns that disagree were in different water: none of them speaks for the others.
+    let alike = known.iter().all(|one| one.agrees_with(&common));
+    (alike && !known.is_empty()).then_some(common)
 }

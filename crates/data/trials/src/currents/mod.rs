@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sistership_model::trial::Trial;
 
-use current_estimate::CurrentEstimate;
+use current_estimate::{CurrentEstimate, common_current};
 pub(crate) use subtract::subtract_current;
 
 /// Velocity of the water over the ground during a trial.
@@ -35,9 +35,6 @@ impl TrialCurrent {
     }
 }
 
-/// Largest difference of two trials of one current, m/s.
-const ALIKE_M_S: f64 = 0.1;
-
 /// Returns the current of each trial that shows one. Trials without evidence of their own, such as
 /// zigzags, take that of the others if these agree.
 pub fn estimate_currents(trials: &[Trial]) -> Vec<TrialCurrent> {
@@ -59,24 +56,6 @@ pub fn estimate_currents(trials: &[Trial]) -> Vec<TrialCurrent> {
         })
     });
     each.collect()
-}
-
-/// Returns the mean of estimates weighted by their errors, if all are alike.
-fn common_current(known: &[CurrentEstimate]) -> Option<CurrentEstimate> {
-    // Inverse variances, so that a short turn counts less than a long one.
-    let weights: f64 = known.iter().map(|one| one.error.powi(-2)).sum();
-    let mean = |of: fn(&CurrentEstimate) -> f64| {
-        known.iter().map(|one| of(one) * one.error.powi(-2)).sum::<f64>() / weights
-    };
-    let common = CurrentEstimate {
-        north: mean(|one| one.north),
-        east: mean(|one| one.east),
-        error: weights.powf(-0.5),
-    };
-    let distance = |one: &CurrentEstimate| (one.north - common.north).hypot(one.east - common.east);
-    // Trials that disagree were in different water: none of them speaks for the others.
-    let alike = known.iter().all(|one| distance(one) < ALIKE_M_S);
-    (alike && !known.is_empty()).then_some(common)
 }
 
 fn round_to_mm(value: f64) -> f64 {

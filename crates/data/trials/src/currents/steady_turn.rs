@@ -1,13 +1,13 @@
-//! The steady part of a turning circle.
+//! The steady parts of turning circles.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 
 use sistership_model::trial::{Channel, Trial};
 
-/// Change of heading after which a turn is steady (MSC/Circ.1053, appendix: speed and yaw rate are
+/// Changes of heading after which a turn may be steady (MSC/Circ.1053, appendix: speed and yaw rate are
 /// steady after 90 to 180 degrees).
-const UNSTEADY_RAD: f64 = FRAC_PI_2;
+const UNSTEADY_RAD: [f64; 2] = [FRAC_PI_2, PI];
 /// Least change of heading in the steady part.
 const LEAST_RAD: f64 = 1.25 * PI;
 /// Largest deviation of the yaw rate from its upper quartile within a turn, as a fraction of it.
@@ -19,17 +19,23 @@ pub(super) struct SteadyTurn {
     pub turned_rad: f64,
 }
 
-/// Returns the longest steady turn of a trial: the heading changes in one direction at an even rate.
-pub(super) fn steady_turn(trial: &Trial) -> Option<SteadyTurn> {
-    let (psi, r) = (trial.channel(Channel::Psi)?, trial.channel(Channel::R)?);
+/// Returns the turns of a trial, in which the heading changes in one direction at an even rate; of
+/// each the parts that may be steady, an earlier and a later one.
+pub(super) fn steady_turns(trial: &Trial) -> Vec<Vec<SteadyTurn>> {
+    let (Some(psi), Some(r)) = (trial.channel(Channel::Psi), trial.channel(Channel::R)) else {
+        return Vec::new();
+    };
     let turns = trial.segments().into_iter().flat_map(|segment| even_runs(r, segment));
-    let steady = turns.filter_map(|turn| {
-        let begun = turn.clone().find(|&k| (psi[k] - psi[turn.start]).abs() > UNSTEADY_RAD)?;
-        let turned_rad = (psi[turn.end - 1] - psi[begun]).abs();
-        // Whole turns are not needed: the velocity that turns with the ship is fitted as well.
-        (turned_rad > LEAST_RAD).then_some(SteadyTurn { samples: begun..turn.end, turned_rad })
+    let parts = turns.map(|turn| {
+        let part = |unsteady_rad: f64| {
+            let begun = turn.clone().find(|&k| (psi[k] - psi[turn.start]).abs() > unsteady_rad)?;
+            let turned_rad = (psi[turn.end - 1] - psi[begun]).abs();
+            // Whole turns are not needed: the velocity that turns with the ship is fitted as well.
+            (turned_rad > LEAST_RAD).then_some(SteadyTurn { samples: begun..turn.end, turned_rad })
+        };
+        UNSTEADY_RAD.into_iter().filter_map(part).collect()
     });
-    steady.max_by(|a, b| a.turned_rad.total_cmp(&b.turned_rad))
+    parts.collect()
 }
 
 /// Returns the runs of samples that turn to one side at around the usual rate.
