@@ -11,7 +11,8 @@ use sistership_priors::transfer::prepare_ship;
 use sistership_propulsion::{PropulsionFault, check_straight, check_turning};
 use sistership_simulation::Ship;
 use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_zigzags};
-use sistership_simulation::recorded::{RecordedTrial, ReplaySettings, replay_trials};
+use sistership_simulation::recorded::{RecordedTrial, ReplaySettings, TrialReplay, replay_trials};
+use sistership_simulation::state::at;
 
 use crate::thresholds::SIMULATION_CHECK;
 
@@ -44,14 +45,20 @@ fn rudder_orders() -> Vec<RudderOrder> {
 /// motion: the order, and where the simulation stops. `None` if it completes all of them, or if the
 /// records lack an input of its law.
 pub fn simulation_fault(model: &Model, law: &Law, trials: &[&Trial]) -> Option<SimulationFault> {
-    let mut helms =
-        rudder_records((model, law), trials, (&rudder_orders(), SIMULATION_CHECK.lengths))?;
-    helms.extend(motion_records((model, law), trials).unwrap_or_default());
+    let helms = rudder_records((model, law), trials, (&rudder_orders(), SIMULATION_CHECK.lengths))?;
+    // Motions of the trials may be astern already.
+    let moving = motion_records((model, law), trials).unwrap_or_default();
     let ship = prepare_ship(model, law, trials).ok()?;
-    let steering = replay_fault(&ship, &helms);
+    // A craft that is steered by a difference of thrust has one thruster astern in a hard turn.
+    let steering = match law.steers_by_difference() {
+        true => replay_fault(&ship, &helms, completion_fault),
+        false => replay_fault(&ship, &helms, ahead_fault),
+    };
+    let steering = steering.or_else(|| replay_fault(&ship, &moving, completion_fault));
     let steering = steering.or_else(|| zigzag_fault(&ship, &model.steering));
     let propulsion = || {
-        let engine = replay_fault(&ship, &engine_records((model, law), trials).unwrap_or_default());
+        let engine = engine_records((model, law), trials).unwrap_or_default();
+        let engine = replay_fault(&ship, &engine, completion_fault);
         engine.or_else(|| propulsion_fault(&ship))
     };
     steering
@@ -59,16 +66,34 @@ pub fn simulation_fault(model: &Model, law: &Law, trials: &[&Trial]) -> Option<S
         .or_else(|| propulsion().map(SimulationFault::Propulsion))
 }
 
-/// First record that a ship does not complete.
-fn replay_fault(ship: &Ship, records: &[Trial]) -> Option<String> {
+/// First fault of a ship in records.
+fn replay_fault(
+    ship: &Ship,
+    records: &[Trial],
+    fault: fn(&TrialReplay) -> Option<String>,
+) -> Option<String> {
     let all: Vec<RecordedTrial<'_>> =
         records.iter().map(|trial| RecordedTrial { trial, coefficients: &[] }).collect();
     // Records are simulated in lockstep, which makes many of them cheap.
     let runs = replay_trials(ship, &all, &ReplaySettings::default()).ok()?;
-    let mut stopped =
-        records.iter().zip(&runs).filter_map(|(one, run)| Some((one, run.stopped.as_ref()?)));
-    let (record, stopped) = stopped.next()?;
-    Some(format!("does not complete {}: {stopped}", record.name))
+    let mut faults = records.iter().zip(&runs).filter_map(|(one, run)| Some((one, fault(run)?)));
+    let (record, fault) = faults.next()?;
+    Some(format!("does not complete {}: {fault}", record.name))
+}
+
+/// Where and why a simulation stops.
+fn completion_fault(run: &TrialReplay) -> Option<String> {
+    run.stopped.as_ref().map(ToString::to_string)
+}
+
+/// The same, or when a ship that begins ahead goes astern, which none does by its rudder while its
+/// propeller turns ahead.
+fn ahead_fault(run: &TrialReplay) -> Option<String> {
+    let astern = || {
+        let place = run.track.states.iter().position(|state| state[at::U] < 0.0)?;
+        Some(format!("goes astern at {:.0} s with its propeller ahead", run.track.t_s[place]))
+    };
+    completion_fault(run).or_else(astern)
 }
 
 /// Fault of a ship with the propeller stopped or reversed, straight ahead or out of a turn. A ship

@@ -97,7 +97,7 @@ pub(super) struct SimulationCheckThresholds {
     pub records: usize,
     /// Angles of turns, to both sides, as shares of the gear's limit, dimensionless. Source:
     /// between those of the standard manoeuvres; docs/evidence/plain.md.
-    pub turns: [f64; 3],
+    pub turns: [f64; 4],
     /// Duration of each of these, in units of `L/U`, dimensionless. Source: chosen, five times as
     /// long as models of folds are compared; docs/evidence/plain.md.
     pub lengths: f64,
@@ -115,7 +115,7 @@ pub(super) struct SimulationCheckThresholds {
 /// The values.
 pub(super) const SIMULATION_CHECK: SimulationCheckThresholds = SimulationCheckThresholds {
     records: 8,
-    turns: [0.25, 0.5, 0.75],
+    turns: [0.25, 0.5, 0.75, 1.0],
     lengths: 50.0,
     zigzags: 7,
     motions: 24,

@@ -2,7 +2,8 @@
 //!
 //! The self-propulsion point is that of the trials. With `s` the ratio of the advance ratio there
 //! to that of zero thrust and `c` the tangent of the advance angle, the derivative of surge by the
-//! speed there is `-(R/u)(2 + s/(1 - s) - c^2/(1 + c^2))`: the derivative from the trials gives the
+//! speed there is `-(R/u)(2/(1 + h^4) + s/(1 - s) - c^2/(1 + c^2))`, `h` the speed by that of the hump
+//! of the resistance: the derivative from the trials gives the
 //! resistance `R`, and the estimate from particulars gives it beforehand. Both are weighted by
 //! their precision.
 
@@ -16,6 +17,7 @@ use crate::covered::{CoveredRange, covered_revolutions, covered_speed_ratios, co
 use crate::slope::{UncertainValue, surge_derivative};
 use crate::straight_surge::StraightSurge;
 use crate::thresholds::BALANCE;
+use crate::waves::{MovingHull, hump_ratio};
 
 /// Evidence on a model's propulsion.
 #[derive(Debug, Clone, Copy)]
@@ -72,6 +74,8 @@ pub fn model_balance(of: &PropulsionEvidence<'_>) -> Option<Propulsion> {
     add("revolutions", Quantity::new(n_rps, TRIALS));
     add("loading", Quantity::new(working.loading, working.source));
     add("advance", Quantity::new(working.advance, working.source));
+    let hump = known_particular(of, "lpp_m").map_or(0.0, |length_m| hump_ratio(length_m, speed));
+    add("hump", Quantity::new(hump, CHOSEN));
     add("backing", Quantity::new(BALANCE.backing, CHOSEN));
     // A law that takes revolutions holds for ratios of revolutions to speed; another one for the
     // revolutions of the trials.
@@ -156,14 +160,18 @@ fn approach_resistance(
     working: SelfPropulsionPoint,
     at: [f64; 2],
 ) -> Option<Quantity> {
-    let known = prior_resistance(of, at[0])?;
+    let PriorResistance { known, waves } = prior_resistance(of, at[0])?;
     let SelfPropulsionPoint { loading, advance, source } = working;
     let square = advance * advance;
-    let factor = 2.0 + loading / (1.0 - loading) - square / (1.0 + square);
+    let hump = known_particular(of, "lpp_m").map_or(0.0, |length_m| hump_ratio(length_m, at[0]));
+    // The power of the speed with which the resistance rises falls from 2 to 0 about the hump.
+    let power = 2.0 / (1.0 + hump.powi(4));
+    let factor = power + loading / (1.0 - loading) - square / (1.0 + square);
     let of_slope = surge_derivative(of.model, of.law, at).map(|slope| {
         let (mean, by) = (-slope.mean * at[0] / factor, at[0] / factor);
-        // The formula itself is uncertain by a share of the resistance, besides the posterior.
-        let own = BALANCE.slope_deviation * mean.abs().max(known.mean);
+        // The formula itself is uncertain by a share of the resistance, besides the posterior: the
+        // slope of wave resistance is steep before the hump and level behind it.
+        let own = BALANCE.slope_deviation.hypot(waves) * mean.abs().max(known.mean);
         UncertainValue { mean, deviation: (slope.deviation * by).hypot(own) }
     });
     // A resistance that is not positive is an error of the fit: the prior knowledge alone is used.
@@ -172,6 +180,12 @@ fn approach_resistance(
     };
     let source = format!("{source}, and the surge damping in the trials");
     Some(value_quantity(weighted_mean(known, fitted), source))
+}
+
+/// Prior knowledge of the resistance, N, and the share of waves in it.
+struct PriorResistance {
+    known: UncertainValue,
+    waves: f64,
 }
 
 fn value_quantity(figure: UncertainValue, source: String) -> Quantity {
@@ -184,10 +198,20 @@ fn weighted_mean(a: UncertainValue, b: UncertainValue) -> UncertainValue {
     UncertainValue { mean: (p * a.mean + q * b.mean) / (p + q), deviation: (p + q).powf(-0.5) }
 }
 
-/// Prior knowledge of the resistance, N; `None` without the length of the ship.
-fn prior_resistance(of: &PropulsionEvidence<'_>, speed_m_s: f64) -> Option<UncertainValue> {
-    let source = of.source.and_then(|source| source_resistance(source, speed_m_s));
-    source.or_else(|| known_resistance(of, speed_m_s))
+/// Prior knowledge of the resistance; `None` without the length of the ship.
+fn prior_resistance(of: &PropulsionEvidence<'_>, speed_m_s: f64) -> Option<PriorResistance> {
+    let (level, waves) = (known_resistance(of, speed_m_s)?, known_waves(of, speed_m_s));
+    let share = waves.mean / (waves.mean + level.mean);
+    // A source makes the waves of its own speed, which the resistance of a fast ship is not.
+    let source = of.source.filter(|_| share < 0.5);
+    let known = match source.and_then(|source| source_resistance(source, speed_m_s)) {
+        Some(source) => source,
+        None => UncertainValue {
+            mean: level.mean + waves.mean,
+            deviation: level.deviation.hypot(waves.deviation),
+        },
+    };
+    Some(PriorResistance { known, waves: share })
 }
 
 /// Resistance of the source by its coefficient `X_0`, N; `None` if its law has none.
@@ -201,18 +225,33 @@ fn source_resistance(source: SourcePropeller<'_>, speed_m_s: f64) -> Option<Unce
     (mean > 0.0).then_some(UncertainValue { mean, deviation })
 }
 
-/// Resistance by the estimate, else a typical one, N; `None` without the length of the ship.
-fn known_resistance(of: &PropulsionEvidence<'_>, speed_m_s: f64) -> Option<UncertainValue> {
-    let [particulars, estimate] =
+/// Value of a particular of the model, else of the estimate.
+fn known_particular(of: &PropulsionEvidence<'_>, name: &str) -> Option<f64> {
+    let particulars =
         [Some(&of.model.particulars), of.estimate.map(|estimate| &estimate.particulars)];
-    let value = |name: &str| {
-        let of = [particulars, estimate].into_iter().flatten();
-        of.filter_map(|own| particulars::particular_value(own, name)).next()
-    };
-    // Particulars of the model have priority over those of the estimate.
-    let density = value("water_density_kg_m3").unwrap_or(1025.0);
-    let length_m = value("lpp_m").filter(|length_m| *length_m > 0.0)?;
-    let draught_m = value("draught_m").unwrap_or(0.05 * length_m);
+    particulars.into_iter().flatten().find_map(|own| particulars::particular_value(own, name))
+}
+
+fn water_density(of: &PropulsionEvidence<'_>) -> f64 {
+    known_particular(of, "water_density_kg_m3").unwrap_or(1025.0)
+}
+
+/// Wave resistance, N; zero without the displacement.
+fn known_waves(of: &PropulsionEvidence<'_>, speed_m_s: f64) -> UncertainValue {
+    let value = |name: &str| known_particular(of, name).filter(|value| *value > 0.0);
+    let hull = value("lpp_m").zip(value("displacement_m3"));
+    hull.map_or(UncertainValue { mean: 0.0, deviation: 0.0 }, |(length_m, displacement_m3)| {
+        let density_kg_m3 = water_density(of);
+        MovingHull { length_m, displacement_m3, density_kg_m3, speed_m_s }.wave_resistance()
+    })
+}
+
+/// Resistance without waves by the estimate, else a typical one, N; `None` without the length of the
+/// ship.
+fn known_resistance(of: &PropulsionEvidence<'_>, speed_m_s: f64) -> Option<UncertainValue> {
+    let density = water_density(of);
+    let length_m = known_particular(of, "lpp_m").filter(|length_m| *length_m > 0.0)?;
+    let draught_m = known_particular(of, "draught_m").unwrap_or(0.05 * length_m);
     let unit = 0.5 * density * length_m * draught_m * speed_m_s.powi(2);
     let estimated = of.estimate.and_then(|estimate| estimate.coefficients.get("X_0"));
     Some(match estimated.filter(|x_0| x_0.value < 0.0) {

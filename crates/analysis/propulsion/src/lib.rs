@@ -8,6 +8,7 @@ mod covered;
 mod slope;
 mod straight_surge;
 mod thresholds;
+mod waves;
 
 pub use balance::{PropulsionEvidence, SourcePropeller, model_balance, needs_balance};
 pub use check::{PropulsionFault, check_straight, check_turning};

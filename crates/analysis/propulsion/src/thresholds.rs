@@ -61,6 +61,37 @@ pub(crate) const BALANCE: BalanceThresholds = BalanceThresholds {
     tails: 0.01,
 };
 
+/// Constants of the wave resistance of fast hulls.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WaveThresholds {
+    /// Froude number of the hump, dimensionless. Source: theory of a moving pressure: waves as long
+    /// as pi times the hull.
+    pub hump: f64,
+    /// Power of the Froude number with which waves rise, dimensionless. Source: chosen, with the
+    /// level at 0.26 a tenth of the resistance of KCS, at 0.4 a percent and a half of the weight.
+    pub rise: i32,
+    /// Level by weight at the slenderness below, dimensionless. Source: chosen, of the magnitude of
+    /// the round bilge series (NPL, not seen); docs/evidence/propulsion.md.
+    pub level: f64,
+    /// Slenderness `L/V^(1/3)` of that level, and the power with which it falls, dimensionless.
+    /// Source: as `level`.
+    pub slenderness: f64,
+    /// Power of the slenderness, dimensionless.
+    pub slender: f64,
+    /// Relative deviation, dimensionless. Source: chosen; hull forms differ by a half.
+    pub deviation: f64,
+}
+
+/// The values.
+pub(crate) const WAVES: WaveThresholds = WaveThresholds {
+    hump: 0.5,
+    rise: 8,
+    level: 0.06,
+    slenderness: 6.0,
+    slender: 2.5,
+    deviation: 0.5,
+};
+
 /// Constants of the checks.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CheckThresholds {

@@ -2,6 +2,7 @@
 //! of the trials, and those of the source's own standard manoeuvres.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use sistership_model::Model;
 use sistership_model::coefficient::Axis;
@@ -17,7 +18,7 @@ use sistership_simulation::state::{RECORDED_CHANNELS, StateVector, Trajectory, a
 use super::blocks::{RegressionBlock, RegressionBlocks};
 use super::outcome::RefineError;
 use super::rows::{RegressionTable, known_tables};
-use super::thresholds::SOURCE;
+use super::thresholds::{SOURCE, SPEED_SCALES};
 use sistership_numerics::{RegressionMoments, merge_trials};
 use sistership_priors::transfer::prepare_ship;
 
@@ -51,6 +52,8 @@ pub(super) struct OperatingEnvelope {
     pub mixed: Option<String>,
     /// Groups of samples: one for each trial and each manoeuvre.
     pub groups: Vec<SampleGroup>,
+    /// Number of groups at the speed of the trials, which come first.
+    pub at_speed: usize,
 }
 
 /// The samples of a trial or of a manoeuvre, with the source's accelerations at each.
@@ -146,12 +149,19 @@ impl OperatingEnvelope {
             &STANDARD_MANOEUVRES.map(|manoeuvre| (manoeuvre, &[][..])),
             &ManoeuvreSettings::default(),
         );
-        let sailed = sailed
-            .into_iter()
-            .flatten()
-            .filter_map(|sailed| asked.sample_group(None, asked.track_points(&sailed.track)));
-        let (recorded, sailed): (Vec<SampleGroup>, Vec<SampleGroup>) =
-            (recorded.collect(), sailed.collect());
+        let sailed: Vec<Trajectory> =
+            sailed.into_iter().flatten().map(|sailed| sailed.track).collect();
+        let at_scale = |scale: f64| {
+            let group = |track: &Trajectory| {
+                asked.sample_group(None, scaled_points(asked.track_points(track), scale))
+            };
+            sailed.iter().filter_map(group).collect::<Vec<SampleGroup>>()
+        };
+        let recorded: Vec<SampleGroup> = recorded.collect();
+        let [sailed, slower] = match cover_slower(trials) {
+            true => [at_scale(1.0), Vec::new()],
+            false => SPEED_SCALES.map(at_scale),
+        };
         if recorded.is_empty() && sailed.is_empty() {
             return Err(RefineError::Data(format!(
                 "`{}` completes neither the standard manoeuvres nor the trials; choose another \
@@ -159,9 +169,12 @@ impl OperatingEnvelope {
                 source.name
             )));
         }
-        // Trials and manoeuvres are weighted separately: each of the two counts as `SOURCE.samples`
-        // samples.
-        let groups = [recorded, sailed].into_iter().flat_map(with_equal_weight).collect();
+        // Trials and manoeuvres at each speed are weighted separately: each counts as
+        // `SOURCE.samples` samples.
+        let mut groups: Vec<SampleGroup> =
+            [recorded, sailed].into_iter().flat_map(with_equal_weight).collect();
+        let at_speed = groups.len();
+        groups.extend(with_equal_weight(slower));
         Ok(Self {
             source: source.name.clone(),
             law: law.name.clone(),
@@ -171,7 +184,19 @@ impl OperatingEnvelope {
                 && trials.iter().any(|trial| trial.channel(Channel::N).is_none()),
             mixed: None,
             groups,
+            at_speed,
         })
+    }
+
+    /// Returns the states at which a law holds: one that is expanded about the approach speed holds
+    /// only about it.
+    pub fn for_law(self: Arc<Self>, law: &Law) -> Arc<Self> {
+        if law.approach_speed_parameter().is_none() || self.at_speed == self.groups.len() {
+            return self;
+        }
+        let mut own = Arc::unwrap_or_clone(self);
+        own.groups.truncate(own.at_speed);
+        Arc::new(own)
     }
 
     /// Returns the same states with the accelerations of each axis shifted by a share of the
@@ -410,6 +435,25 @@ impl<'a> SourceResponse<'a> {
     }
 }
 
+/// True if the trials themselves reach the revolutions of the slowest of [`SPEED_SCALES`].
+fn cover_slower(trials: &[&Trial]) -> bool {
+    let recorded = trials.iter().filter_map(|trial| trial.channel(Channel::N)).flatten();
+    let [least, most] = recorded.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], n_rps| {
+        [least.min(n_rps.abs()), most.max(n_rps.abs())]
+    });
+    SPEED_SCALES.iter().all(|scale| least <= scale * most)
+}
+
+/// The points at another speed of the ship and its propeller, with the same angles: the ratios of
+/// drift, turning and advance, on which nondimensional forces depend, stay.
+fn scaled_points(mut points: Vec<OperatingPoint>, scale: f64) -> Vec<OperatingPoint> {
+    for (state, n_rps) in &mut points {
+        [at::U, at::V, at::P, at::R].into_iter().for_each(|place| state[place] *= scale);
+        *n_rps *= scale;
+    }
+    points
+}
+
 /// Speed and direction of the wind that makes the apparent wind zero. The source's aerodynamic
 /// forces do not enter the prior. The heading is north.
 fn calm_wind(state: &StateVector) -> (f64, f64) {
@@ -428,4 +472,30 @@ fn zero_rounding(regressors: &mut [Vec<f64>]) {
     let size = |column: &Vec<f64>| column.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let least = SOURCE.rounding * regressors.iter().map(size).fold(0.0, f64::max);
     regressors.iter_mut().filter(|column| size(column) < least).for_each(|column| column.fill(0.0));
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_model::Zoo;
+
+    use super::*;
+
+    #[test]
+    fn slower_states_are_for_laws_that_hold_there() {
+        let zoo = Zoo::load_embedded().unwrap();
+        let model = zoo.find_model("kvlcc2").unwrap();
+        let law = zoo.law(&model.law).unwrap();
+        let envelope = Arc::new(OperatingEnvelope::new(&model, law, &[]).unwrap());
+        let count = STANDARD_MANOEUVRES.len();
+        assert_eq!((envelope.at_speed, envelope.groups.len()), (count, 2 * count));
+        let fastest = |groups: &[SampleGroup]| {
+            let speeds = groups.iter().flat_map(|group| &group.samples.channels[&Channel::U]);
+            speeds.copied().fold(0.0, f64::max)
+        };
+        let [fast, slow] = [&envelope.groups[..count], &envelope.groups[count..]].map(fastest);
+        assert!((slow / fast - 0.5).abs() < 1e-6, "{slow} {fast}");
+        let groups = |name: &str| envelope.clone().for_law(zoo.law(name).unwrap()).groups.len();
+        assert_eq!((groups("low-speed"), groups("abkowitz")), (2 * count, count));
+    }
 }

@@ -13,6 +13,7 @@ use super::mixture;
 use super::outcome::{RefineError, Refinement, RefinementManoeuvres};
 use super::problem::RefinementProblem;
 use super::progress::{Progress, report_progress};
+use super::range_check::RangeFaults;
 use super::refinement_result::{ChosenCandidate, assemble_refinement};
 use super::ridge::{CoefficientFit, RidgeChoices};
 use super::thresholds::SELECTION;
@@ -28,8 +29,8 @@ use sistership_propulsion::{PropulsionContext, PropulsionFault, SourcePropeller}
 enum CandidateRefusal {
     #[error(transparent)]
     Constraints(LimitError),
-    #[error("does not complete a standard manoeuvre that the source completes: {0}")]
-    Manoeuvre(String),
+    #[error("leaves the physical range: {0}")]
+    Range(String),
 }
 
 /// Reason against the source where there is none: a law without coefficients.
@@ -47,13 +48,23 @@ struct FittedCandidate {
     fit: Option<CoefficientFit>,
     model: Model,
     manoeuvres: StandardManoeuvres,
+    faults: RangeFaults,
 }
 
 /// A fitted candidate, or the reason why it cannot be chosen.
 type CandidateOutcome = Result<FittedCandidate, CandidateRefusal>;
 
-/// Returns the refinement by the best candidate whose model, fitted on all trials, also completes
-/// the standard manoeuvres that the source completes.
+/// A candidate that leaves the physical range only at angles beyond those of its trials.
+struct SpareCandidate {
+    place: usize,
+    fitted: FittedCandidate,
+    /// Its error on held-out trials.
+    error: Option<f64>,
+}
+
+/// Returns the refinement by the best candidate whose model, fitted on all trials, also stays within
+/// the physical range in turns and zigzags at every angle of the steering gear; if there is none, by
+/// the best that does so at the angles of its trials, with a remark.
 ///
 /// # Errors
 /// Returns an error if no candidate's simulations run to their end, or if it was cancelled.
@@ -75,12 +86,19 @@ pub(super) fn finish_refinement(
         || standard_manoeuvres(&problem.transferred, problem.law),
         || best_candidate(&candidates).map(first),
     );
+    let mut spare: Option<SpareCandidate> = None;
     loop {
         // A refused candidate loses its error below, so that each round finds another one and the
         // loop ends.
         let Some(best) = best_candidate(&candidates) else {
-            let reasons = candidates.iter().filter_map(|one| one.option.reason.as_deref());
-            return Err(RefineError::all_diverged(reasons));
+            let Some(SpareCandidate { place, fitted, error }) = spare else {
+                let reasons = candidates.iter().filter_map(|one| one.option.reason.as_deref());
+                return Err(RefineError::all_diverged(reasons));
+            };
+            let option = &mut candidates[place].option;
+            (option.reason, option.error) = (None, error);
+            let taken = (candidates, place);
+            return build_refinement(problem, taken, (fitted, variants), before, progress);
         };
         report_progress(
             progress,
@@ -91,21 +109,22 @@ pub(super) fn finish_refinement(
             Some(sailed) => sailed,
             None => simulate_candidate(problem, candidates[best].solution.as_ref(), variants),
         };
-        match check_manoeuvres(sailed?, &before) {
+        let refusal = match sailed? {
+            Err(refusal) => refusal,
             Ok(fitted) => {
-                return build_refinement(
-                    problem,
-                    (candidates, best),
-                    (fitted, variants),
-                    before,
-                    progress,
-                );
+                let Some(fault) = fitted.faults.first() else {
+                    let taken = (candidates, best);
+                    return build_refinement(problem, taken, (fitted, variants), before, progress);
+                };
+                if fitted.faults.within.is_none() {
+                    let error = candidates[best].option.error;
+                    spare.get_or_insert(SpareCandidate { place: best, fitted, error });
+                }
+                CandidateRefusal::Range(fault)
             }
-            Err(refusal) => {
-                let option = &mut candidates[best].option;
-                (option.reason, option.error) = (Some(refusal.to_string()), None);
-            }
-        }
+        };
+        let option = &mut candidates[best].option;
+        (option.reason, option.error) = (Some(refusal.to_string()), None);
     }
 }
 
@@ -141,19 +160,8 @@ fn simulate_candidate(
     let model =
         propulsion_context(problem).with_propulsion(refined_model(problem, fitted.as_ref()));
     let manoeuvres = standard_manoeuvres(&model, problem.law);
-    Ok(Ok(FittedCandidate { fit: fitted, model, manoeuvres }))
-}
-
-/// Refuses a candidate that fails a standard manoeuvre although the source completes all of them.
-fn check_manoeuvres(sailed: CandidateOutcome, before: &StandardManoeuvres) -> CandidateOutcome {
-    let fitted = sailed?;
-    let failures = &fitted.manoeuvres.failures;
-    // If the source itself fails a manoeuvre, nothing can be required of the fit.
-    let worse = failures.iter().find(|one| before.failures.is_empty() && !one.is_empty());
-    match worse {
-        Some(failure) => Err(CandidateRefusal::Manoeuvre(failure.clone())),
-        None => Ok(fitted),
-    }
+    let faults = RangeFaults::simulate(&model, problem.law, &problem.whole, &manoeuvres);
+    Ok(Ok(FittedCandidate { fit: fitted, model, manoeuvres, faults }))
 }
 
 /// The propulsion context of the law and the trials, with the estimate from particulars where there
@@ -192,8 +200,7 @@ fn build_refinement(
     let factor = fold_factor(&model, problem.law, &candidates[best].left_out);
     widen_errors(&mut model, fitted.as_mut(), factor);
     let propulsion = propulsion_context(problem);
-    // The balance is weighted by the posterior, which is known only now.
-    let model = propulsion.with_posterior(model);
+    let model = with_posterior_balance(problem, &propulsion, (model, &taken.faults));
     let fault = propulsion
         .propulsion_fault(&model)
         .filter(|fault| *fault != PropulsionFault::NoRevolutions);
@@ -210,8 +217,26 @@ fn build_refinement(
     let manoeuvres =
         RefinementManoeuvres { source: before, refined: taken.manoeuvres, bands, course, measured };
     let propulsion_fault = fault.map(|fault| fault.to_string());
-    let chosen = ChosenCandidate { candidates, best, model, fitted, propulsion_fault };
+    let range_fault = taken.faults.beyond;
+    let chosen = ChosenCandidate { candidates, best, model, fitted, propulsion_fault, range_fault };
     assemble_refinement(problem, chosen, manoeuvres)
+}
+
+/// The model with its balance weighted by its posterior, which is known only now, unless it then
+/// leaves the physical range where it did not before.
+fn with_posterior_balance(
+    problem: &RefinementProblem<'_>,
+    propulsion: &PropulsionContext<'_>,
+    (model, before): (Model, &RangeFaults),
+) -> Model {
+    if model.propulsion.is_none() {
+        return model;
+    }
+    let balanced = propulsion.with_posterior(model.clone());
+    let standard = StandardManoeuvres::default();
+    let faults = RangeFaults::simulate(&balanced, problem.law, &problem.whole, &standard);
+    let is_worse = faults.within.is_some() || faults.beyond.is_some() && before.beyond.is_none();
+    if is_worse { model } else { balanced }
 }
 
 /// Multiplies all standard errors of a model and its fit by a factor.

@@ -42,7 +42,9 @@ impl PriorMeasure {
         let has_states = in_parts && law.helm_inputs().next().is_none();
         let envelope =
             has_states.then(|| OperatingEnvelope::new(source, law, trials).ok()).flatten();
-        envelope.map_or(Self::Trials, Self::Envelope)
+        envelope.map_or(Self::Trials, |envelope| {
+            Self::Envelope(Arc::unwrap_or_clone(Arc::new(envelope).for_law(law)))
+        })
     }
 
     /// Returns true if the prior is a source of another law, or a population.

@@ -26,6 +26,7 @@ mod posterior;
 mod problem;
 mod progress;
 mod published;
+mod range_check;
 mod refinement_result;
 mod replayed_trials;
 mod request;

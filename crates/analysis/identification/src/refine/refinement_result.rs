@@ -22,6 +22,9 @@ pub(super) struct ChosenCandidate {
     pub fitted: Option<CoefficientFit>,
     /// Fault of the model with the propeller stopped or reversed.
     pub propulsion_fault: Option<String>,
+    /// Manoeuvre in which the model leaves the physical range, beyond the rudder angles of its
+    /// trials.
+    pub range_fault: Option<String>,
 }
 
 /// Builds the refinement from the chosen candidate.
@@ -33,7 +36,7 @@ pub(super) fn assemble_refinement(
     taken: ChosenCandidate,
     manoeuvres: RefinementManoeuvres,
 ) -> Result<Refinement, RefineError> {
-    let ChosenCandidate { candidates, best, model, fitted, propulsion_fault } = taken;
+    let ChosenCandidate { candidates, best, model, fitted, propulsion_fault, range_fault } = taken;
     let held_out = held_out_errors(problem, &candidates, best, &model)?;
     let lambdas = candidates[best].option.lambda.clone();
     let (condition_number, collinear_groups) = fitted
@@ -42,6 +45,11 @@ pub(super) fn assemble_refinement(
     let mut remarks = refinement_remarks(problem, best, &lambdas);
     remarks.extend(model.propulsion.as_ref().map(sistership_propulsion::describe_balance));
     remarks.extend(propulsion_fault.map(|fault| format!("IMPLAUSIBLE propulsion: {fault}")));
+    remarks.extend(range_fault.map(|fault| {
+        format!(
+            "OUTSIDE the rudder angles of the trials the model leaves the physical range: {fault}"
+        )
+    }));
     if candidates[best].search.is_some() {
         remarks.push(SEARCHED.to_owned());
     }

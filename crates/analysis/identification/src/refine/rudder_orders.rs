@@ -8,7 +8,7 @@ use sistership_model::trial::{Channel, Trial};
 use sistership_model::vessel::Steering;
 use sistership_model::{Model, particulars};
 
-use super::thresholds::HELM;
+use super::thresholds::{HELM, SPEED_SCALES};
 use sistership_priors::transfer::trial_approach;
 
 /// Rudder orders of a record.
@@ -70,24 +70,39 @@ pub struct RecordStart {
     pub angle_rad: f64,
 }
 
-/// Returns a record for each order, `lengths` ship lengths long, from straight ahead at the speed
-/// and revolutions of the trials' approach, in their depth and without wind. `None` if the approach
-/// or the length is not known.
+/// Returns a record for each order and speed of [`SPEED_SCALES`], `lengths` ship lengths long, from
+/// straight ahead at that share of the speed and revolutions of the trials' approach, in their
+/// depth and without wind. `None` if the approach or the length is not known.
 pub fn rudder_records(
-    (model, law): (&Model, &Law),
+    of: (&Model, &Law),
     trials: &[&Trial],
     (helms, lengths): (&[RudderOrder], f64),
 ) -> Option<Vec<Trial>> {
+    let at_scale = |scale: f64| Some((scale, ahead_start(trials, scale)?));
+    let starts: Vec<(f64, RecordStart)> =
+        SPEED_SCALES.into_iter().map(at_scale).collect::<Option<_>>()?;
+    let one = |helm: &RudderOrder, (scale, start): &(f64, RecordStart)| {
+        // A slower ship takes longer for the same way.
+        let record = rudder_record(of, trials, (*helm, lengths / scale), start)?;
+        let slower = format!("{} at {scale} times the approach speed", record.name);
+        let name = if *scale == 1.0 { record.name.clone() } else { slower };
+        Some(Trial { name, ..record })
+    };
+    starts.iter().flat_map(|start| helms.iter().map(move |helm| one(helm, start))).collect()
+}
+
+/// The start of a record from straight ahead, at a share of the speed and revolutions of the
+/// trials' approach.
+fn ahead_start(trials: &[&Trial], scale: f64) -> Option<RecordStart> {
     let approach = trial_approach(trials)?;
     let motion = [
-        (Channel::U, Some(approach.speed_m_s)),
+        (Channel::U, Some(scale * approach.speed_m_s)),
         (Channel::V, Some(0.0)),
         (Channel::R, Some(0.0)),
-        (Channel::N, approach.n_rps),
+        (Channel::N, approach.n_rps.map(|n_rps| scale * n_rps)),
     ];
     let channels = motion.into_iter().filter_map(|(channel, value)| Some((channel, value?)));
-    let ahead = RecordStart { channels: channels.collect(), angle_rad: 0.0 };
-    helms.iter().map(|helm| rudder_record((model, law), trials, (*helm, lengths), &ahead)).collect()
+    Some(RecordStart { channels: channels.collect(), angle_rad: 0.0 })
 }
 
 /// Returns a record of an order from initial conditions, `lengths` ship lengths long, in the depth

@@ -168,6 +168,12 @@ pub(super) const SOURCE: SourceThresholds = SourceThresholds {
     ridges: [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8],
 };
 
+/// Speeds and revolutions, by those of the approach, at which sources are asked and models are
+/// compared and checked, dimensionless. Trials at one speed do not tell a force in its square from
+/// one in another power. Source: one half is between half and slow ahead, at which harbours are
+/// entered; without it and with it in docs/evidence/foreign_ships.md.
+pub(super) const SPEED_SCALES: [f64; 2] = [1.0, 0.5];
+
 /// Constants of the rudder orders that no trial had, under which the models of folds are compared.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HelmThresholds {
@@ -187,3 +193,20 @@ pub(super) struct HelmThresholds {
 /// The values.
 pub(super) const HELM: HelmThresholds =
     HelmThresholds { records: 4, lengths: 10.0, samples_a_length: 10.0, held: [1.0, 5.0] };
+
+/// Constants of the manoeuvres in which a fitted model must stay within the physical range.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RangeCheckThresholds {
+    /// Angles of turns, evenly to the gear's limit, a count. Source: derived: every 2.5 degrees of
+    /// 35, a fourth of the least angle of the standard manoeuvres.
+    pub turns: usize,
+    /// Turns by zigzags, a count. Source: derived: zigzags at the angles of the standard ones, and
+    /// at 30 degrees.
+    pub every: usize,
+    /// Step, by `L/U`, dimensionless. Source: as of steady motions in `simulation::manoeuvre`.
+    pub step: f64,
+}
+
+/// The values.
+pub(super) const RANGE_CHECK: RangeCheckThresholds =
+    RangeCheckThresholds { turns: 14, every: 4, step: 0.05 };

@@ -53,7 +53,7 @@ pub(super) fn blank_with_envelope(
     (model.speed_m_s, model.revolutions_rps) = (carried.speed_m_s, carried.revolutions_rps);
     model.steering = carried.steering;
     model.note = Some(format!("regressed on the accelerations of {}", source.name));
-    Ok((model, envelope))
+    Ok((model, envelope.for_law(law)))
 }
 
 #[cfg(test)]
