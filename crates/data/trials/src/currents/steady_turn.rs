@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use sistership_model::trial::{Channel, Trial};
 
-/// Changes of heading after which a turn may be steady (MSC/Circ.1053, appendix: speed and yaw rate are
-/// steady after 90 to 180 degrees).
-const UNSTEADY_RAD: [f64; 2] = [FRAC_PI_2, PI];
+/// Changes of heading after which a turn may be steady: speed and yaw rate are after 90 to 180 degrees
+/// (MSC/Circ.1053, appendix), those of large ships later.
+const UNSTEADY_RAD: [f64; 3] = [FRAC_PI_2, PI, 1.5 * PI];
 /// Least change of heading in the steady part.
 const LEAST_RAD: f64 = 1.25 * PI;
 /// Largest deviation of the yaw rate from its upper quartile within a turn, as a fraction of it.
@@ -20,7 +20,7 @@ pub(super) struct SteadyTurn {
 }
 
 /// Returns the turns of a trial, in which the heading changes in one direction at an even rate; of
-/// each the parts that may be steady, an earlier and a later one.
+/// each the parts that may be steady, the earliest first.
 pub(super) fn steady_turns(trial: &Trial) -> Vec<Vec<SteadyTurn>> {
     let (Some(psi), Some(r)) = (trial.channel(Channel::Psi), trial.channel(Channel::R)) else {
         return Vec::new();
