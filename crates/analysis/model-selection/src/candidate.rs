@@ -100,8 +100,12 @@ pub fn list_candidates(
         .filter_map(|name| zoo.law(name).cloned())
         .filter(|law| is_measured(law, trials))
         .collect();
+    // A typical ship is a better prior of the physical law than the accelerations of another one
+    // (docs/evidence/physical_law.md); with few trials there is no candidate without a source.
+    let is_regressed = |law: &&Arc<Law>| beside.estimate || law.typical.is_empty();
+    let regressed: Vec<Arc<Law>> = general.iter().filter(is_regressed).cloned().collect();
     let with_source =
-        sources.iter().flat_map(|source| source_candidates(zoo, source, &general, trials));
+        sources.iter().flat_map(|source| source_candidates(zoo, source, &regressed, trials));
     let approach = trial_approach(trials);
     // Without a source the trials alone determine the coefficients, from a model without any.
     let alone = general.iter().filter_map(|law| {

@@ -67,6 +67,7 @@ pub fn choose_candidate(all: &[(&CandidateEvaluation, bool)]) -> Option<usize> {
     let (tried, held): (Vec<&CandidateEvaluation>, Vec<bool>) = all.iter().copied().unzip();
     let sails = |place: &usize| tried[*place].error.is_some_and(f64::is_finite);
     let sailed: Vec<usize> = (0..tried.len()).filter(sails).collect();
+    let sailed = without_unsafe(&tried, sailed);
     // Errors are compared on the same trials, so that differences of jackknife values cancel what
     // trials have in common.
     let logs: Vec<LogError> = tried.iter().map(|one| LogError::from_errors(&one.each)).collect();
@@ -95,6 +96,21 @@ pub fn choose_candidate(all: &[(&CandidateEvaluation, bool)]) -> Option<usize> {
         !held[taken] && least(place, &taken).is_lt() && anywhere(place) < anywhere(&taken)
     };
     sailed.into_iter().filter(is_less_in_both).min_by(first).or(Some(taken))
+}
+
+/// Leaves out candidates of whose folds a model does not complete the random rudder orders, so that
+/// their variance elsewhere is not finite, if a fitted one does whose error is within a ratio
+/// ([`SEARCH`]`.unsafe_ratio`) of the least.
+fn without_unsafe(tried: &[&CandidateEvaluation], sailed: Vec<usize>) -> Vec<usize> {
+    let error = |place: &usize| tried[*place].error.unwrap_or(f64::INFINITY);
+    let is_safe = |place: &usize| tried[*place].variance.is_some_and(f64::is_finite);
+    let is_fitted = |place: &usize| tried[*place].coefficients > 0;
+    let least = sailed.iter().map(error).fold(f64::INFINITY, f64::min);
+    let is_near = |place: &&usize| is_fitted(place) && error(place) <= SEARCH.unsafe_ratio * least;
+    match sailed.iter().filter(is_near).any(is_safe) {
+        true => sailed.into_iter().filter(is_safe).collect(),
+        false => sailed,
+    }
 }
 
 #[cfg(test)]
@@ -146,6 +162,18 @@ mod tests {
         assert_eq!(choose_candidate(&[(&best, false), (&apart, true)]), Some(1));
         let far = entry(0, &[2.2, 2.4, 1.8, 2.1]);
         assert_eq!(choose_candidate(&[(&best, false), (&far, true)]), Some(0));
+    }
+
+    #[test]
+    fn a_model_that_random_orders_stop_gives_way_to_one_of_nearly_its_error() {
+        let of = |coefficients, error: f64, variance| CandidateEvaluation {
+            variance,
+            ..entry(coefficients, &[0.9 * error, 1.1 * error, error])
+        };
+        let (stops, near) = (of(180, 0.07, Some(f64::INFINITY)), of(21, 0.13, Some(0.07)));
+        assert_eq!(choice(&[stops.clone(), near]), Some(1));
+        assert_eq!(choice(&[stops.clone(), of(21, 0.7, Some(0.07))]), Some(0), "far off");
+        assert_eq!(choice(&[stops, of(0, 0.13, Some(0.0))]), Some(0), "a source as it is");
     }
 
     #[test]

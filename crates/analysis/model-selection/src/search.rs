@@ -273,8 +273,8 @@ fn leading_by_law(search: &CandidateSearch<'_>, tried: &[EvaluatedCandidate]) ->
 
 /// The leading candidates in weak form: trajectories seldom gain more than
 /// [`SEARCH`]`.trajectory_gain`. A population, which is near the least error wherever other ships
-/// determine the law, does not displace any of the others, nor does the best candidate of the physical
-/// law.
+/// determine the law, does not displace any of the others, nor do the best candidate of the physical
+/// law and the one without a source.
 fn leading_candidates(search: &CandidateSearch<'_>, tried: &[EvaluatedCandidate]) -> Vec<usize> {
     let fitted = order_by_error(tried.iter().filter(|one| one.rung == SelectionStage::Weak));
     let least = fitted.first().map_or(0.0, |(_, error)| *error);
@@ -287,8 +287,14 @@ fn leading_candidates(search: &CandidateSearch<'_>, tried: &[EvaluatedCandidate]
     // The weak form keeps the nonlinear parameters of the physical law at the means of their priors,
     // so that its error does not show what trajectories gain.
     let physical = |entrant: &usize| search.entrants[*entrant].law.name == PHYSICAL_LAW;
-    let first = fitted.iter().map(|(entrant, _)| *entrant).find(physical);
-    leading.extend(first.filter(|entrant| !leading.contains(entrant)));
+    let mut of_law = fitted.iter().map(|(entrant, _)| *entrant).filter(physical);
+    let first = of_law.next();
+    // Nor does it show what the prior of a typical ship does in trajectories.
+    let typical = of_law.find(|entrant| search.entrants[*entrant].source_law.is_none());
+    let physical: Vec<usize> = first.into_iter().chain(typical).collect();
+    let further = physical.into_iter().filter(|entrant| !leading.contains(entrant));
+    let further: Vec<usize> = further.collect();
+    leading.extend(further);
     leading.extend(population);
     leading
 }

@@ -47,6 +47,10 @@ pub(super) struct SearchThresholds {
     /// `k_v`: weight of the variance where no trial reaches, relative to the error on held-out
     /// trials, dimensionless. Source: `docs/evidence/plain.md`, which has half and double.
     pub elsewhere: f64,
+    /// Ratio to the least error up to which a model whose folds complete random rudder orders
+    /// replaces those whose do not, dimensionless. Source: `docs/evidence/physical_law.md`; as
+    /// [`Self::trajectory_gain`].
+    pub unsafe_ratio: f64,
     /// `T_r`: restart interval of simulations of held-out trials, in units of `L/U`, dimensionless.
     /// Source: `docs/evidence/plain.md`, which has half and double; the length of the segments of
     /// trajectories.
@@ -82,6 +86,7 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     population: 48,
     defensible: 1.0,
     elsewhere: 5.0,
+    unsafe_ratio: 3.0,
     restart: 5.0,
     part: 10.0,
     smoothing: 0.2,

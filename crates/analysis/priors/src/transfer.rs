@@ -9,6 +9,7 @@ use sistership_formula::Expr;
 use sistership_formula::units::Dimension;
 use sistership_model::estimated_particulars::SCALED;
 use sistership_model::law::Law;
+pub use sistership_model::law::TrialApproach;
 use sistership_model::model::{DERIVED_SOURCE, ModelKind};
 use sistership_model::particulars::{self, Particulars};
 use sistership_model::quantity::Quantity;
@@ -17,14 +18,8 @@ use sistership_model::vessel::Status;
 use sistership_model::{Model, Vessel};
 use sistership_simulation::{PlantError, Ship};
 
-/// Approach of a ship to its trials.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrialApproach {
-    /// Speed, m/s.
-    pub speed_m_s: f64,
-    /// Propeller revolutions, 1/s, where recorded.
-    pub n_rps: Option<f64>,
-}
+/// Source of a coefficient that has the typical value of its law.
+pub const TYPICAL_SOURCE: &str = "typical value of the law";
 
 /// Returns the approach of a set of trials: the median speed at their first samples; where they
 /// start from rest, the typical speed under way. `None` without velocities.
@@ -151,8 +146,9 @@ fn same_parameter(law: &Law, name: &str, source: &Model) -> Option<Quantity> {
     Some(Quantity::new(value, format!("as of {}", source.name)))
 }
 
-/// Creates a model of a law for a ship of which only the particulars are known: all coefficients of
-/// the law are zero, so that a prior with this mean is a plain ridge. Only trials give them values.
+/// Creates a model of a law for a ship of which only the particulars are known. Coefficients have the
+/// law's typical values, with their deviation over ships as standard error; where it has none they
+/// are zero, so that a prior with this mean is a plain ridge.
 ///
 /// # Errors
 /// Returns an error that names a parameter of the law that does not follow from the particulars.
@@ -161,7 +157,16 @@ pub fn blank_model(
     target: &Vessel,
     approach: Option<TrialApproach>,
 ) -> Result<Model, UnknownParameter> {
-    fill_model(law, (target, &complete_for_law(law, target, None)), approach, &|_| None)
+    let particulars = complete_for_law(law, target, None);
+    let mut model = fill_model(law, (target, &particulars), approach, &|_| None)?;
+    for (name, coefficient) in &mut model.coefficients {
+        let Some(typical) = law.typical_value(name, &particulars, approach) else { continue };
+        *coefficient = Quantity {
+            standard_error: Some(typical.deviation),
+            ..Quantity::new(typical.value, TYPICAL_SOURCE)
+        };
+    }
+    Ok(model)
 }
 
 /// Creates a blank model; values that do not follow from the particulars are given by the caller,

@@ -17,7 +17,8 @@ use crate::recorded::TrialReplay;
 use crate::state::RECORDED_CHANNELS;
 
 /// Standardised squared error per channel for samples that were not simulated because the
-/// simulation stopped: that of two independent motions of the same variance, `E (a - b)^2 = 2 s^2`.
+/// simulation stopped, and the most of any channel: that of two independent motions of the same
+/// variance, `E (a - b)^2 = 2 s^2`.
 const STOPPED_ERROR: f64 = 2.0;
 
 /// Standardised squared errors of simulations with one restart interval.
@@ -56,19 +57,23 @@ impl HorizonErrors {
     }
 }
 
+/// Mean over all samples of a trial, summed over the channels that it has and that vary: simulated
+/// samples with their error, the others as unrelated motions. A channel counts no more than an
+/// unrelated motion: how much further a simulation is off, such as the position of an unstable ship
+/// after a heading error of minutes, does not tell models apart, and would outweigh all other trials.
 fn error_with_stop(trial: &Trial, run: &TrialReplay, deviations: &BTreeMap<Channel, f64>) -> f64 {
-    let error = standardised_mse(&SquaredError::from_trial(trial, run), deviations);
-    // Channels count that the trial has and whose deviation is not zero.
-    let is_compared = |channel: &Channel| {
-        trial.channel(*channel).is_some() && deviations.get(channel).is_some_and(|d| *d > 0.0)
+    let error = SquaredError::from_trial(trial, run);
+    let (simulated, all) = (run.samples.len() as f64, trial.len().max(1) as f64);
+    let one = |&(channel, _): &(Channel, usize)| {
+        let deviation = deviations.get(&channel).filter(|deviation| **deviation > 0.0)?;
+        trial.channel(channel)?;
+        let own = error.channel_rmse(channel).map_or(0.0, |rmse| (rmse / deviation).powi(2));
+        let mean = (own * simulated + STOPPED_ERROR * (all - simulated)) / all;
+        // `min` would return the bound for an error that is not a number.
+        Some(if mean > STOPPED_ERROR { STOPPED_ERROR } else { mean })
     };
     // The first six recorded channels are those of the standardised error; roll is not among them.
-    let channels =
-        RECORDED_CHANNELS[..6].iter().filter(|(channel, _)| is_compared(channel)).count();
-    // Mean over all samples of the trial: simulated ones with their error, the others as unrelated
-    // motions.
-    let (simulated, all) = (run.samples.len() as f64, trial.len().max(1) as f64);
-    (error * simulated + STOPPED_ERROR * channels as f64 * (all - simulated)) / all
+    RECORDED_CHANNELS[..6].iter().filter_map(one).sum()
 }
 
 /// Returns the criterion and the share of each trial in it: the mean of the shares is the geometric
@@ -108,6 +113,7 @@ fn geometric_mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::state::{StateVector, at};
 
     fn horizon(each: &[f64]) -> HorizonErrors {
         HorizonErrors { mean: each.iter().sum::<f64>() / each.len() as f64, each: each.to_vec() }
@@ -130,6 +136,25 @@ mod tests {
         // Twice the long error is a factor of the root of two, whatever its size.
         let (doubled, _) = combine_horizons(&[short, horizon(&[4.0, 12.0])]);
         assert!((doubled / mean - 2.0_f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_channel_counts_no_more_than_an_unrelated_motion() {
+        let t_s: Vec<f64> = (0..10).map(f64::from).collect();
+        let channels = [(Channel::Y, vec![0.0; 10]), (Channel::R, vec![0.0; 10])].into();
+        let trial = Trial { t_s: t_s.clone(), channels, ..Trial::default() };
+        let error_at = |y_m: f64, r_rad_s: f64, simulated: usize| {
+            let mut state = StateVector::zeros();
+            (state[at::Y], state[at::R]) = (y_m, r_rad_s);
+            let mut run = TrialReplay::without_samples(false);
+            (run.samples, run.track.states) = ((0..simulated).collect(), vec![state; simulated]);
+            let deviations = [(Channel::Y, 2.0), (Channel::R, 0.1)].into();
+            HorizonErrors::with_stops(&[&trial], &[run], &deviations).mean
+        };
+        assert!((error_at(1.0, 0.05, 10) - 0.5).abs() < 1e-12);
+        assert!((error_at(1000.0, 0.05, 10) - 2.25).abs() < 1e-12, "the position alone is lost");
+        assert!((error_at(0.0, 0.0, 5) - 2.0).abs() < 1e-12, "half of both is not simulated");
+        assert!(!error_at(f64::NAN, 0.0, 10).is_finite());
     }
 
     #[test]

@@ -71,6 +71,14 @@ impl EquationForm {
         }
     }
 
+    /// Number of rows in the time of one, as far as they overlap: rows that count as one.
+    pub fn overlapping_rows(self) -> f64 {
+        match self {
+            Self::Differences(_) => 1.0,
+            Self::Windows(windows) => (windows.length_s / windows.hop_s).max(1.0),
+        }
+    }
+
     /// Smallest number of samples for `widest` coefficients an axis. Windows depend on each other
     /// far less than differences.
     pub fn least_samples(self, widest: f64) -> f64 {

@@ -22,6 +22,7 @@ use crate::constraints::LimitError;
 use sistership_assessment::course::course_figures;
 use sistership_assessment::uncertainty::{fold_factor, uncertainty_bands};
 use sistership_numerics::RidgeChoice;
+use sistership_priors::transfer::TYPICAL_SOURCE;
 use sistership_propulsion::{PropulsionContext, PropulsionFault, SourcePropeller};
 
 /// The error type for a candidate that cannot be chosen.
@@ -38,9 +39,15 @@ const NO_MODEL: &str = "a law without coefficients cannot be selected";
 
 /// Returns true if a model has coefficients and all of them are zero: the placeholder for a source
 /// where there is none.
-pub(super) fn has_only_zeros(model: &Model) -> bool {
+fn has_only_zeros(model: &Model) -> bool {
     let mut values = model.coefficients.values().peekable();
     values.peek().is_some() && values.all(|coefficient| coefficient.value == 0.0)
+}
+
+/// Returns true if no ship is the source of a model: its coefficients are zero, or typical values of
+/// the law.
+pub(super) fn has_no_source(model: &Model) -> bool {
+    has_only_zeros(model) || model.coefficients.values().any(|one| one.source == TYPICAL_SOURCE)
 }
 
 /// A candidate fitted on all trials, with the standard manoeuvres of its model.

@@ -1,8 +1,9 @@
 //! Measures by which a prior weights changes of the coefficients.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use sistership_model::Model;
 use sistership_model::law::Law;
 use sistership_model::trial::Trial;
@@ -13,6 +14,7 @@ use super::envelope::{MemberRates, OperatingEnvelope};
 use super::outcome::RefineError;
 use super::population::PopulationRegression;
 use sistership_numerics::{RegressionMoments, merge_trials};
+use sistership_priors::transfer::TYPICAL_SOURCE;
 
 /// The measure of a prior: the source of the sizes of the regressors.
 pub(super) enum PriorMeasure {
@@ -23,6 +25,8 @@ pub(super) enum PriorMeasure {
     /// is wrong beyond the trials: in the sizes of the envelope it takes more to move it than a
     /// linear one. docs/decisions/0006 has the evidence.
     Envelope(OperatingEnvelope),
+    /// Typical values of a law's coefficients, with their deviations over ships by name.
+    Typical(BTreeMap<String, f64>),
     /// The accelerations of a mixture over the envelope, jointly; its model has its values already.
     Mixture(OperatingEnvelope),
     /// The accelerations of a source of another law over the envelope, jointly.
@@ -37,6 +41,10 @@ impl PriorMeasure {
     /// Returns the measure for a source of the law that is fitted. A source that cannot be
     /// simulated, and a law of several actuators, have no envelope.
     pub fn for_own_law(source: &Model, law: &Law, trials: &[&Trial], in_parts: bool) -> Self {
+        let typical = typical_deviations(source);
+        if !typical.is_empty() {
+            return Self::Typical(typical);
+        }
         // The states of an envelope have one helm and one number of revolutions, which do not tell
         // the inputs of several actuators.
         let has_states = in_parts && law.helm_inputs().next().is_none();
@@ -65,6 +73,7 @@ impl PriorMeasure {
     ) -> Result<(), RefineError> {
         match self {
             Self::Trials => {}
+            Self::Typical(deviations) => set_precision_by_deviation(blocks, deviations, trials),
             Self::Envelope(envelope) => {
                 set_precision_by_size(blocks, &envelope.group_moments(blocks)?, trials)
             }
@@ -94,6 +103,12 @@ impl PriorMeasure {
     pub fn describe_prior(&self, model: &Model, law: &Law) -> Option<String> {
         match self {
             Self::Trials => None,
+            Self::Typical(deviations) => Some(format!(
+                "no ship is the source: the prior is the typical value and spread of {} coefficients \
+                 of law `{}`",
+                deviations.len(),
+                law.name
+            )),
             Self::Envelope(_) => Some(
                 "there are few trials for a law with roll: parts of trials were held out, and the \
                  prior scales each term also by its size in the standard manoeuvres of the source"
@@ -120,6 +135,43 @@ impl PriorMeasure {
                 source.describe_source(&blocks, model, law)
             }
         }
+    }
+}
+
+/// Deviations over ships of the coefficients that have the typical values of their law.
+fn typical_deviations(source: &Model) -> BTreeMap<String, f64> {
+    let typical = source.coefficients.iter().filter(|(_, one)| one.source == TYPICAL_SOURCE);
+    typical.filter_map(|(name, one)| Some((name.clone(), one.standard_error?))).collect()
+}
+
+/// Measures each coefficient by its deviation over ships: one deviation of an unknown weighs as much
+/// as the mean square of its target. Coefficients without one are measured by their regressors.
+fn set_precision_by_deviation(
+    blocks: &mut RegressionBlocks,
+    deviations: &BTreeMap<String, f64>,
+    trials: &[RegressionMoments],
+) {
+    for (block, trials) in blocks.blocks.iter_mut().zip(trials) {
+        let targets = block.axes.len();
+        let one = |j: usize| {
+            let spread = |target: usize| {
+                let of_axis = |(axis, names): (usize, &Vec<String>)| {
+                    Some(block.mixing[(target, axis)] * deviations.get(&names[j])?)
+                };
+                let parts: Option<Vec<f64>> = block.names.iter().enumerate().map(of_axis).collect();
+                Some(parts?.iter().map(|part| part * part).sum::<f64>())
+            };
+            let by_target = |target: usize| {
+                let weight = trials.target_variance(target) / spread(target)?;
+                weight.is_finite().then_some(weight)
+            };
+            let all: Option<Vec<f64>> = (0..targets).map(by_target).collect();
+            all.map_or(block.shrinkage[j] * trials.regressor_variance(j), |all| {
+                all.iter().sum::<f64>() / targets as f64
+            })
+        };
+        let diagonal = DVector::from_fn(block.regressor_count(), |j, _| one(j));
+        block.precision = Some(DMatrix::from_diagonal(&diagonal));
     }
 }
 

@@ -247,6 +247,29 @@ pub(super) fn most_likely(
     blocks.blocks.iter().zip(moments).map(of_block).collect()
 }
 
+/// The strengths at which priors of known deviations count as much as the noise lets them, for each
+/// target of each regression: the share of its variance that the statistics leave, divided by the
+/// number of independent rows (Gelman et al. 2013, Bayesian data analysis, Eq. 14.8, with a prior of
+/// one deviation a coefficient). `overlapping` rows count as one.
+pub(super) fn noise_strengths(
+    blocks: &RegressionBlocks,
+    moments: &[RegressionMoments],
+    model: &Model,
+    overlapping: f64,
+) -> Vec<Vec<f64>> {
+    let of_block = |(block, moments): (&RegressionBlock, &RegressionMoments)| {
+        let path = PreparedRegression::new(block, moments, model).path;
+        let of_target = |target: usize| {
+            let free = RidgeChoice { lambda: SELECTION.free_strength, alpha: 0.0 };
+            let left = path.residual_variance(target, free) / path.target_variance(target);
+            let strength = left * overlapping / moments.count;
+            if strength.is_finite() { strength } else { 0.0 }
+        };
+        (0..block.axes.len()).map(of_target).collect()
+    };
+    blocks.blocks.iter().zip(moments).map(of_block).collect()
+}
+
 /// Values evenly spaced in their logarithm.
 fn log_spaced(low: f64, high: f64, count: usize) -> impl Iterator<Item = f64> {
     let (low, high) = (low.ln(), high.ln());

@@ -10,7 +10,7 @@ use super::across::SourceEnvelopes;
 use super::candidate::CandidateFit;
 use super::estimators::estimator_for;
 use super::evaluation::{CandidateEvaluation, RefinementExtent, evaluate_best};
-use super::finish::{best_model, finish_refinement, has_only_zeros};
+use super::finish::{best_model, finish_refinement, has_no_source};
 use super::longer_restarts::compare_longer;
 use super::mixture;
 use super::mixture_position::choose_position;
@@ -172,7 +172,7 @@ fn with_candidates<T>(
     // Parts replace whole trials in fit and comparison alike.
     let training = if parts.is_empty() { whole.clone() } else { parts.iter().collect() };
     // A source with coefficients of zero is a placeholder and has no name.
-    let named = Some(&*request.source.name).filter(|_| !has_only_zeros(request.source));
+    let named = Some(&*request.source.name).filter(|_| !has_no_source(request.source));
     let source = settings.prior_origin(named).to_owned();
     let (law, watch) = (request.law, Some(watch));
     let replayed = ReplayedTrials::new(law, lpp_m, &training, settings.smoothing_s);

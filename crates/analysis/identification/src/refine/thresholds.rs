@@ -16,6 +16,9 @@ pub(super) struct SelectionThresholds {
     /// error (Breiman et al. 1984, section 3.4.3); it was settled while the errors of Paper V were
     /// in sight (`docs/evidence/estimators.md`).
     pub standard_errors: f64,
+    /// `lambda_f`: strength of a prior that changes nothing, at which the noise of rows is measured,
+    /// dimensionless. Source: derived: far below any share of noise in measured rows.
+    pub free_strength: f64,
     /// `lambda_h`: strength at which a source is kept as it is, dimensionless. Source: derived: the
     /// effect of the trials is smaller than the rounding of its coefficients.
     pub held: f64,
@@ -65,6 +68,7 @@ pub(super) struct SelectionThresholds {
 pub(super) const SELECTION: SelectionThresholds = SelectionThresholds {
     better: 0.99,
     standard_errors: 2.0,
+    free_strength: 1e-10,
     held: 1e9,
     strongest_share: 0.999,
     collinear: 1e-6,

@@ -13,11 +13,12 @@ use super::blocks::RegressionBlocks;
 use super::equations::EquationForm;
 use super::errors::CoefficientErrors;
 use super::family::TermFamily;
+use super::measure::PriorMeasure;
 use super::outcome::RefineError;
 use super::parts::trial_slice;
 use super::posterior::{SequenceTables, SequencedRows, posterior_errors, sequence_rows};
 use super::problem::RefinementProblem;
-use super::ridge::{FittedCoefficient, RegressionFold, RidgeChoices, most_likely};
+use super::ridge::{FittedCoefficient, RegressionFold, RidgeChoices, most_likely, noise_strengths};
 use super::settings::TuningRange;
 use super::thresholds::SELECTION;
 use crate::constraints::{CoefficientLimits, LimitError};
@@ -35,6 +36,9 @@ pub(super) struct TermVariant {
     pub equations: EquationForm,
     /// Its statistics, by trial and regression.
     pub moments: Vec<Vec<RegressionMoments>>,
+    /// Least strength of the prior by regression and target: more than zero for a typical ship,
+    /// whose deviations are known.
+    pub least_strengths: Vec<Vec<f64>>,
     /// Limits of its coefficients, if any.
     pub limits: Option<CoefficientLimits>,
 }
@@ -54,11 +58,16 @@ impl TermVariant {
         let mut blocks = RegressionBlocks::new(&model, problem.law)?;
         let moments = training_moments(problem, equations, &blocks)?;
         // The prior may set coefficients of the model, so that the limits are built after it.
+        let mut least_strengths = Vec::new();
         if let Some(all) = merge_trials(&moments, |_| true) {
             problem.measure.apply_to(&mut blocks, &mut model, &all)?;
+            if matches!(problem.measure, PriorMeasure::Typical(_)) {
+                let overlapping = equations.overlapping_rows();
+                least_strengths = noise_strengths(&blocks, &all, &model, overlapping);
+            }
         }
         let limits = coefficient_limits(problem, &model)?;
-        Ok(Self { family, model, blocks, equations, moments, limits })
+        Ok(Self { family, model, blocks, equations, moments, least_strengths, limits })
     }
 
     /// Returns the coefficients fitted on a training set, within the limits.
@@ -180,7 +189,10 @@ impl TermVariant {
         };
         let of_axis = |b: usize, (target, axis): (usize, &Axis)| match axis {
             Axis::K => RidgeChoice { lambda: roll * tuned[b][target].lambda, alpha: 0.0 },
-            _ => RidgeChoice { lambda, alpha: 0.0 },
+            _ => {
+                let least = self.least_strengths.get(b).and_then(|of| of.get(target));
+                RidgeChoice { lambda: least.map_or(lambda, |least| lambda.max(*least)), alpha: 0.0 }
+            }
         };
         let of_block =
             |b: usize| blocks[b].axes.iter().enumerate().map(|axis| of_axis(b, axis)).collect();

@@ -49,6 +49,7 @@ impl LawWriter<'_> {
                 .collect(),
             mass: inertia.mass_matrix(),
             kinematics: BTreeMap::new(),
+            typical: Default::default(),
             mirrors: self.inputs.iter().filter_map(mirror).collect(),
             submodels: self.submodels,
         }

@@ -9,6 +9,7 @@ use super::additions::LawAdditions;
 use super::dimension::{STATES, axis_dimension};
 use super::error::TermError;
 use super::file::ParameterPrior;
+use super::typical::CoefficientPrior;
 use crate::coefficient::{Axis, CoefficientName, split_submodel};
 use crate::particulars;
 use crate::quantity::Quantity;
@@ -45,6 +46,8 @@ pub struct Law {
     pub mass: BTreeMap<(Axis, Axis), Expr>,
     /// Rates of x, y, psi and phi, where they differ from those of motion in the horizontal plane.
     pub kinematics: BTreeMap<String, Expr>,
+    /// Typical values of coefficients by name; the prior of a model without a source.
+    pub typical: IndexMap<String, CoefficientPrior>,
     /// Transformation of parameters and inputs when the ship is mirrored port to starboard: another
     /// name, or `-name` for the opposite.
     pub mirrors: BTreeMap<String, String>,
@@ -129,6 +132,7 @@ impl Law {
             axes: BTreeMap::new(),
             mass: BTreeMap::new(),
             kinematics: BTreeMap::new(),
+            typical: IndexMap::new(),
             mirrors: BTreeMap::new(),
             dressing: LawAdditions::default(),
         }

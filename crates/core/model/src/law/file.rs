@@ -49,6 +49,11 @@ pub struct LawFile {
     /// Rates of `x`, `y`, `psi`, `phi` where they are not those of motion in the horizontal plane.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub kinematics: BTreeMap<String, String>,
+    /// Typical values of coefficients with their spread over ships, the prior of a model without a
+    /// source.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schemars(with = "BTreeMap<String, CoefficientPriorFile>")]
+    pub typical: IndexMap<String, CoefficientPriorFile>,
     /// Transformation of parameters and inputs when the ship is mirrored: another name, or `-name`
     /// for the opposite.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -95,6 +100,17 @@ pub struct ParameterFile {
     /// Prior by which trials determine it; without one it keeps the source's value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prior: Option<ParameterPrior>,
+}
+
+/// Typical value of a coefficient as its file writes it. Formulas may use particulars and the
+/// approach of the trials, `approach_speed_m_s` and `approach_revolutions_rps`.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CoefficientPriorFile {
+    /// Formula of the typical value.
+    pub value: String,
+    /// Formula of the standard deviation over ships.
+    pub deviation: String,
 }
 
 /// Prior of a parameter that trials determine: how ships differ, and what is physically possible.

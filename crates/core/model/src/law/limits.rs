@@ -39,6 +39,7 @@ pub fn check_counts(raw: &LawFile) -> Result<(), FieldFault> {
         ("factors", raw.factors.len()),
         ("mirrors", raw.mirrors.len()),
         ("submodels", raw.submodels.len()),
+        ("typical", raw.typical.len()),
     ];
     names.into_iter().try_for_each(|(field, count)| check_count(field, count, MAX_NAMES))?;
     for (name, submodel) in &raw.submodels {

@@ -10,13 +10,16 @@ pub(crate) mod limits;
 mod read;
 mod submodel;
 mod symmetry;
+mod typical;
 
 pub use additions::{LawAdditions, StraightAhead};
 pub use definition::{AxisLaw, Law, LawInput, LawParameter, LawSubmodel, indicator_name};
 pub use dimension::{STATES, acceleration_dimension, axis_dimension};
 pub use error::TermError;
 pub use file::{
-    AxisFile, InputFile, LawFile, LawKind, ParameterFile, ParameterPrior, SubmodelFile, TermFile,
+    AxisFile, CoefficientPriorFile, InputFile, LawFile, LawKind, ParameterFile, ParameterPrior,
+    SubmodelFile, TermFile,
 };
 pub use helm::{helm_value, set_actuators};
 pub use limits::{MAX_COEFFICIENTS, MAX_EFFECTS, MAX_SIZE, MAX_TERMS};
+pub use typical::{CoefficientPrior, TrialApproach, TypicalValue};

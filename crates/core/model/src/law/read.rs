@@ -10,6 +10,7 @@ use super::dimension::{STATES, acceleration_dimension, axis_dimension};
 use super::file::{AxisFile, InputFile, LawFile, ParameterFile, ParameterRole, TermFile};
 use super::helm::order_dimension;
 use super::submodel::read_submodels;
+use super::typical::read_typical;
 use super::{limits, symmetry};
 use crate::coefficient::{Axis, CoefficientName};
 use crate::error::{ErrorContext, FileError};
@@ -47,6 +48,7 @@ fn read_law(file: &str, text: &str) -> Result<Law, FileError> {
         axes: BTreeMap::new(),
         mass: BTreeMap::new(),
         kinematics: BTreeMap::new(),
+        typical: IndexMap::new(),
         mirrors: raw.mirrors,
         dressing: LawAdditions::default(),
     };
@@ -72,6 +74,8 @@ fn read_law(file: &str, text: &str) -> Result<Law, FileError> {
     reader.read_terms(&mut law, &raw.axes)?;
     reader.read_mass(&mut law, &raw.mass)?;
     reader.read_kinematics(&mut law, &raw.kinematics)?;
+    read_typical(&mut law, &raw.typical)
+        .map_err(|(field, message)| blame.field_error(&field, message))?;
     limits::check_size(&law).map_err(|(field, message)| blame.field_error(&field, message))?;
     symmetry::check_law(&law).map_err(|(field, message)| blame.field_error(&field, message))?;
     Ok(law)

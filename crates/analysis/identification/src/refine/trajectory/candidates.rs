@@ -8,6 +8,7 @@ use sistership_model::Model;
 use sistership_simulation::sensitivity::SensitiveSystem;
 
 use super::super::candidate::{CandidateFit, best_candidate};
+use super::super::measure::PriorMeasure;
 use super::super::outcome::RefineError;
 use super::super::problem::RefinementProblem;
 use super::super::progress::{FitIterate, Progress, report_progress};
@@ -166,7 +167,7 @@ impl TrajectoryDescent<'_> {
             errors.push(candidate.option.error.unwrap_or(f64::INFINITY));
             candidates.push(CandidateFit { left_out: models, ..candidate });
             // Weaker pulls cost a descent each.
-            if is_past_best(&errors) {
+            if is_past_best(&errors) || is_below_noise(&prior, pull, &reached.pass) {
                 break;
             }
         }
@@ -199,8 +200,15 @@ impl TrajectoryDescent<'_> {
             .fold(0.0, f64::max)
             // The strength that the weak form needs may be far too large for trajectories.
             .min(TRAJECTORY.source_share);
-        Ok(WeakFormPrior::new(&self.names, &self.variant.blocks, &moments, &values, lambda)
-            .with_parameters(&self.parameters))
+        let prior =
+            WeakFormPrior::new(&self.names, &self.variant.blocks, &moments, &values, lambda)
+                .with_parameters(&self.parameters);
+        Ok(match &self.problem.measure {
+            PriorMeasure::Typical(deviations) => {
+                prior.without_weak_form(&self.names, deviations, &self.parameters)
+            }
+            _ => prior,
+        })
     }
 
     /// Coefficients and parameters by name.
@@ -344,6 +352,16 @@ fn is_past_best(errors: &[f64]) -> bool {
     let (best, best_before) = (best(errors), best(&errors[..errors.len() - 2]));
     let none_better = best_before.is_finite() && before.min(last) >= best_before;
     none_better || (best < weak && last > TRAJECTORY.clearly_worse * best)
+}
+
+/// Returns true if a weaker pull would hold a typical ship less than its deviations are known to: the
+/// cost of one deviation is then less than the mean cost of the residuals divided by the number of
+/// independent ones, of which there is about one a ship length.
+fn is_below_noise(prior: &WeakFormPrior, pull: f64, pass: &SegmentSums) -> bool {
+    let normal = sum_trials(pass, |_| true);
+    let independent = normal.count / TRAJECTORY.residuals_a_length;
+    let noise = normal.cost / normal.count.max(1.0) / independent.max(1.0);
+    prior.typical_strength(pull).is_some_and(|strength| strength < noise)
 }
 
 /// Normal equations of some trials together.

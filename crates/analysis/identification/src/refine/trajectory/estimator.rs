@@ -27,7 +27,11 @@ impl Estimator for TrajectoryForm {
     ) {
         weak::resolve_windows(settings, length_s, &TermFamily::ALL);
         settings.step_s = settings.step_s.or(length_s.map(|s| step_s(law, s)));
-        settings.segment_s = settings.segment_s.or(length_s.map(|s| TRAJECTORY.segment * s));
+        let lengths = match law.typical.is_empty() {
+            true => TRAJECTORY.segment,
+            false => TRAJECTORY.long_segment,
+        };
+        settings.segment_s = settings.segment_s.or(length_s.map(|s| lengths * s));
         settings.residual_s =
             settings.residual_s.or(length_s.map(|s| s / TRAJECTORY.residuals_a_length));
     }

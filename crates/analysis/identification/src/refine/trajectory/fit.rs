@@ -61,7 +61,7 @@ impl CandidateSolution for TrajectoryFit {
 impl TrajectoryFit {
     /// Trace of the share of the trials in the Hessian; the rest is that of the source.
     fn trials_share(&self) -> Option<f64> {
-        let strength = self.pull + source_pull(self.pull);
+        let strength = self.prior.source_strength(self.pull);
         let of_source = (self.held.inverse_hessian()? * &self.prior.of_source).trace() * strength;
         Some((self.at.len() as f64 - of_source).max(0.0))
     }

@@ -11,6 +11,10 @@
 //! already; with a small one the source must determine the directions on which trajectories have no
 //! information, so that it is a prior besides.
 //!
+//! Where coefficients have typical values with deviations over ships, those alone are the prior, with
+//! the strength `mu/(1 + mu)` times a share a square of deviations, and the weak form is the start.
+//! Segments are longer then.
+//!
 //! Nonlinear parameters of the law that trials determine (`prior` in its file) are unknowns
 //! besides the coefficients, transformed to stay in their physical range ([`parameters`]). The weak
 //! form keeps the source's values; each costs `(mu + mu/(1 + mu))` times a share a square of its

@@ -16,8 +16,10 @@ pub(in super::super) struct WeakFormPrior {
     /// square; it includes the source's share.
     pub hessian: DMatrix<f64>,
     pub weak: DVector<f64>,
-    /// The source's share of `hessian`.
+    /// The source's share of `hessian`, or its own where the weak form is no prior.
     pub of_source: DMatrix<f64>,
+    /// True if the weak form is a prior, within which the source has its share.
+    has_weak_form: bool,
     source: DVector<f64>,
 }
 
@@ -57,7 +59,8 @@ impl WeakFormPrior {
         of_source *= lambda;
         hessian += &of_source;
         let (weak, source): (Vec<f64>, Vec<f64>) = names.iter().map(|name| values(name)).unzip();
-        Self { hessian, weak: weak.into(), of_source, source: source.into() }
+        let (weak, source) = (weak.into(), source.into());
+        Self { hessian, weak, of_source, has_weak_form: true, source }
     }
 
     /// Returns the prior with the unknowns of parameters after the coefficients; the weak form
@@ -67,6 +70,7 @@ impl WeakFormPrior {
         let mut prior = Self {
             hessian: self.hessian.resize(size, size, 0.0),
             of_source: self.of_source.resize(size, size, 0.0),
+            has_weak_form: self.has_weak_form,
             weak: self.weak.resize_vertically(size, 0.0),
             source: self.source.resize_vertically(size, 0.0),
         };
@@ -78,6 +82,37 @@ impl WeakFormPrior {
             prior.source[k] = parameter.source_unknown();
         }
         prior
+    }
+
+    /// Returns the prior by the source alone, with the deviations over ships of coefficients that
+    /// have typical values and those of parameters. The weak form is then the start only: what it
+    /// makes of noise and of a bias of instruments is no knowledge of the ship.
+    pub(super) fn without_weak_form(
+        mut self,
+        names: &[String],
+        deviations: &BTreeMap<String, f64>,
+        parameters: &[BoundedParameter],
+    ) -> Self {
+        let typical = names.iter().map(|name| deviations.get(name).copied());
+        let own = parameters.iter().map(|one| Some(one.unknown_deviation()));
+        for (k, deviation) in typical.chain(own).enumerate() {
+            if let Some(deviation) = deviation {
+                self.of_source[(k, k)] = TRAJECTORY.typical_share / deviation.powi(2);
+            }
+        }
+        self.hessian.fill(0.0);
+        self.has_weak_form = false;
+        self
+    }
+
+    /// Strength of the source for a pull, within the weak form and directly.
+    pub(super) fn source_strength(&self, pull: f64) -> f64 {
+        if self.has_weak_form { pull + source_pull(pull) } else { source_pull(pull) }
+    }
+
+    /// Cost of one deviation of a typical ship for a pull; `None` where the weak form is a prior.
+    pub(super) fn typical_strength(&self, pull: f64) -> Option<f64> {
+        (!self.has_weak_form).then(|| TRAJECTORY.typical_share * source_pull(pull))
     }
 
     /// Returns its cost at coefficients, for a pull towards the weak form.
@@ -112,7 +147,7 @@ impl WeakFormPrior {
         let free = DMatrix::identity(scales.len(), scales.len());
         let inverse = unit.cholesky().map_or(free, |root| root.inverse());
         DVector::from_fn(scales.len(), |k, _| {
-            inverse[(k, k)].sqrt() * scales[k] / (pull + source_pull(pull)).sqrt()
+            inverse[(k, k)].sqrt() * scales[k] / self.source_strength(pull).sqrt()
         })
     }
 }

@@ -51,7 +51,7 @@ pub(in super::super) struct ComparisonPlan {
     pub step_s: f64,
 }
 
-/// Divides trials into segments; a rest of at least a third of a segment is kept.
+/// Divides trials into segments; a rest with residuals enough is kept.
 ///
 /// # Errors
 /// Returns an error with the channel that a trial lacks, or the input that none can record.
@@ -67,7 +67,7 @@ pub(in super::super) fn divide_into_segments(
         let record = SegmentRecord::new(trial, law, input_names, plan)?;
         for part in trial.segments() {
             let (mut from, end) = (trial.t_s[part.start], trial.t_s[part.end - 1]);
-            while end - from >= cut.segment_s / TRAJECTORY.least_part {
+            while end - from >= cut.segment_s.min(TRAJECTORY.least_residuals * cut.residual_s) {
                 // Whole steps that end with a comparison; the small term keeps ratios that are
                 // whole but for rounding.
                 let steps = (cut.segment_s.min(end - from) / plan.step_s + 1e-9).floor() as usize
@@ -247,6 +247,18 @@ mod tests {
 
     use super::*;
     use crate::testing::{mariner_model, simulated_trials};
+
+    #[test]
+    fn a_trial_shorter_than_a_segment_is_one() {
+        let (model, law) = mariner_model();
+        let trials = simulated_trials(&model, &law, 0.0);
+        let names: Vec<String> = law.inputs.keys().cloned().collect();
+        let cut = SegmentLengths { segment_s: 1e5, residual_s: 5.0, step_s: 1.0 };
+        let plan = ComparisonPlan { compared: Vec::new(), stride: 5, step_s: 1.0 };
+        let one = divide_into_segments(&[&trials[0]], &law, &names, cut, &plan).unwrap();
+        assert_eq!(one.len(), 1);
+        assert!(one[0].steps as f64 > trials[0].duration_s() - 6.0);
+    }
 
     #[test]
     fn an_input_that_no_trial_can_record_is_not_reported_as_the_rudder() {

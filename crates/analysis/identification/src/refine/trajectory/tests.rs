@@ -2,6 +2,7 @@
 use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
 use sistership_model::{Law, Model, Zoo};
+use sistership_priors::transfer::{blank_model, trial_approach};
 
 use crate::refine::family::TermFamily;
 use crate::refine::outcome::{Refinement, StepOption};
@@ -68,4 +69,49 @@ fn interaction_factors_are_fitted_within_their_range() {
         let value = fitted.model.parameters[name].value;
         assert!((low..=high).contains(&value), "{name}: {value}");
     }
+}
+
+#[test]
+fn a_typical_ship_holds_what_small_zigzags_do_not_tell() {
+    let zoo = Zoo::load_embedded().unwrap();
+    let truth = zoo.find_model("kvlcc2-7m").unwrap();
+    let trials = recorded_zigzags(&truth, zoo.law(&truth.law).unwrap());
+    let trials: Vec<&Trial> = trials.iter().collect();
+    let law = zoo.law("modular").unwrap();
+    let typical = blank_model(law, zoo.vessel("kvlcc2-7m").unwrap(), trial_approach(&trials));
+    let typical = typical.unwrap();
+    let mut zero = typical.clone();
+    zero.coefficients.values_mut().for_each(|one| *one = Quantity::new(0.0, "unknown"));
+    let settings = RefinementSettings {
+        method: EstimationMethod::Trajectory,
+        families: vec![TermFamily::Own],
+        strengths: vec![1e-2, 1e-4, 1e-6, 1e-8],
+        // Fitted on 10 and 20 deg to one side each, judged at 30.
+        held_out: vec!["trial-1".to_owned(), "trial-2".to_owned()],
+        ..RefinementSettings::default()
+    };
+    let error = |source: &Model| {
+        let request = RefinementSpec {
+            target: zoo.vessel("kvlcc2-7m").unwrap(),
+            source,
+            source_law: None,
+            law,
+            trials: &trials,
+            population: &[],
+            settings: &settings,
+        };
+        let made = refine(&request, &|_, _| true).unwrap();
+        let gone: Vec<&String> = typical
+            .coefficients
+            .keys()
+            .filter(|name| !made.model.coefficients.contains_key(*name))
+            .collect();
+        assert!(
+            gone.iter().all(|name| name.contains("ahead") || name.contains("beam")),
+            "{gone:?}"
+        );
+        made.held_out.refined["psi"]
+    };
+    let (with_typical, with_zero) = (error(&typical), error(&zero));
+    assert!(with_typical < 0.8 * with_zero, "{with_typical} {with_zero}");
 }

@@ -13,15 +13,19 @@ pub(super) struct TrajectoryThresholds {
     /// `T_s`: length of a segment by `L/U`, dimensionless. Source: chosen, long enough to turn by a
     /// manoeuvre's angles and short enough for a wrong model to stay in range.
     pub segment: f64,
+    /// `T_l`: the same for a law whose coefficients have typical values, dimensionless. Source:
+    /// `docs/evidence/physical_law.md`: a bias shows in long segments alone, and a model near a
+    /// typical ship stays in range.
+    pub long_segment: f64,
     /// `n_s`: steps of a segment where no length of the ship is known, a count. Source: chosen, of
     /// the order of [`Self::segment`].
     pub fallback_steps: f64,
     /// `n_d`: steps from one residual to the next where no length is known, a count. Source:
     /// chosen, about `n_h/n_r`.
     pub fallback_stride: f64,
-    /// `s_t`: a rest of a trial is kept as a segment if it is at least a segment divided by this, a
-    /// count. Source: chosen.
-    pub least_part: f64,
+    /// `n_t`: a rest of a trial is kept as a segment if it has at least this number of residuals, a
+    /// count. Source: chosen, a third of a segment of [`Self::segment`].
+    pub least_residuals: f64,
     /// `mu_k`: pulls towards the weak form, strongest first, dimensionless; each starts at the
     /// result of the one before. Source: chosen, decades from the value that gives the weak form;
     /// errors on held-out trials end them (`is_past_best`).
@@ -37,6 +41,10 @@ pub(super) struct TrajectoryThresholds {
     /// acceleration by its own size, dimensionless. Source: derived, of the order of the square of
     /// that change: a deviation of an interaction factor changes accelerations by a tenth.
     pub parameter_share: f64,
+    /// `lambda_t`: cost of a deviation over ships of a coefficient with a typical value, and of a
+    /// parameter beside it, by that of a change of every state by its deviation, dimensionless.
+    /// Source: `docs/evidence/physical_law.md`.
+    pub typical_share: f64,
     /// `r_p`: ratio to the error of another pull from which on an error is clearly worse,
     /// dimensionless. Source: chosen, twice the share by which candidates count as different; ends
     /// the pulls early (Train-TZRB in 0.24 s in place of 0.56).
@@ -83,12 +91,14 @@ pub(super) struct TrajectoryThresholds {
 pub(super) const TRAJECTORY: TrajectoryThresholds = TrajectoryThresholds {
     residuals_a_length: 6.0,
     segment: 5.0,
+    long_segment: 30.0,
     fallback_steps: 120.0,
     fallback_stride: 4.0,
-    least_part: 3.0,
+    least_residuals: 10.0,
     pulls: [10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4],
     source_share: 0.01,
     parameter_share: 0.01,
+    typical_share: 0.03,
     clearly_worse: 1.02,
     huber: 3.0,
     median_stride: 4,
