@@ -123,7 +123,9 @@ impl GapFilling<'_> {
         let along = self.integrals(last, end);
         let rest = values[end] - values[last] - along[end - last];
         let rest = if self.is_angle { shorter_way(rest) } else { rest };
-        if !(rest.abs() <= self.fastest * duration_s) {
+        // False as well where the rate is not known throughout.
+        let is_near = rest.abs() <= self.fastest * duration_s;
+        if !is_near {
             return false;
         }
         for at in last + 1..end {

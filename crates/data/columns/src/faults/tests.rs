@@ -110,28 +110,30 @@ fn a_fix_that_jumps_is_found_with_its_repeats() {
     let speed: Vec<f64> = (0..1000).map(|k| 5.0 + (k as f64 / 40.0).sin()).collect();
     let way = |k: usize| 5.0 * t[k] + 20.0 * (1.0 - (k as f64 / 40.0).cos());
     let mut x: Vec<f64> = (0..1000).map(|k| way(k - k % 2) + 0.5 * rough_noise(k / 2)).collect();
-    let channel = |values| FilteredChannel {
-        values,
-        rate: Some(&speed),
-        is_position: true,
-        impossible: 1e8,
-        ..FilteredChannel::default()
+    let found = |x: &[f64]| -> Vec<usize> {
+        let channel = FilteredChannel {
+            values: x,
+            rate: Some(&speed),
+            is_position: true,
+            impossible: 1e8,
+            ..FilteredChannel::default()
+        };
+        sample_faults(&t, &channel).iter().map(|(k, _)| *k).collect()
     };
-    assert_eq!(sample_faults(&t, &channel(&x)), []);
+    assert_eq!(found(&x), [] as [usize; 0]);
     (600..620).for_each(|k| x[k] += 25.0);
-    let found: Vec<usize> = sample_faults(&t, &channel(&x)).iter().map(|(k, _)| *k).collect();
-    assert_eq!(found, (600..620).collect::<Vec<_>>());
+    assert_eq!(found(&x), (600..620).collect::<Vec<_>>());
 }
 
 #[test]
 fn rows_are_repeated_only_where_the_channels_have_noise() {
     let noisy = |seed: usize| (0..500).map(|k| rough_noise(1000 * seed + k)).collect::<Vec<f64>>();
-    let (mut u, mut v, held) = (noisy(1), noisy(2), vec![1.0; 500]);
-    assert_eq!(repeated_rows(&[&u, &v, &held]), [] as [usize; 0]);
+    let (mut u, mut v, mut r, held) = (noisy(1), noisy(2), noisy(3), vec![1.0; 500]);
+    assert_eq!(repeated_rows(&[&u, &v, &r, &held]), [] as [usize; 0]);
     for k in [100, 101, 300] {
-        (u[k], v[k]) = (u[k - 1], v[k - 1]);
+        (u[k], v[k], r[k]) = (u[k - 1], v[k - 1], r[k - 1]);
     }
-    assert_eq!(repeated_rows(&[&u, &v, &held]), [100, 101, 300]);
+    assert_eq!(repeated_rows(&[&u, &v, &r, &held]), [100, 101, 300]);
     // A recorder that is twice as fast as its sensors.
     let twice: Vec<f64> = (0..500).map(|k| rough_noise(k / 2)).collect();
     assert_eq!(repeated_rows(&[&twice, &held]), [] as [usize; 0]);
