@@ -9,7 +9,8 @@
 use std::f64::consts::{PI, TAU};
 use std::iter::zip;
 
-use super::{FilteredChannel, flagged_runs};
+use super::filtered_channel::FilteredChannel;
+use super::runs::flagged_runs;
 
 /// Multiple of the 80 % quantile of innovations beyond which a sample is rejected.
 const GATE: f64 = 8.0;

@@ -2,7 +2,7 @@
 //! channel.
 
 use super::filter::RobustFilter;
-use super::{NOISY, flagged_runs};
+use super::runs::{NOISY, flagged_runs};
 
 /// Minimum number of equal values in a run that may be a frozen sensor, and the expected number of
 /// such runs by chance in a recording.

@@ -1,8 +1,8 @@
 //! Comparison of a rate with the channel whose rate it is: a sudden motion that both show is no
 //! fault.
 
-use super::FilteredChannel;
 use super::filter::upper_quantile;
+use super::filtered_channel::FilteredChannel;
 
 /// Multiple of the noise of the integral that a run has to change it by, so that it can be judged.
 const CLEAR: f64 = 4.0;

@@ -2,11 +2,14 @@
 //! sensors, repeated rows, and times that do not increase.
 
 mod filter;
+mod filtered_channel;
 mod frozen;
 mod integral;
 mod repeats;
+mod runs;
 mod times;
 
+pub use filtered_channel::FilteredChannel;
 pub use repeats::repeated_rows;
 pub use times::backward_times;
 
@@ -15,32 +18,10 @@ use std::f64::consts::PI;
 use filter::RobustFilter;
 use frozen::frozen_samples;
 use integral::IntegralCheck;
+use runs::{MAX_FAULTY_FRACTION, flagged_runs};
 
-/// Largest faulty fraction of a channel; with more, the filter rather than the samples is wrong.
-const MAX_FAULTY_FRACTION: f64 = 0.2;
-/// Largest fraction of equal neighbours of a channel whose noise is above its resolution.
-const NOISY: f64 = 0.2;
 /// Maximum number of samples of a spike; longer faults are jumps.
 const SPIKE: usize = 3;
-
-/// A channel in SI units; a gap is NaN.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct FilteredChannel<'a> {
-    /// One value for each sample.
-    pub values: &'a [f64],
-    /// Rate of the channel by other channels, where there is one.
-    pub rate: Option<&'a [f64]>,
-    /// Integral of the channel by other channels, where there is one; without jumps of whole turns.
-    pub integral: Option<&'a [f64]>,
-    /// True if the channel is a direction, which wraps at a full turn.
-    pub is_direction: bool,
-    /// True if the channel is a position, which changes by velocities only.
-    pub is_position: bool,
-    /// Smallest distance from the prediction that is a fault, whatever the noise.
-    pub least: f64,
-    /// Magnitude above which a value is no reading of an instrument.
-    pub impossible: f64,
-}
 
 /// Kind of fault of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -98,19 +79,6 @@ pub fn sample_faults(t_s: &[f64], channel: &FilteredChannel) -> Vec<(usize, Samp
     // reported.
     let many = found.len() as f64 > MAX_FAULTY_FRACTION * values.len() as f64;
     if many { Vec::new() } else { found }
-}
-
-/// First and past-the-end index of every run of set flags.
-fn flagged_runs(flags: &[bool]) -> Vec<(usize, usize)> {
-    let (mut runs, mut k) = (Vec::new(), 0);
-    while k < flags.len() {
-        let end = (k..flags.len()).find(|&at| flags[at] != flags[k]).unwrap_or(flags.len());
-        if flags[k] {
-            runs.push((k, end));
-        }
-        k = end;
-    }
-    runs
 }
 
 fn classify_run(values: &[f64], is_direction: bool, first: usize, end: usize) -> SampleFault {

@@ -1,6 +1,6 @@
 //! Rows that repeat the row before: the recorder had nothing new.
 
-use super::{NOISY, flagged_runs};
+use super::runs::{NOISY, flagged_runs};
 
 /// Largest fraction of repeated rows; with more, the recorder is faster than its sensors.
 const MAX_REPEATED_FRACTION: f64 = 0.1;

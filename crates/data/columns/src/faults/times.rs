@@ -1,6 +1,6 @@
 //! Times that do not increase.
 
-use super::MAX_FAULTY_FRACTION;
+use super::runs::MAX_FAULTY_FRACTION;
 
 /// Returns the smallest set of rows without which time increases strictly; none if that set is
 /// large. Of rows with one time the first is kept.
