@@ -36,10 +36,9 @@ impl RangeFaults {
             Err(error) => return Self { within: Some(error.to_string()), beyond },
         };
         let failed = failed_manoeuvres(&ship, model.steering.limit_deg);
-        let step_deg = model.steering.limit_deg / RANGE_CHECK.turns as f64;
         let is_within = |(rudder_deg, _): &&(f64, String)| {
             // Recorded angles are those of an order within the resolution of the check.
-            rudder_deg.abs() <= covered_deg + 0.5 * step_deg
+            rudder_deg.abs() <= covered_deg + 0.5 * RANGE_CHECK.turn_step_deg
         };
         let reason = |(_, reason): &(f64, String)| reason.clone();
         Self {
@@ -76,12 +75,13 @@ fn failed_manoeuvres(ship: &Ship, limit_deg: f64) -> Vec<(f64, String)> {
     steered.iter().zip(outcomes).filter_map(failure).collect()
 }
 
-/// Turns at evenly spaced angles, the last of which is the gear's limit, and zigzags at every
-/// fourth of them; to both sides.
+/// Turns at evenly spaced angles, the last of which is the gear's limit, and zigzags at every few of
+/// them; to both sides.
 fn steered_manoeuvres(limit_deg: f64) -> Vec<Manoeuvre> {
-    let angle = |k: usize| limit_deg * k as f64 / RANGE_CHECK.turns as f64;
-    let turns = (1..=RANGE_CHECK.turns).map(|k| Manoeuvre::Turn { rudder: angle(k) });
-    let zigzags = (RANGE_CHECK.every..=RANGE_CHECK.turns)
+    let count = (limit_deg / RANGE_CHECK.turn_step_deg).round().max(1.0) as usize;
+    let angle = |k: usize| limit_deg * k as f64 / count as f64;
+    let turns = (1..=count).map(|k| Manoeuvre::Turn { rudder: angle(k) });
+    let zigzags = (RANGE_CHECK.every..=count)
         .step_by(RANGE_CHECK.every)
         .map(|k| Manoeuvre::Zigzag { rudder: angle(k), switch: angle(k) });
     let other_side = |manoeuvre| match manoeuvre {

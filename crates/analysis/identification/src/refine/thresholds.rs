@@ -201,9 +201,9 @@ pub(super) const HELM: HelmThresholds =
 /// Constants of the manoeuvres in which a fitted model must stay within the physical range.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RangeCheckThresholds {
-    /// Angles of turns, evenly to the gear's limit, a count. Source: derived: every 2.5 degrees of
-    /// 35, a fourth of the least angle of the standard manoeuvres.
-    pub turns: usize,
+    /// Step of the angles of turns up to the gear's limit, deg. Source: derived: a fourth of the least
+    /// angle of the standard manoeuvres.
+    pub turn_step_deg: f64,
     /// Turns by zigzags, a count. Source: derived: zigzags at the angles of the standard ones, and
     /// at 30 degrees.
     pub every: usize,
@@ -213,4 +213,4 @@ pub(super) struct RangeCheckThresholds {
 
 /// The values.
 pub(super) const RANGE_CHECK: RangeCheckThresholds =
-    RangeCheckThresholds { turns: 14, every: 4, step: 0.05 };
+    RangeCheckThresholds { turn_step_deg: 2.5, every: 4, step: 0.05 };

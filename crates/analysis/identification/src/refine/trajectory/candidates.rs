@@ -143,7 +143,10 @@ impl TrajectoryDescent<'_> {
             .collect::<Result<_, _>>()?;
         // Each pull starts at the result of the stronger one before it.
         let mut reached = self.linearise_at(prior.weak.clone())?;
-        let mut errors = vec![weak.unwrap_or(f64::INFINITY)];
+        // Pulls towards a typical ship do not begin at the weak form: strong ones may be worse than
+        // it, and weaker ones better.
+        let first = weak.filter(|_| prior.has_weak_form());
+        let mut errors = vec![first.unwrap_or(f64::INFINITY)];
         for pull in TRAJECTORY.pulls {
             let label = format!("trajectory, {}, pull {pull:.0e}", self.variant.family.name());
             report_progress(progress, 0.7, &label)?;

@@ -105,6 +105,11 @@ impl WeakFormPrior {
         self
     }
 
+    /// Returns true if the weak form is a prior, which the strongest pull gives.
+    pub(super) fn has_weak_form(&self) -> bool {
+        self.has_weak_form
+    }
+
     /// Strength of the source for a pull, within the weak form and directly.
     pub(super) fn source_strength(&self, pull: f64) -> f64 {
         if self.has_weak_form { pull + source_pull(pull) } else { source_pull(pull) }
