@@ -18,6 +18,7 @@ pub(super) fn form_error_columns(
     if !candidates.iter().any(has_form_errors) {
         return Vec::new();
     }
+    // Forms of different authors differ most in how they depend on the speed.
     let speed = record.trial.channel(Channel::U).unwrap_or_default();
     let excess = |k: &usize| speed.get(*k).map_or(0.0, |u| u / workspace.speed_m_s - 1.0);
     let pace: Vec<f64> = part.samples.iter().map(excess).collect();

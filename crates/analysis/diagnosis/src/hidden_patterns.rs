@@ -28,6 +28,8 @@ pub(super) fn remainder_patterns(
     let (workspace, Some(known)) = (&base.workspace, &search.model.uncertainty) else {
         return Ok(Vec::new());
     };
+    // Effects that were found may give way as far as they are uncertain: a pattern has to explain
+    // what they and the coefficients together cannot.
     let prior = prior_with_effects(&search.fixed, best);
     let each = vec![prior.clone(); workspace.trials.len()];
     let says = PatternInformation::new(
@@ -37,6 +39,7 @@ pub(super) fn remainder_patterns(
         (&each, Some(&prior)),
     )?;
     let discount = |key: &str| {
+        // A pattern without a level on clean trials, as of a channel that they lack, is not tested.
         let level = known.false_alarm_levels.get(key)?;
         Some(level_discount(known, level, workspace.trials.len()))
     };

@@ -104,6 +104,8 @@ fn pattern_values(
         let one = |place: usize| middle(&|k| values.map_or(0.0, |values| of(values[k])[place]));
         vec![one(0), one(1)]
     };
+    // Each variable has a term of first and one of higher order, so that a dependence that is not
+    // proportional is found too, and both are of the order of one in a usual manoeuvre.
     let (first_s, duration_s) = (record.trial.t_s[0], record.trial.duration_s().max(1e-9));
     match kind {
         PatternKind::Heading => (1..=THRESHOLDS.patterns.harmonics)
@@ -115,6 +117,7 @@ fn pattern_values(
             })
             .collect(),
         PatternKind::Time => powers(Some(&record.trial.t_s), &|t_s| {
+            // A step at half time and a drift: damage and fouling or heating.
             let share = 2.0 * (t_s - first_s) / duration_s - 1.0;
             [share.signum(), share]
         }),
@@ -123,6 +126,7 @@ fn pattern_values(
             [slower, slower * slower]
         }),
         PatternKind::Rudder => powers(channel(Channel::Delta), &|delta| {
+            // What is proportional to the rudder is a coefficient of every law already.
             let share = delta / THRESHOLDS.patterns.rudder_rad;
             [share * share.abs(), share.powi(3)]
         }),
@@ -206,6 +210,7 @@ impl PatternInformation {
             says.estimate_parameters(&places, &priors).map_or(0.0, |estimate| estimate.gain)
         };
         match pattern.kind {
+            // The phase of an oscillation is another one in each trial.
             PatternKind::Period(_) => self.each.iter().map(gain).sum(),
             _ => gain(&self.total),
         }
@@ -247,6 +252,7 @@ impl PatternInformation {
         discount: &dyn Fn(&str) -> Option<f64>,
         least_evidence: f64,
     ) -> Vec<(Pattern, f64)> {
+        // Each test has to exceed the number of tests by the stated factor: see the module.
         let tests = (self.patterns.len() as f64).ln();
         let weigh = |pattern: &Pattern| {
             let discount = discount(&pattern.level_key(workspace))?;

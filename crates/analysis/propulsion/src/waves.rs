@@ -27,6 +27,8 @@ impl MovingHull {
     pub fn wave_resistance(&self) -> UncertainValue {
         let Self { length_m, displacement_m3, density_kg_m3, speed_m_s } = *self;
         let rise = hump_ratio(length_m, speed_m_s).powi(WAVES.rise);
+        // A power of the ratio gives the steep rise before the hump, its sum with one the level
+        // beyond.
         let slenderness = length_m / displacement_m3.cbrt();
         let level = WAVES.level * (WAVES.slenderness / slenderness).powf(WAVES.slender);
         let weight_n = density_kg_m3 * GRAVITY * displacement_m3;

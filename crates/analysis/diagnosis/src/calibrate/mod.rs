@@ -281,6 +281,8 @@ impl<'a> CalibrationInputs<'a> {
         learned: &LearnedCalibration<'_>,
         but_one: &[CoefficientPrior],
     ) -> Result<BTreeMap<String, FalseAlarmLevel>, RefineError> {
+        // Each trial under coefficients fitted on the others: its own would explain a part of the
+        // pattern.
         let all = self.without_effects(learned, self.trials)?;
         let discrepancies = &learned.found.discrepancies;
         Ok(PatternInformation::new(&all, discrepancies, &[], (but_one, None))?.clean_levels(&all))

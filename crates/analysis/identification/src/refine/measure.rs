@@ -171,6 +171,8 @@ fn set_precision_by_deviation(
             })
         };
         let diagonal = DVector::from_fn(block.regressor_count(), |j, _| one(j));
+        // One deviation over ships costs as much as the mean square of the target, whatever the scale
+        // of the regressor.
         block.precision = Some(DMatrix::from_diagonal(&diagonal));
     }
 }

@@ -35,6 +35,8 @@ impl RangeFaults {
             Ok(ship) => ship,
             Err(error) => return Self { within: Some(error.to_string()), beyond },
         };
+        // Both sides and all angles: a model may turn well at the angles of its trials and leave the
+        // range between them.
         let failed = failed_manoeuvres(&ship, model.steering.limit_deg);
         let is_within = |(rudder_deg, _): &&(f64, String)| {
             // Recorded angles are those of an order within the resolution of the check.

@@ -9,7 +9,6 @@ use super::additions::LawAdditions;
 use super::dimension::{STATES, axis_dimension};
 use super::error::TermError;
 use super::file::ParameterPrior;
-use super::typical::CoefficientPrior;
 use crate::coefficient::{Axis, CoefficientName, split_submodel};
 use crate::particulars;
 use crate::quantity::Quantity;
@@ -53,6 +52,15 @@ pub struct Law {
     pub mirrors: BTreeMap<String, String>,
     /// Additions of effects; empty in a law as its file writes it.
     pub dressing: LawAdditions,
+}
+
+/// Formulas of a coefficient's typical value and of its standard deviation over ships.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CoefficientPrior {
+    /// Typical value.
+    pub value: Expr,
+    /// Standard deviation over ships.
+    pub deviation: Expr,
 }
 
 /// Input of the law.

@@ -13,7 +13,9 @@ mod symmetry;
 mod typical;
 
 pub use additions::{LawAdditions, StraightAhead};
-pub use definition::{AxisLaw, Law, LawInput, LawParameter, LawSubmodel, indicator_name};
+pub use definition::{
+    AxisLaw, CoefficientPrior, Law, LawInput, LawParameter, LawSubmodel, indicator_name,
+};
 pub use dimension::{STATES, acceleration_dimension, axis_dimension};
 pub use error::TermError;
 pub use file::{
@@ -22,4 +24,4 @@ pub use file::{
 };
 pub use helm::{helm_value, set_actuators};
 pub use limits::{MAX_COEFFICIENTS, MAX_EFFECTS, MAX_SIZE, MAX_TERMS};
-pub use typical::{CoefficientPrior, TrialApproach, TypicalValue};
+pub use typical::{TrialApproach, TypicalValue};

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
 
-use super::definition::Law;
+use super::definition::{CoefficientPrior, Law};
 use super::file::CoefficientPriorFile;
 use crate::particulars;
 use crate::quantity::Quantity;
@@ -17,15 +17,6 @@ use sistership_formula::{self as formula, Expr};
 /// Names of the approach in formulas of typical values.
 const APPROACH: [(&str, Dimension); 2] =
     [("approach_speed_m_s", Dimension::SPEED), ("approach_revolutions_rps", Dimension::RATE)];
-
-/// Formulas of a coefficient's typical value and of its standard deviation over ships.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CoefficientPrior {
-    /// Typical value.
-    pub value: Expr,
-    /// Standard deviation over ships.
-    pub deviation: Expr,
-}
 
 /// Approach of a ship to its trials.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,6 +51,7 @@ impl Law {
             "approach_revolutions_rps" => approach?.n_rps,
             _ => particulars::particular_value(ship, name),
         };
+        // One of the two without the other would be a prior of unknown strength.
         let [value, deviation] = [&prior.value, &prior.deviation].map(|of| of.value(&lookup));
         let typical = TypicalValue { value: value?, deviation: deviation? };
         let is_usable =
@@ -79,6 +71,8 @@ pub fn read_typical(
     for (name, file) in raw {
         let field = format!("typical.{name}");
         let refuse = |message: String| (field.clone(), message);
+        // A coefficient has the dimension that its regressors leave to it, so a typical value in
+        // another unit is a mistake in the file.
         let wanted = law.coefficient_dimension(name).map_err(|e| refuse(e.to_string()))?;
         let read = |text: &str| read_formula(text, wanted).map_err(refuse);
         let prior =
