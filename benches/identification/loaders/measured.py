@@ -151,7 +151,7 @@ def blueboat(folder):
     tasks = [Task("held-out", "interpolation", [n for n in every if n not in judged], judged, 10.0),
              Task("trials-2", "few trials", ["216", "224"], judged, 10.0)]
     sides = "".join(f"  {side}: {{ kind: thruster, x_m: -0.45, y_m: {y}, channels: "
-                    f"{{ {channel}: [{channel}_rps] }}, source: maker }}\n"
+                    f"{{ {channel}: [{channel}_rps] }}, source: owner }}\n"
                     for side, y, channel in (("port", -0.285, "n_p"), ("starboard", 0.285, "n_s")))
     ship = Ship("blueboat", "usv", {"lpp_m": 1.2, "beam_m": 0.93, "draught_m": 0.1,
                                     "mass_kg": 15.0}, actuators=sides)

@@ -5,6 +5,7 @@ mod containers;
 mod formats;
 mod forms;
 mod long_log;
+mod revolutions;
 mod table;
 mod templates;
 

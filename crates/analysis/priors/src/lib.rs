@@ -3,6 +3,7 @@
 
 mod estimated;
 pub mod estimates;
+pub mod revolutions;
 pub mod rolling;
 pub mod similarity;
 pub mod source;

@@ -33,7 +33,7 @@ pub fn trial_approach(trials: &[&Trial]) -> Option<TrialApproach> {
         .flat_map(|trial| trial.channel(Channel::U).into_iter().flatten().copied())
         .collect();
     let mut revolutions: Vec<f64> =
-        trials.iter().flat_map(|t| t.channel(Channel::N).into_iter().flatten().copied()).collect();
+        trials.iter().flat_map(|trial| shaft_revolutions(trial)).collect();
     let (start, under_way) = (median_value(&mut starts)?, typical_value(&mut speeds)?);
     // Half of the speed under way separates a start from rest from a steady approach.
     let speed_m_s = if start > 0.5 * under_way { start } else { under_way };
@@ -41,6 +41,12 @@ pub fn trial_approach(trials: &[&Trial]) -> Option<TrialApproach> {
         speed_m_s,
         n_rps: typical_value(&mut revolutions).filter(|n| *n > 0.0),
     })
+}
+
+/// Revolutions of every shaft at every sample, 1/s.
+fn shaft_revolutions(trial: &Trial) -> impl Iterator<Item = f64> {
+    let shafts = [Channel::N, Channel::NS, Channel::NP].into_iter();
+    shafts.flat_map(|shaft| trial.channel(shaft).into_iter().flatten().copied())
 }
 
 /// Median; the root mean square where trials stop, go astern or turn on the spot, so that the median
@@ -335,4 +341,24 @@ fn widen_envelope(ship: Result<Ship, PlantError>, trials: &[&Trial]) -> Result<S
         .fold(0.0_f64, |a, b| a.max(b.abs()));
     ship.set_envelope_speed(fastest);
     Ok(ship)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_approach_has_the_revolutions_of_either_shaft() {
+        let trial = |channels: [(Channel, f64); 3]| Trial {
+            t_s: vec![0.0, 1.0],
+            channels: channels.map(|(channel, value)| (channel, vec![value; 2])).into(),
+            ..Trial::default()
+        };
+        let motion = |shaft| trial([(Channel::U, 1.5), (Channel::V, 0.0), (shaft, 18.0)]);
+        for shaft in [Channel::N, Channel::NS, Channel::NP] {
+            let approach = trial_approach(&[&motion(shaft)]);
+            assert_eq!(approach, Some(TrialApproach { speed_m_s: 1.5, n_rps: Some(18.0) }));
+        }
+        assert_eq!(trial_approach(&[&motion(Channel::Delta)]).and_then(|one| one.n_rps), None);
+    }
 }

@@ -78,6 +78,9 @@ pub struct ManifestTrial {
     /// Water depth, m; absent for deep water.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth_m: Option<f64>,
+    /// Propeller revolutions, 1/s, held throughout the trial, where they were not recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub n_rps: Option<f64>,
     /// Columns of this file, in place of those of the manifest.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, ColumnMapping>")]
@@ -93,6 +96,7 @@ impl ManifestTrial {
             to: None,
             manoeuvre: None,
             depth_m: None,
+            n_rps: None,
             columns: IndexMap::new(),
         }
     }

@@ -65,7 +65,7 @@ pub fn identify_columns(recording: &RecordingSample, given: &[GivenColumn]) -> I
         &own,
         PhysicalEvidence::new(&signals),
         time,
-        settled_columns(recording, given),
+        settled_columns(recording, &own, given),
     );
     // One search for each unit of time: the relations decide between the units.
     let found = units.iter().flat_map(|unit| {
@@ -149,7 +149,11 @@ fn time_units(
     }
 }
 
-fn settled_columns(recording: &RecordingSample, given: &[GivenColumn]) -> Vec<SettledColumn> {
+fn settled_columns(
+    recording: &RecordingSample,
+    own: &[OwnEvidence],
+    given: &[GivenColumn],
+) -> Vec<SettledColumn> {
     let of = |one: &GivenColumn| {
         let column = recording.columns.iter().position(|known| known.header == one.header)?;
         let role = one.role.filter(|role| *role != Role::Time);
@@ -157,10 +161,11 @@ fn settled_columns(recording: &RecordingSample, given: &[GivenColumn]) -> Vec<Se
             one.unit.as_deref().is_none_or(|unit| unit == what.unit.name)
                 && one.is_reversed.is_none_or(|is_reversed| is_reversed == what.is_reversed)
         };
-        // The first hypothesis that the user's unit and sign allow; units are ordered most usual
-        // first.
+        // Of the hypotheses that the user's unit and sign allow the likeliest by header and values.
+        let odds = |what: &Hypothesis| own[column].hypothesis_odds(what);
         let what = role.and_then(|role| {
-            Hypothesis::for_role(role).chain(Hypothesis::in_percent(role)).find(fits)
+            let all = Hypothesis::for_role(role).chain(Hypothesis::in_percent(role)).filter(fits);
+            all.reduce(|best, next| if odds(&next) > odds(&best) { next } else { best })
         });
         (one.role != Some(Role::Time)).then_some(SettledColumn { column, what })
     };
@@ -329,5 +334,36 @@ impl AssignmentReport<'_> {
             parts.push("by its range and the channels not found elsewhere".to_owned());
         }
         parts.join("; ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::ColumnData;
+
+    #[test]
+    fn a_given_quantity_has_the_unit_of_its_header() {
+        let column = |header: &str, values: [f64; 4]| ColumnData {
+            header: header.into(),
+            values: values.to_vec(),
+            ..ColumnData::default()
+        };
+        let columns = vec![
+            column("t_s", [0.0, 1.0, 2.0, 3.0]),
+            column("left_rps", [20.0, 21.0, 20.5, 20.0]),
+            column("right_rpm", [20.0, 21.0, 20.5, 20.0]),
+        ];
+        let given = |header: &str, role| GivenColumn {
+            header: header.into(),
+            role: Some(role),
+            unit: None,
+            is_reversed: None,
+        };
+        let recording = RecordingSample { columns, breaks: Vec::new() };
+        let given = [given("left_rps", Role::NP), given("right_rpm", Role::NS)];
+        let found = identify_columns(&recording, &given).columns;
+        assert_eq!(found[1].unit, "rps");
+        assert_eq!(found[2].unit, "rpm");
     }
 }

@@ -52,7 +52,22 @@ pub(crate) fn convert_table(
     }
     let means = pair_means(&mut recording, findings);
     recording.trial.channels.extend(means);
+    if let Some(n_rps) = mapping.n_rps {
+        hold_revolutions(&mut recording.trial, n_rps, findings);
+    }
     recording
+}
+
+/// Adds the revolutions that a trial was sailed with; an error if they were recorded.
+fn hold_revolutions(trial: &mut Trial, n_rps: f64, findings: &mut Findings) {
+    let shafts = [Channel::N, Channel::NS, Channel::NP];
+    if shafts.iter().any(|&shaft| trial.channel(shaft).is_some()) {
+        let message = "`n_rps` is given, but the file records revolutions; remove one of the two";
+        return findings.error(None, None, message);
+    }
+    trial.channels.insert(Channel::N, vec![n_rps; trial.t_s.len()]);
+    let message = format!("revolutions are taken as {n_rps} 1/s throughout: `n_rps` of the trial");
+    findings.warning(None, None, message);
 }
 
 fn apply_sign(

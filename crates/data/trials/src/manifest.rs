@@ -107,10 +107,14 @@ fn trial_problems(manifest: &Manifest) -> impl Iterator<Item = ManifestProblem> 
         let twice = earlier.iter().any(|other| {
             same_file(&other.file, &trial.file) && !(other.is_segment() && trial.is_segment())
         });
-        let message = match trial.depth_m {
+        let is_wrong = |value: &f64| !(*value > 0.0 && value.is_finite());
+        let message = match (trial.depth_m, trial.n_rps) {
             _ if twice => "is listed twice; the same data would count twice".to_owned(),
-            Some(depth) if !(depth > 0.0 && depth.is_finite()) => {
+            (Some(depth), _) if is_wrong(&depth) => {
                 format!("depth_m must be positive, not {depth}; omit it for deep water")
+            }
+            (_, Some(n_rps)) if is_wrong(&n_rps) => {
+                format!("n_rps must be positive, not {n_rps}; omit it where they are recorded")
             }
             _ => return None,
         };

@@ -93,6 +93,9 @@ struct WrittenTrial {
     /// Water depth, m; by default deep water.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     depth_m: Option<f64>,
+    /// Propeller revolutions, 1/s, held throughout the trial, where they were not recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    n_rps: Option<f64>,
     /// Columns of this file, instead of those of the manifest.
     #[serde(default, skip_serializing_if = "indexmap::IndexMap::is_empty")]
     #[schemars(with = "BTreeMap<String, ColumnMapping>")]
@@ -176,6 +179,7 @@ impl From<Written> for ManifestFile {
             to: trial.to,
             manoeuvre: trial.manoeuvre,
             depth_m: trial.depth_m,
+            n_rps: trial.n_rps,
             columns: trial.columns,
         });
         let manifest = Manifest {
@@ -206,8 +210,8 @@ impl From<ManifestFile> for Written {
         // The list of sensors may be shorter than that of trials.
         let sensors = sensors.into_iter().chain(std::iter::repeat(Vec::new()));
         let trials = manifest.trials.into_iter().zip(sensors).map(|(trial, sensors)| {
-            let ManifestTrial { file, from, to, manoeuvre, depth_m, columns } = trial;
-            WrittenTrial { file, from, to, manoeuvre, depth_m, columns, sensors }
+            let ManifestTrial { file, from, to, manoeuvre, depth_m, n_rps, columns } = trial;
+            WrittenTrial { file, from, to, manoeuvre, depth_m, n_rps, columns, sensors }
         });
         Self {
             kind: manifest.kind,

@@ -21,6 +21,8 @@ pub struct Mapping {
     pub manoeuvre: Option<String>,
     /// Water depth where it is constant, m.
     pub depth_m: Option<f64>,
+    /// Revolutions held throughout where they were not recorded, 1/s.
+    pub n_rps: Option<f64>,
     /// Further declarations on the file.
     pub declared: Declarations,
     /// Segment of the file that is read; `None` for the whole file.
@@ -76,6 +78,7 @@ impl Mapping {
             conventions: manifest.conventions.clone(),
             manoeuvre: trial.manoeuvre.clone(),
             depth_m: trial.depth_m,
+            n_rps: trial.n_rps,
             declared: Declarations::default(),
             stretch: FileSegment::from_trial(trial),
             limits: FileLimits::default(),

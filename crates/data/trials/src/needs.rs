@@ -88,6 +88,9 @@ fn channel_remedy(trial: &Trial, channel: Channel) -> String {
             .into(),
         _ if derived => format!("map its column, or declare `derive: [{channel}]`"),
         Channel::Depth => "map its column, or give `depth_m` of the trial".into(),
+        Channel::N => {
+            "map its column, or give `n_rps` of the trial where they were constant".into()
+        }
         Channel::U | Channel::V => {
             format!("map its column, or position and heading and declare `derive: [{channel}]`")
         }

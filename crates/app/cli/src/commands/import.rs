@@ -14,6 +14,7 @@ use sistership_trials::{
 use super::import_bundle;
 use super::import_log::segment_logs;
 use super::import_outcome::{GuessRow, ImportDocument, LawNeeds};
+use super::import_revolutions::state_revolutions;
 use super::import_template::{TemplateFolder, template_name};
 use super::import_text;
 use super::store::StoreArguments;
@@ -160,13 +161,16 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
     let CleanedTrials { trials, excluded } =
         with_draft(&proposal.manifest, folder, |draft| Ok(load_cleaned(draft)?))?;
     proposal.manifest.declarations.exclude.clone_from(&excluded);
-    let (trials, errors) = accepted_trials(trials);
+    let (mut trials, errors) = accepted_trials(trials);
     let currents = estimate_currents(&trials);
     proposal.manifest.declarations.currents.clone_from(&currents);
+    let listed = &mut proposal.manifest.manifest.trials;
+    let revolutions = state_revolutions(zoo, vessel.as_deref(), listed, &mut trials);
     let text = proposal.manifest.to_yaml().map_err(|error| about_file(&out, error))?;
     promised.write(text.as_bytes())?;
     let (guesses, mut notes) = (proposal.guesses, proposal.notes);
     notes.extend(template_notes(arguments, &guesses)?);
+    notes.extend(revolutions);
     let guesses = guesses.into_iter().map(GuessRow::from).collect();
     let explain = arguments.explain;
     let import = ImportDocument {

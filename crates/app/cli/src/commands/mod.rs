@@ -22,6 +22,7 @@ pub mod import;
 mod import_bundle;
 mod import_log;
 mod import_outcome;
+mod import_revolutions;
 mod import_template;
 mod import_text;
 pub mod init;

@@ -1,5 +1,6 @@
 //! Simulation of a recorded trial, and its errors.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
@@ -72,7 +73,7 @@ impl TrialSimulator<'_> {
         read: &ReadTrial,
     ) -> Result<(SimulatedTrial, TrialReplay), Failure> {
         let ship = self.prepare_ship(&read.trial)?;
-        let run = replay_trial(&ship, &read.trial, &self.settings);
+        let run = replay_trial(&ship, &self.with_revolutions(&read.trial), &self.settings);
         let run = run.map_err(|error| {
             Failure::Refused(format!("{error} of {} by law `{}`", self.model.name, self.law.name))
         })?;
@@ -102,6 +103,25 @@ impl TrialSimulator<'_> {
             None => {}
         }
         Ok(ship)
+    }
+
+    /// Returns a trial with the model's own revolutions if none were recorded.
+    fn with_revolutions<'t>(&self, trial: &'t Trial) -> Cow<'t, Trial> {
+        let shafts = [Channel::N, Channel::NS, Channel::NP];
+        let is_recorded = shafts.iter().any(|&shaft| trial.channel(shaft).is_some());
+        let input = self.law.inputs.get(Channel::N.name()).filter(|input| input.default.is_none());
+        let Some(n_rps) = self.model.revolutions_rps.filter(|_| !is_recorded && input.is_some())
+        else {
+            return Cow::Borrowed(trial);
+        };
+        print_note(&format!(
+            "warning: {}: no revolutions are recorded; those of the model's approach, {n_rps:.3} \
+             1/s, are taken",
+            trial.name
+        ));
+        let mut trial = trial.clone();
+        trial.channels.insert(Channel::N, vec![n_rps; trial.len()]);
+        Cow::Owned(trial)
     }
 
     fn trial_errors(&self, file: &str, trial: &Trial, run: &TrialReplay) -> SimulatedTrial {

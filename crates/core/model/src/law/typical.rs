@@ -126,6 +126,24 @@ mod tests {
     }
 
     #[test]
+    fn two_typical_thrusters_balance_the_resistance_of_their_craft_at_the_approach() {
+        let zoo = Zoo::load_embedded().unwrap();
+        let law = zoo.law("differential-thrust").unwrap();
+        let (lpp_m, draught_m, speed_m_s, n_rps) = (1.2, 0.1, 1.5, 18.0);
+        let particular = |value: f64| Quantity::new(value, "assumed");
+        let ship = [("lpp_m", lpp_m), ("draught_m", draught_m)];
+        let ship = ship.map(|(name, value)| (name.to_owned(), particular(value))).into();
+        let approach = Some(TrialApproach { speed_m_s, n_rps: Some(n_rps) });
+        let of = |name: &str| law.typical_value(name, &ship, approach).unwrap().value;
+        let froude_speed = (9.80665_f64 * lpp_m).sqrt();
+        let (u, n) = (speed_m_s / froude_speed, n_rps * lpp_m / froude_speed);
+        let thrust = 2.0 * n * n * of("X_thrust") + 2.0 * n * u * of("X_advance");
+        let resistance = of("X_u|u|") * u * u;
+        assert!((thrust + resistance).abs() < 1e-9 * thrust, "{thrust} {resistance}");
+        assert_eq!(of("N_steer"), of("X_thrust"));
+    }
+
+    #[test]
     fn a_wrong_name_or_unit_is_refused_with_its_field() {
         let zoo = Zoo::load_embedded().unwrap();
         let read = |name: &str, value: &str| {
