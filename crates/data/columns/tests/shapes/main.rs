@@ -1,11 +1,15 @@
 //! Columns of shapes made of the given recordings: languages, units, signs, frames, order, faults.
 //! Seeds below 1000 were looked at while rules were made; those from 1000 on judge.
+//!
+//! `SISTERSHIP_PROGRAM=target/debug/sistership cargo test --workspace --test shapes -- --ignored
+//! --nocapture refinements` compares refinements after import with that from canonical columns.
 
 #[allow(dead_code)]
 #[path = "../../../../../tests/src/shared.rs"]
 mod shared;
 
 mod names;
+mod refined;
 mod shape;
 mod source;
 
