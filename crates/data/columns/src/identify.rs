@@ -303,12 +303,12 @@ impl AssignmentReport<'_> {
     /// knots and m/s are alike in size.
     fn has_settled_unit(&self, at: usize, role: Role) -> bool {
         let is_place = |role: &Role| matches!(role, Role::X | Role::Y | Role::Latitude);
-        let is_track = |one: &&ColumnRelation| {
+        let is_track = |one: &ColumnRelation| {
             one.roles.contains(&role) && one.roles.iter().any(is_place) && one.odds >= RELATED
         };
         role.kind() != QuantityKind::Speed
             || self.search.own[at].header.unit_of_kind(QuantityKind::Speed).is_some()
-            || self.relations.iter().any(|one| is_track(&one))
+            || self.relations.iter().any(is_track)
     }
 
     fn relation_odds(&self, role: Role) -> f64 {
