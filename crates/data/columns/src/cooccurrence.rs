@@ -12,8 +12,8 @@ const ALONE: [(Role, Role, f64); 16] = [
     (Role::VNorth, Role::VEast, -8.0),
     (Role::VEast, Role::VNorth, -8.0),
     (Role::V, Role::U, -2.0),
-    (Role::DeltaS, Role::DeltaP, -3.0),
-    (Role::DeltaP, Role::DeltaS, -3.0),
+    (Role::DeltaS, Role::DeltaP, -4.0),
+    (Role::DeltaP, Role::DeltaS, -4.0),
     (Role::NS, Role::NP, -3.0),
     (Role::NP, Role::NS, -3.0),
     (Role::WindFrom, Role::WindSpeed, -2.0),
@@ -54,7 +54,7 @@ const ONE_UNIT: [(Role, Role, f64); 13] = [
 /// Log odds of quantities that every recording of manoeuvres has, under any of their names.
 const NEEDED: [(&[Role], f64); 4] = [
     (&[Role::Delta, Role::DeltaS, Role::DeltaP], 1.5),
-    (&[Role::N, Role::NS, Role::NP], 3.5),
+    (&[Role::N, Role::NS, Role::NP], 2.5),
     (&[Role::Psi, Role::R], 3.0),
     (&[Role::U, Role::Speed, Role::X, Role::Latitude, Role::VNorth], 3.0),
 ];

@@ -25,6 +25,15 @@ pub(crate) struct HeaderEvidence {
 impl HeaderEvidence {
     /// Reads a header and the cell of a row of units below it.
     pub(crate) fn new(header: &str, below: Option<&str>) -> Self {
+        let own = Self::from_text(header, below);
+        // Fields of structures have their path before the name, which the whole text may hide.
+        match last_field(header).map(|field| Self::from_text(field, below)) {
+            Some(field) if field.best_odds() > own.best_odds() => field,
+            _ => own,
+        }
+    }
+
+    fn from_text(header: &str, below: Option<&str>) -> Self {
         let parts = HeaderParts::new(header);
         let mut units = parts.units.clone();
         units.extend(below.and_then(unit_named));
@@ -48,16 +57,30 @@ impl HeaderEvidence {
     fn add_candidate(&mut self, meaning: &PhraseMeaning, odds: f64) {
         // `rudder port` names the port rudder: a side in the header makes the quantity that of the
         // side.
-        let meaning = match (meaning, self.side) {
-            (PhraseMeaning::Channel(role), Some(side)) => {
-                PhraseMeaning::Channel(role.for_side(side))
+        let meaning = match meaning {
+            PhraseMeaning::Channel(role) => {
+                let role = self.rate_by_unit(*role);
+                PhraseMeaning::Channel(self.side.map_or(role, |side| role.for_side(side)))
             }
-            _ => meaning.clone(),
+            PhraseMeaning::Other(_) => meaning.clone(),
         };
         match self.candidates.iter_mut().find(|(known, _)| *known == meaning) {
             Some((_, most)) => *most = most.max(odds),
             None => self.candidates.push((meaning, odds)),
         }
+    }
+
+    /// Returns the rate of a quantity where the written unit is one of its rate: `Yaw` in deg/s.
+    fn rate_by_unit(&self, role: Role) -> Role {
+        let rate = match role {
+            Role::Psi => Role::R,
+            Role::Phi => Role::P,
+            Role::X => Role::VNorth,
+            Role::Y => Role::VEast,
+            _ => return role,
+        };
+        let is_written = |kind: QuantityKind| self.unit_of_kind(kind).is_some();
+        if is_written(rate.kind()) && !is_written(role.kind()) { rate } else { role }
     }
 
     /// Returns the log odds of a channel against a column that holds no channel.
@@ -85,6 +108,13 @@ impl HeaderEvidence {
         let fits = |unit: &&String| unit_is(kind, unit);
         self.units.iter().find(fits).map(String::as_str)
     }
+}
+
+/// Returns the last field of a path such as `data.nav.u`.
+fn last_field(header: &str) -> Option<&str> {
+    let is_path = !header.contains([' ', '[', '(', '/']);
+    let (_, field) = header.rsplit_once('.').filter(|_| is_path)?;
+    field.starts_with(char::is_alphabetic).then_some(field)
 }
 
 fn unit_is(kind: QuantityKind, unit: &str) -> bool {
@@ -126,8 +156,10 @@ impl HeaderParts {
         let mut letters = name.trim().chars();
         let letter = letters.next().filter(|_| letters.next().is_none());
         let mut units = units;
-        units.extend(all.iter().filter(|word| word.len() > 1).filter_map(|word| unit_named(word)));
+        // The last words state the unit: `rpm_rps` is a column named after another unit.
         units.extend(ending.iter().map(|(unit, _)| unit.clone()));
+        let long = all.iter().rev().filter(|word| word.len() > 1);
+        units.extend(long.filter_map(|word| unit_named(word)));
         // Words that only state a sign (`port positive`) name no side of the ship, and are removed.
         let sign = vocabulary().port_positive.iter().any(|text| name.to_lowercase().contains(text));
         let kept = |word: &String| !(sign && is_sign_word(word));
@@ -283,12 +315,13 @@ fn split_units(header: &str) -> (String, Vec<String>) {
         let close = inner.find([']', ')', '}', '）', '］']).unwrap_or(inner.len());
         let text = &inner[first.min(close)..close];
         name.push_str(&rest[..open]);
-        match unit_named(text) {
-            Some(unit) => units.push(unit),
-            None => {
-                name.push(' ');
-                name.push_str(text);
-                name.push(' ');
+        // A bracket may state the unit and the sign: `(m/s; + to stbd)`.
+        let parts =
+            if unit_named(text).is_some() { vec![text] } else { text.split([',', ';']).collect() };
+        for part in parts {
+            match unit_named(part) {
+                Some(unit) => units.push(unit),
+                None => name.extend([" ", part, " "]),
             }
         }
         let after = inner[close..].chars().next().map_or(0, char::len_utf8);
@@ -407,6 +440,31 @@ mod tests {
         ] {
             assert_eq!(best(header), None, "{header}");
         }
+    }
+
+    #[test]
+    fn units_of_rates_paths_and_signs_change_what_a_name_means() {
+        for (header, wanted) in [
+            ("Yaw [deg/s]", "r"),
+            ("Yaw [deg]", "psi"),
+            ("Roll (deg/s)", "p"),
+            ("North [m/s]", "v_north"),
+            ("data.nav.u", "u"),
+            ("data.act.rudder_deg", "delta"),
+            ("Velocity u", "u"),
+            ("Speed thr. water (knots)", "u_water"),
+            ("Rudder angle (deg, +ve to port)", "delta"),
+            ("Sway (m/s; + to stbd)", "v"),
+        ] {
+            assert_eq!(best(header), Some(wanted), "{header}");
+        }
+        let other = HeaderEvidence::new("rpm_rps", None);
+        assert_eq!(other.unit_of_kind(QuantityKind::Revolutions), Some("rps"));
+        let below = HeaderEvidence::new("Yaw", Some("deg/s"));
+        assert_eq!(below.candidates[0].0, PhraseMeaning::Channel(Role::R));
+        let rudder = HeaderEvidence::new("Rudder angle (deg, +ve to port)", None);
+        assert!(rudder.is_port_positive && rudder.side.is_none());
+        assert_eq!(rudder.unit_of_kind(QuantityKind::Angle), Some("deg"));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::outcome::{AlternativeReading, Identification, IdentifiedColumn};
 use crate::own_evidence::OwnEvidence;
 use crate::physics::PhysicalEvidence;
 use crate::relation::ColumnRelation;
-use crate::role::Role;
+use crate::role::{QuantityKind, Role};
 use crate::search::{AssignmentSearch, SettledColumn, swap_axes};
 use crate::signals::RecordingSignals;
 use crate::starts;
@@ -102,6 +102,9 @@ pub fn identify_columns(recording: &RecordingSample, given: &[GivenColumn]) -> I
         let second = found.iter().find(|other| other.0.name != unit.name);
         let second = second.map(|other| (other.0, other.2 - found[0].2));
         columns[at] = identify_time(&recording.columns[at].header, &own[at], unit, second);
+        for rival in time::rival_clocks(&own, at) {
+            (columns[at].is_certain, columns[rival].is_certain) = (false, false);
+        }
     }
     let thrusters = thrusters::find_thrusters(&own, &signals, &best);
     Identification { columns, thrusters }
@@ -298,7 +301,19 @@ impl AssignmentReport<'_> {
         let settled = self.search.settled.iter().any(|one| one.column == at);
         let related = if self.search.has_open_columns() { RELATED_ALONE } else { RELATED };
         let borne = own.name_odds(what.role) >= NAMED || self.relation_odds(what.role) >= related;
-        settled || (probability > CERTAIN && borne)
+        settled || (probability > CERTAIN && borne && self.has_settled_unit(at, what.role))
+    }
+
+    /// Returns true if header or positions settle the unit: of a speed nothing else does, since
+    /// knots and m/s are alike in size.
+    fn has_settled_unit(&self, at: usize, role: Role) -> bool {
+        let is_place = |role: &Role| matches!(role, Role::X | Role::Y | Role::Latitude);
+        let is_track = |one: &ColumnRelation| {
+            one.roles.contains(&role) && one.roles.iter().any(is_place) && one.odds >= RELATED
+        };
+        role.kind() != QuantityKind::Speed
+            || self.search.own[at].header.unit_of_kind(QuantityKind::Speed).is_some()
+            || self.relations.iter().any(is_track)
     }
 
     fn relation_odds(&self, role: Role) -> f64 {

@@ -19,6 +19,9 @@ const OTHER_UNIT: f64 = 9.0;
 const REVERSED: f64 = 4.5;
 const REVERSED_RUDDER: f64 = 3.6;
 const UNNAMED_RUDDER: f64 = 0.7;
+/// Unrest of a column that a rudder and the ship's motions have equally often: rudders of the given
+/// recordings have 0.00 to 0.02, velocities and roll 0.02 to 0.5.
+const HELD: f64 = 0.04;
 /// Standard deviation, in natural logarithms, of the size of a value outside the usual range.
 const FADE: f64 = 0.45;
 /// Largest loss of log odds by the range.
@@ -202,7 +205,20 @@ impl OwnEvidence {
             _ => 0.0,
         };
         let counted = if summary.is_counter { -6.0 } else { 0.0 };
-        returns + negative + constant + moves + counted + swings
+        returns + negative + constant + moves + counted + swings + self.rudder_odds(what)
+    }
+
+    /// Returns the log odds of a rudder without a name: it is held between its movements, and moves
+    /// about amidships.
+    fn rudder_odds(&self, what: &Hypothesis) -> f64 {
+        let is_rudder = matches!(what.role, Role::Delta | Role::DeltaS | Role::DeltaP);
+        if !is_rudder || !self.is_blank {
+            return 0.0;
+        }
+        let unrest = self.summary.unrest.unwrap_or(HELD);
+        let held = (2.0 * (HELD / unrest.max(1e-3)).ln()).clamp(-5.0, 0.0);
+        let is_offset = self.summary.spread < 0.2 * self.summary.largest;
+        held + if is_offset { -2.0 } else { 0.0 }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::hypothesis::Assignment;
 use crate::relation::{ColumnRelation, MIN_ODDS, RelationInput, SeriesFit};
 use crate::role::Role;
 use crate::rudder;
-use crate::signals::RecordingSignals;
+use crate::signals::{BlockScale, RecordingSignals};
 use crate::track::GroundTrack;
 
 /// Part of the largest revolutions within which they are constant.
@@ -145,13 +145,29 @@ impl<'a> PhysicalEvidence<'a> {
         let summary = &self.observed.signals.summaries[i];
         // Revolutions that change take the speed with them; a temperature does not.
         let driven = match summary.spread > STEADY * summary.largest {
-            true => (3.0 * self.block_correlation(i, j) - 1.0).clamp(-1.5, 1.5),
+            true => {
+                let together = (3.0 * self.block_correlation(i, j) - 1.0).clamp(-1.5, 1.5);
+                together + self.drive_odds(j, i)
+            }
             false => 0.0,
         };
         let odds = sized + driven;
         let ahead = speed_m_s / revolutions.max(1e-9);
         let figure = self.observed.format_figure(|| format!("{ahead:.2} m ahead per revolution"));
         Some(ColumnRelation { roles: [n, Role::Other, Role::Other], odds, figure })
+    }
+
+    /// Returns the log odds of revolutions that drive a speed, which follows them with a lag: the
+    /// partial correlation with the acceleration in `du/dt = a u + b n + c` is above zero, and below
+    /// zero with the roles exchanged.
+    fn drive_odds(&self, speed: usize, revolutions: usize) -> f64 {
+        let partial = |scale: &BlockScale| {
+            let (u, n) = (&scale.columns[speed], &scale.columns[revolutions]);
+            rudder::partial_correlation(&u.change, [&u.integral, &n.integral, &scale.duration])
+        };
+        let partials = self.observed.signals.scales.iter().map(partial);
+        let partial = partials.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
+        (6.0 * (partial - 0.15)).clamp(-3.0, 2.5)
     }
 
     /// Relation of roll angle and yaw rate: a turning ship heels, to one side or the other.
@@ -232,7 +248,11 @@ impl<'a> PhysicalEvidence<'a> {
                 let scale = self.observed.signals.scales.first()?;
                 let (a, b) = (&scale.columns[i].mean, &scale.columns[j].mean);
                 let fit = SeriesFit::new(a, fi, b, fj)?;
-                let (odds, share) = (fit.capped_odds(floor), 100.0 * fit.left.sqrt());
+                let odds = match other {
+                    Role::UWater | Role::VWater => fit.instrument_odds(floor),
+                    _ => fit.capped_odds(floor),
+                };
+                let share = 100.0 * fit.left.sqrt();
                 let told =
                     || format!("agrees with the column of the other side within {share:.0} %");
                 let figure = self.observed.format_figure(told);

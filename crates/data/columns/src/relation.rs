@@ -10,6 +10,8 @@ const MAX_ODDS: f64 = 30.0;
 pub(crate) const MIN_ODDS: f64 = -12.0;
 /// Largest log odds of a relation that a constant would explain as well: only the sizes agree.
 const SIZE: f64 = 5.0;
+/// Unexplained fraction at which two columns are instruments of one quantity as likely as not.
+const ALIKE: f64 = 0.08;
 /// Fraction of the blocks whose residuals are excluded as faults of instruments.
 const FAULTY: f64 = 0.04;
 
@@ -73,6 +75,15 @@ impl SeriesFit {
     pub(crate) fn capped_odds(&self, floor: f64) -> f64 {
         residual_odds(self.left.max(floor))
             .min(SIZE + residual_odds(self.left_of_changes.max(floor)))
+    }
+}
+
+impl SeriesFit {
+    /// Returns the log odds of two instruments of one quantity: they agree in size and in changes,
+    /// whereas quantities that only change together, as roll and sway do, differ.
+    pub(crate) fn instrument_odds(&self, floor: f64) -> f64 {
+        let unexplained = self.left.max(self.left_of_changes.min(1.0)).max(floor);
+        (PER_FOLD * (ALIKE / unexplained).ln()).clamp(MIN_ODDS, MAX_ODDS)
     }
 }
 

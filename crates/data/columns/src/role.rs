@@ -114,7 +114,7 @@ const TABLE: [RoleProperties; 29] = [
     role_properties(Role::U, "u", QuantityKind::Speed, [0.2, 25.0], true),
     role_properties(Role::V, "v", QuantityKind::Speed, [0.01, 6.0], true),
     role_properties(Role::R, "r", QuantityKind::Rate, [0.002, 1.0], true),
-    role_properties(Role::Phi, "phi", QuantityKind::Angle, [0.008, 0.7], true),
+    role_properties(Role::Phi, "phi", QuantityKind::Angle, [0.012, 0.7], true),
     role_properties(Role::P, "p", QuantityKind::Rate, [0.0005, 0.5], true),
     role_properties(Role::Delta, "delta", QuantityKind::Angle, [0.03, 1.7], true),
     role_properties(Role::DeltaS, "delta_s", QuantityKind::Angle, [0.03, 1.7], true),

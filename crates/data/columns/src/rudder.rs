@@ -72,7 +72,7 @@ pub(crate) fn pearson_correlation(a: &[f64], b: &[f64]) -> f64 {
 
 /// Returns the partial correlation of the second regressor with a response: its coefficient divided
 /// by its standard error, scaled to -1 to 1.
-fn partial_correlation(response: &[f64], regressors: [&Vec<f64>; 3]) -> f64 {
+pub(crate) fn partial_correlation(response: &[f64], regressors: [&Vec<f64>; 3]) -> f64 {
     let rows = response.len();
     if rows < 15 {
         return 0.0;

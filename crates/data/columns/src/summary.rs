@@ -6,6 +6,8 @@ use std::f64::consts::TAU;
 const PERIODS: [(f64, &str); 2] = [(360.0, "deg"), (TAU, "rad")];
 /// Number of crossings of the mean that a heading in zigzags does not reach.
 const SWINGS: usize = 60;
+/// Number of blocks whose means show whether a column is held for most of the time.
+const UNREST_BLOCKS: usize = 600;
 /// Largest number of samples of an average across the wrap.
 const AVERAGED: usize = 8;
 /// Deviation from the median of the neighbours, in robust standard deviations, above which a value
@@ -40,6 +42,9 @@ pub(crate) struct ColumnSummary {
     pub is_counter: bool,
     /// Fraction of steps that are zero.
     pub still: f64,
+    /// Median of the steps between means of short blocks by the largest of them; `None` where
+    /// nothing changes. A rudder is held and moved at once: its median step is far smaller.
+    pub unrest: Option<f64>,
 }
 
 impl ColumnSummary {
@@ -54,6 +59,7 @@ impl ColumnSummary {
         let steps = steps_within(values, breaks);
         let period = find_period(&sorted);
         let first = sorted[0];
+        let unrest = block_unrest(&sorted);
         let swings = swings_about_mean(&sorted);
         sorted.sort_by(f64::total_cmp);
         let mut summary = Self {
@@ -63,6 +69,7 @@ impl ColumnSummary {
             negative: fraction_where(&sorted, |value| value < 0.0),
             period,
             swings: swings && period.is_none(),
+            unrest,
             ..Self::default()
         };
         let mut magnitudes: Vec<f64> = sorted.iter().map(|value| value.abs()).collect();
@@ -93,6 +100,17 @@ impl ColumnSummary {
         // One step in fifty may be out of order, as a fault of the file.
         self.count > 1 && self.forward > 0.98 && self.step > 0.0 && self.still < 0.9
     }
+}
+
+/// Returns the median of the steps between means of [`UNREST_BLOCKS`] blocks by their 98 % quantile.
+fn block_unrest(values: &[f64]) -> Option<f64> {
+    let rows = (values.len() / UNREST_BLOCKS).max(2);
+    let means: Vec<f64> =
+        values.chunks_exact(rows).map(|block| block.iter().sum::<f64>() / rows as f64).collect();
+    let mut steps: Vec<f64> = means.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    steps.sort_by(f64::total_cmp);
+    let largest = sorted_quantile(&steps, 0.98);
+    (largest > 0.0).then(|| sorted_quantile(&steps, 0.5) / largest)
 }
 
 /// Returns the steps between consecutive finite values, none across a break.

@@ -41,6 +41,15 @@ pub(crate) fn time_column(columns: &[ColumnData], own: &[OwnEvidence]) -> Option
     scored.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
 }
 
+/// Returns the columns without a name that run as regularly as a time column without one: a number
+/// of the row, or seconds.
+pub(crate) fn rival_clocks(own: &[OwnEvidence], time: usize) -> Vec<usize> {
+    let is_steady =
+        |own: &OwnEvidence| own.is_open() && own.summary.is_clock() && own.summary.steady > 0.9;
+    let others = (0..own.len()).filter(|&at| at != time && is_steady(&own[at]));
+    if is_steady(&own[time]) { others.collect() } else { Vec::new() }
+}
+
 /// Returns the units in which the column may be, best first, with log odds.
 pub(crate) fn candidate_units(column: &ColumnData, own: &OwnEvidence) -> Vec<TimeUnit> {
     let of = |unit: &Unit| {

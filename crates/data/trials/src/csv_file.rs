@@ -157,10 +157,6 @@ fn read_start(
                 return None;
             }
         };
-        if start.starts_with(&[0xff, 0xfe]) || start.starts_with(&[0xfe, 0xff]) {
-            findings.error(Some(1), None, "the file is UTF-16 text; save it as UTF-8");
-            return None;
-        }
         if read == 0
             || start.len() > mapping.limits.line_bytes
             || layout::is_settled(&start, mapping)

@@ -25,8 +25,9 @@ pub(crate) struct TableLayout {
     pub lines: usize,
     /// Units in the row below the header, if there is one.
     pub units: Vec<String>,
-    /// Number of columns of a table without a header; they are named `#1`, `#2`, ...
-    pub headerless: Option<usize>,
+    /// Names of the columns where no single line of the file holds them: `#1`, `#2`, ... of a
+    /// table without a header, or those of two lines together.
+    pub added_names: Vec<String>,
 }
 
 /// Line that is not blank.
@@ -37,6 +38,8 @@ struct TextLine<'a> {
     before: usize,
     bytes: &'a [u8],
     complete: bool,
+    /// True if a mark of a comment was removed from its start.
+    is_comment: bool,
 }
 
 /// Finds the table. The header is the line with most names that are mapped or canonical, or else
@@ -54,6 +57,11 @@ pub(crate) fn find_table(start: &[u8], mapping: &Mapping) -> TableLayout {
     {
         return layout;
     }
+    if let Some(layout) = two_line_header(start)
+        && mapping.columns.iter().any(|(_, mapped)| layout.added_names.contains(&mapped.column))
+    {
+        return layout;
+    }
     let mut found = nonblank_lines(start).enumerate().peekable();
     let Some(&(_, first)) = found.peek() else {
         return TableLayout { separator: b',', ..TableLayout::default() };
@@ -68,12 +76,25 @@ pub(crate) fn find_table(start: &[u8], mapping: &Mapping) -> TableLayout {
         }
     }
     let (at, line) = best;
-    let separator = header_separator(line.bytes);
     // A line that is cut off at the end of `start` is no evidence of units.
     let below = nonblank_lines(start).nth(at + 1).filter(|below| below.complete);
+    let separator = separator_above(line.bytes, below);
     let units = below.and_then(|below| row_units(&split_cells(below.bytes, separator)));
-    let (offset, lines) = if at == 0 { (0, 0) } else { (line.offset, line.before) };
-    TableLayout { separator, offset, lines, units: units.unwrap_or_default(), headerless: None }
+    let units = units.unwrap_or_default();
+    let is_first = at == 0 && !line.is_comment;
+    let (offset, lines) = if is_first { (0, 0) } else { (line.offset, line.before) };
+    TableLayout { separator, offset, lines, units, added_names: Vec::new() }
+}
+
+/// Returns the separator of a header: that of the values below it where these tell, since the names
+/// themselves may contain commas.
+fn separator_above(header: &[u8], below: Option<TextLine>) -> u8 {
+    let own = header_separator(header);
+    let Some(below) = below.filter(|below| is_data(below.bytes)) else { return own };
+    let other = likely_separator(below.bytes);
+    let width = |line: &[u8], separator: u8| split_cells(line, separator).len();
+    let fits = width(header, other) == width(below.bytes, other) && header.contains(&other);
+    if fits { other } else { own }
 }
 
 /// Finds a table without a header, by its first lines that hold numbers only.
@@ -88,15 +109,67 @@ fn headerless_layout(start: &[u8]) -> Option<TableLayout> {
     let at = (0..lines.len()).find(|&at| alike(at))?;
     let TextLine { offset, before, bytes, .. } = lines[at];
     let separator = likely_separator(bytes);
-    let headerless = Some(split_cells(bytes, separator).len());
-    Some(TableLayout { separator, offset, lines: before, units: Vec::new(), headerless })
+    let count = split_cells(bytes, separator).len();
+    let added_names = (1..=count).map(|place| format!("#{place}")).collect();
+    Some(TableLayout { separator, offset, lines: before, units: Vec::new(), added_names })
+}
+
+/// Finds a table whose header has groups of columns in one line and their members in the next, as
+/// merged cells of a sheet give: each column is named by both.
+fn two_line_header(start: &[u8]) -> Option<TableLayout> {
+    let lines: Vec<TextLine> = nonblank_lines(start).take(LINES).collect();
+    let data = (0..lines.len()).find(|&at| is_data(lines[at].bytes))?;
+    let separator = Some(likely_separator(lines[data].bytes)).filter(|byte| *byte != b' ')?;
+    let cells = |at: usize| split_cells(lines[at].bytes, separator);
+    let units = data.checked_sub(1).and_then(|at| row_units(&cells(at)));
+    let lower = data.checked_sub(if units.is_some() { 2 } else { 1 })?;
+    let names = join_header_lines(&cells(lower.checked_sub(1)?), &cells(lower))?;
+    let is_table = names.len().abs_diff(cells(data).len()) <= 1;
+    let TextLine { offset, before, .. } = lines[lower + 1];
+    is_table.then(|| TableLayout {
+        separator,
+        offset,
+        lines: before,
+        units: units.unwrap_or_default(),
+        added_names: names,
+    })
+}
+
+/// Returns the names of columns by two lines; `None` if the lower one names every column, or the
+/// names would not be unique.
+fn join_header_lines(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
+    let text = |cell: &String| !cell.is_empty() && !is_value(cell, b',');
+    let is_header = upper.iter().chain(lower).filter(|cell| !cell.is_empty()).all(text)
+        // A title alone is no group of columns.
+        && upper.iter().filter(|cell| !cell.is_empty()).count() > 1;
+    let has_blanks = lower.iter().any(String::is_empty);
+    if !is_header || !has_blanks || upper.len().abs_diff(lower.len()) > 1 {
+        return None;
+    }
+    let mut group = String::new();
+    let mut names = Vec::new();
+    for (upper, lower) in upper.iter().zip(lower) {
+        // A group stands above its first member only.
+        if !upper.is_empty() || lower.is_empty() {
+            group.clone_from(upper);
+        }
+        names.push(format!("{group} {lower}").trim().to_owned());
+    }
+    let unique = names.iter().collect::<std::collections::BTreeSet<_>>().len() == names.len();
+    (unique && names.iter().all(|name| !name.is_empty())).then_some(names)
 }
 
 /// Returns the text of the table from its header on; a table without a header is given one.
 pub(crate) fn table_body(start: &[u8], layout: &TableLayout) -> Vec<u8> {
     let text = &start[layout.offset..];
-    let Some(count) = layout.headerless else { return text.to_vec() };
-    let names: Vec<String> = (1..=count).map(|place| format!("#{place}")).collect();
+    if layout.added_names.is_empty() {
+        return text.to_vec();
+    }
+    let quoted = |name: &String| match name.contains([char::from(layout.separator), '"']) {
+        true => format!("\"{}\"", name.replace('"', "\"\"")),
+        false => name.clone(),
+    };
+    let names: Vec<String> = layout.added_names.iter().map(quoted).collect();
     let separator = char::from(layout.separator).to_string();
     [names.join(&separator).as_bytes(), b"\n", text].concat()
 }
@@ -105,7 +178,7 @@ impl TableLayout {
     /// Returns the number of lines before those that are read, less the line of an added header.
     pub(crate) fn line_shift(&self) -> isize {
         let lines = isize::try_from(self.lines).unwrap_or(isize::MAX);
-        lines - isize::from(self.headerless.is_some())
+        lines - isize::from(!self.added_names.is_empty())
     }
 }
 
@@ -117,6 +190,9 @@ pub(crate) fn count_known_names(start: &[u8], mapping: &Mapping) -> usize {
 
 /// Finds the most likely table of an unknown file: its header is above the first line of values.
 pub(crate) fn guess_layout(start: &[u8]) -> TableLayout {
+    if let Some(layout) = two_line_header(start) {
+        return layout;
+    }
     let canonical = Mapping::with_canonical_names();
     let lines: Vec<TextLine> = nonblank_lines(start).collect();
     let data = (0..lines.len()).find(|&at| is_data(lines[at].bytes));
@@ -137,8 +213,8 @@ pub(crate) fn guess_layout(start: &[u8]) -> TableLayout {
     }
     let below = row_units(&split_cells(lines[data - 1].bytes, separator)).filter(|_| data > 1);
     let header = lines[if below.is_some() { data - 2 } else { data - 1 }];
-    let units = below.unwrap_or_default();
-    TableLayout { separator, offset: header.offset, lines: header.before, units, headerless: None }
+    let (offset, lines, units) = (header.offset, header.before, below.unwrap_or_default());
+    TableLayout { separator, offset, lines, units, added_names: Vec::new() }
 }
 
 /// Returns the likely separator of a line; a comma may be a decimal mark if something else
@@ -196,10 +272,28 @@ fn nonblank_lines(start: &[u8]) -> impl Iterator<Item = TextLine<'_>> + Clone {
     let lines =
         text.split_inclusive(|&byte| byte == b'\n').enumerate().map(move |(before, line)| {
             offset += line.len();
-            let complete = line.ends_with(b"\n");
-            TextLine { offset: offset - line.len(), before, bytes: strip_line_end(line), complete }
+            let (mark, complete) = (comment_mark(line), line.ends_with(b"\n"));
+            let bytes = strip_line_end(&line[mark..]);
+            TextLine {
+                offset: offset + mark - line.len(),
+                before,
+                bytes,
+                complete,
+                is_comment: mark > 0,
+            }
         });
     lines.filter(|line| !line.bytes.trim_ascii().is_empty()).take(LINES)
+}
+
+/// Returns the number of bytes of the mark of a comment before words: headers of tables for MATLAB
+/// and gnuplot are comments. `#1` and `# 12` are no words.
+fn comment_mark(line: &[u8]) -> usize {
+    let is_mark = |byte: &u8| matches!(byte, b'%' | b'#');
+    let after = line.iter().position(|byte| !is_mark(byte)).unwrap_or(0);
+    let text = line[after..].trim_ascii_start();
+    let is_words =
+        text.first().is_some_and(|byte| byte.is_ascii_alphabetic() || b"([".contains(byte));
+    if after > 0 && is_words { line.len() - text.len() } else { 0 }
 }
 
 fn strip_line_end(line: &[u8]) -> &[u8] {
@@ -252,7 +346,10 @@ fn count_known(line: &[u8], mapping: &Mapping) -> usize {
             || names::is_time(cell)
             || mapping.columns.iter().any(|(_, mapped)| mapped.column.trim() == cell)
     };
-    split_cells(line, header_separator(line)).iter().filter(|cell| is_known(cell)).count()
+    let count =
+        |separator| split_cells(line, separator).iter().filter(|cell| is_known(cell)).count();
+    // Names may contain commas, so that the other separators are counted too.
+    [header_separator(line), b'\t', b';'].into_iter().map(count).max().unwrap_or(0)
 }
 
 /// Returns the units of a line that holds nothing else.
@@ -286,10 +383,35 @@ mod tests {
         let text =
             b" HSVA, data\n Z10/10 starting to port\n  .00   2.34  -1.0\n  .05   2.40  -1.1\n";
         let layout = guess_layout(text);
-        assert_eq!((layout.separator, layout.headerless, layout.lines), (b' ', Some(3), 2));
+        assert_eq!((layout.separator, layout.added_names.len(), layout.lines), (b' ', 3, 2));
         assert!(table_body(text, &layout).starts_with(b"#1 #2 #3\n  .00"));
-        assert_eq!(guess_layout(b"a b c\n0 1 2\n1 2 3\n").headerless, None);
-        assert_eq!(guess_layout(b"0;1;2\n1;2;3\n").headerless, Some(3));
+        assert_eq!(guess_layout(b"a b c\n0 1 2\n1 2 3\n").added_names, [""; 0]);
+        assert_eq!(guess_layout(b"0;1;2\n1;2;3\n").added_names, ["#1", "#2", "#3"]);
+    }
+
+    #[test]
+    fn groups_above_names_become_part_of_them() {
+        let text = b"Time\tPosition\t\tRudder\n\tNorth\tEast\t\n[s]\t[m]\t[m]\t[deg]\n0\t1\t2\t3\n";
+        let layout = guess_layout(text);
+        assert_eq!(layout.added_names, ["Time", "Position North", "Position East", "Rudder"]);
+        assert_eq!((layout.units.join(" "), layout.line_shift()), ("s m m deg".into(), 1));
+        assert!(table_body(text, &layout).starts_with(b"Time\tPosition North"));
+        // A title above a table whose first column has no name is no group.
+        assert_eq!(guess_layout(b"A trial,,\n,Time,Heading\n0,1,2\n").added_names, [""; 0]);
+    }
+
+    #[test]
+    fn a_header_may_be_a_comment() {
+        let layout = guess_layout(b"% Run 4\n%  time   x\n%  (s)  (m)\n 0.0  1.0\n 0.1  1.1\n");
+        assert_eq!((layout.offset, layout.lines, layout.units.len()), (11, 1, 2));
+        assert_eq!(of("#Time,u_m_s\n0,1\n").offset, 1);
+        assert_eq!(comment_mark(b"#1 #2"), 0);
+    }
+
+    #[test]
+    fn values_tell_the_separator_of_names_with_commas() {
+        assert_eq!(of("t_s;rudder (deg, port)\n0;1\n").separator, b';');
+        assert_eq!(of("t_s,u_m_s\n0,1\n").separator, b',');
     }
 
     #[test]

@@ -79,6 +79,7 @@ mod table;
 mod template;
 #[cfg(test)]
 mod testing;
+mod text_decoder;
 mod thruster_guess;
 mod trial_file;
 mod trial_rows;

@@ -49,8 +49,41 @@ pub(crate) fn parse_number(cell: &[u8]) -> Result<f64, CellFault> {
     match parsed {
         Some(value) if value.is_finite() => Ok(value),
         Some(_) => Err(CellFault::NotANumber),
-        None => Err(CellFault::Text(shown_text(text))),
+        None => parse_degrees(text).ok_or_else(|| CellFault::Text(shown_text(text))),
     }
+}
+
+/// Parses an angle in degrees, minutes and seconds, such as `34°41.5'N` or `135 11 24.0 E`, to
+/// degrees; south and west are negative. `None` without a sign of degrees, or several numbers and a
+/// point of the compass.
+fn parse_degrees(cell: &[u8]) -> Option<f64> {
+    // Bytes that are not UTF-8 are Latin-1, where 0xb0 is the sign of degrees.
+    let text = std::str::from_utf8(cell)
+        .map_or_else(|_| cell.iter().map(|&byte| char::from(byte)).collect(), str::to_owned);
+    let compass = |letter: char| matches!(letter, 'N' | 'S' | 'E' | 'W');
+    let letters: Vec<char> =
+        text.chars().filter(|letter| letter.is_alphabetic() && *letter != 'º').collect();
+    let point = match letters[..] {
+        [] => None,
+        [letter] if compass(letter) => Some(letter),
+        _ => return None,
+    };
+    let is_sign = |letter: char| matches!(letter, '°' | 'º' | '˚');
+    let signed = text.contains(is_sign);
+    let marks = |letter: char| {
+        is_sign(letter) || compass(letter) || letter.is_whitespace() || "'\"′″’”".contains(letter)
+    };
+    let parts = text.split(marks).filter(|part| !part.is_empty());
+    let parts: Vec<f64> = parts.map(|part| part.parse().ok()).collect::<Option<_>>()?;
+    let (&degrees, smaller) = parts.split_first()?;
+    let is_whole = smaller.len() <= 2 && smaller.iter().all(|part| (0.0..60.0).contains(part));
+    if !is_whole || !(signed || (point.is_some() && !smaller.is_empty())) || !degrees.is_finite() {
+        return None;
+    }
+    // Minutes and seconds count away from zero, also those of -0 degrees.
+    let size = smaller.iter().rev().fold(0.0, |rest, part| (rest + part) / 60.0) + degrees.abs();
+    let is_negative = degrees.is_sign_negative() != matches!(point, Some('S' | 'W'));
+    Some(if is_negative { -size } else { size })
 }
 
 /// Number of decimal digits that an f64 holds exactly.
@@ -159,6 +192,25 @@ mod tests {
         assert_eq!(parse_plain(b"-0.0").map(f64::to_bits), Some((-0.0_f64).to_bits()));
         for text in [&b"."[..], b"-", b"", b"1.2.3", b"1e3", b"+1", b"1234567890123456", b"1_0"] {
             assert_eq!(parse_plain(text), None);
+        }
+    }
+
+    #[test]
+    fn degrees_and_minutes_are_read_as_degrees() {
+        for (text, degrees) in [
+            ("34°41.5'N", 34.0 + 41.5 / 60.0),
+            ("34° 41' 30.0\" S", -(34.0 + 41.5 / 60.0)),
+            ("135 11 24.0 E", 135.19),
+            ("W005°30.0", -5.5),
+            ("-0°30'", -0.5),
+            ("312.5°", 312.5),
+        ] {
+            let read = parse_number(text.as_bytes()).unwrap();
+            assert!((read - degrees).abs() < 1e-12, "{text}: {read}");
+        }
+        assert!((parse_number(b"312.5\xb0").unwrap() - 312.5).abs() < 1e-12, "Latin-1");
+        for text in ["10.5S", "12 N 5 E", "34°75'N", "5 kn", "N/A", "°"] {
+            assert!(parse_number(text.as_bytes()).is_err(), "{text}");
         }
     }
 

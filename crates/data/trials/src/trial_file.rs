@@ -10,6 +10,7 @@ use crate::column_reader::ColumnFile;
 use crate::declarations::SensorFile;
 use crate::magic::{self, FormatKind, LOOKED_AT};
 use crate::mapping::Mapping;
+use crate::text_decoder::TextDecoder;
 use crate::workbook::ReadSeek;
 
 /// Input file: its name, which every message mentions, and its bytes.
@@ -41,7 +42,8 @@ pub(crate) enum InputContent<'a> {
 impl<'a> TrialFile<'a> {
     /// Creates an input file of CSV from any reader, streamed row by row.
     pub fn from_csv(name: impl Into<String>, reader: impl Read + 'a) -> Self {
-        Self::without_sensors(name.into(), InputContent::Csv(Box::new(reader)))
+        let text = TextDecoder::new(reader);
+        Self::without_sensors(name.into(), InputContent::Csv(Box::new(text)))
     }
 
     /// Creates an input file of Parquet in memory.
@@ -65,7 +67,7 @@ impl<'a> TrialFile<'a> {
             FormatKind::Columns(format) => InputContent::Columns(ColumnFile { format, input }),
             FormatKind::Nmea => InputContent::Nmea(input),
             FormatKind::Other(what) => InputContent::Other(what),
-            _ => InputContent::Csv(input),
+            _ => InputContent::Csv(Box::new(TextDecoder::new(input))),
         };
         Self::without_sensors(name, content)
     }

@@ -12,6 +12,7 @@ use sistership_trials::{
 };
 
 use super::import_bundle;
+use super::import_files::input_files;
 use super::import_log::segment_logs;
 use super::import_outcome::{GuessRow, ImportDocument, LawNeeds};
 use super::import_revolutions::state_revolutions;
@@ -29,7 +30,7 @@ const EXAMPLES: &str = "\
 Examples:
   sistership import log/*.csv
   sistership import voyage.nmea --ship my-ship --out trials.yaml
-  sistership import runs/*/*.csv --column 'Azi=delta:deg:reversed' --explain
+  sistership import runs --column 'Azi=delta:deg:reversed' --explain
   sistership import yard/*.xlsx --column 'Kurs=psi:deg' --save-template yard-x
   sistership import yard/next.xlsx --template yard-x
   sistership import --bundle my-ship.bundle --data-dir sistership-data
@@ -48,8 +49,8 @@ Exit status 1 when a file cannot be read, or is refused by the manifest that was
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct ImportArguments {
-    /// Files: CSV and similar text, Parquet, Excel, MATLAB, HDF5, NetCDF, GPX, NMEA 0183 and NMEA
-    /// 2000 logs, MCAP.
+    /// Files, or folders of them: CSV and similar text, Parquet, Excel, MATLAB, HDF5, NetCDF, GPX,
+    /// NMEA 0183 and NMEA 2000 logs, MCAP.
     #[arg(required_unless_present = "bundle")]
     files: Vec<PathBuf>,
     /// Ship of the trials, by name or by its file, whose `actuators` name columns; `refine --ship`
@@ -136,13 +137,14 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
             arguments.json,
         );
     }
-    let out = arguments.out.clone().unwrap_or_else(|| default_manifest(&arguments.files));
+    let paths = input_files(&arguments.files)?;
+    let out = arguments.out.clone().unwrap_or_else(|| default_manifest(&paths));
     // A manifest may have been edited by hand; only an explicit --out replaces it.
     if arguments.out.is_none() && out.exists() {
         return Err(about_file(&out, "exists already; choose another file with --out"));
     }
-    let promised = OutputFile::new(&out, &arguments.files)?;
-    let files: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
+    let promised = OutputFile::new(&out, &paths)?;
+    let files: Vec<&Path> = paths.iter().map(PathBuf::as_path).collect();
     let folder = out.parent().unwrap_or(Path::new(""));
     let vessel = named_vessel(zoo, &arguments.ship)?;
     let named = vessel.iter().flat_map(|vessel| actuator_columns(vessel));

@@ -20,6 +20,7 @@ pub mod gc;
 pub mod health;
 pub mod import;
 mod import_bundle;
+mod import_files;
 mod import_log;
 mod import_outcome;
 mod import_revolutions;

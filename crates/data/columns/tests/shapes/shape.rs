@@ -39,37 +39,49 @@ pub fn shape(sources: &[Source], seed: u64, with_names: bool) -> Shape {
     let of_set: Vec<&Source> = sources.iter().filter(|source| source.name == set).collect();
     let mut source = of_set[maker.below(of_set.len())].clone();
     maker.cut(&mut source);
-    maker.change_frame(&mut source);
-    let naming = &NAMINGS[maker.below(NAMINGS.len())];
-    let mut columns: Vec<(ColumnData, Truth)> = Vec::new();
-    let units = maker.unit_system();
-    let style = maker.below(5);
-    for (role, values) in &source.columns {
-        let header =
-            naming.headers.iter().find(|(known, _)| known == role).map_or("?", |row| row.1);
-        columns.push(maker.column((*role, header), values, &units, style));
-    }
-    if set == "gunnerus" || set == "catamaran" {
-        maker.average_heading(&mut columns);
-    }
-    maker.others(&mut columns);
-    maker.shuffle(&mut columns);
-    if !with_names {
-        for (at, (column, _)) in columns.iter_mut().enumerate() {
-            column.header = format!("#{}", at + 1);
-        }
-        columns.iter_mut().for_each(|(column, _)| column.below = None);
-    }
-    let (columns, truths) = columns.into_iter().unzip();
-    Shape {
-        kind: if with_names { naming.name } else { "no names" },
-        source: set,
-        sample: RecordingSample { columns, breaks: Vec::new() },
-        truths,
-    }
+    maker.finish_shape(source, with_names)
+}
+
+/// A whole recording in the shape of a seed: all recordings of a seed have the same.
+pub fn whole_shape(source: &Source, seed: u64) -> Shape {
+    let is_port = seed.is_multiple_of(3);
+    let mut maker = Maker { random: ChaCha8Rng::seed_from_u64(seed), is_port };
+    maker.finish_shape(source.clone(), true)
 }
 
 impl Maker {
+    fn finish_shape(&mut self, mut source: Source, with_names: bool) -> Shape {
+        let set = source.name;
+        self.change_frame(&mut source);
+        let naming = &NAMINGS[self.below(NAMINGS.len())];
+        let mut columns: Vec<(ColumnData, Truth)> = Vec::new();
+        let units = self.unit_system();
+        let style = self.below(5);
+        for (role, values) in &source.columns {
+            let header =
+                naming.headers.iter().find(|(known, _)| known == role).map_or("?", |row| row.1);
+            columns.push(self.column((*role, header), values, &units, style));
+        }
+        if set == "gunnerus" || set == "catamaran" {
+            self.average_heading(&mut columns);
+        }
+        self.others(&mut columns);
+        self.shuffle(&mut columns);
+        if !with_names {
+            for (at, (column, _)) in columns.iter_mut().enumerate() {
+                column.header = format!("#{}", at + 1);
+            }
+            columns.iter_mut().for_each(|(column, _)| column.below = None);
+        }
+        let (columns, truths) = columns.into_iter().unzip();
+        Shape {
+            kind: if with_names { naming.name } else { "no names" },
+            source: set,
+            sample: RecordingSample { columns, breaks: Vec::new() },
+            truths,
+        }
+    }
+
     fn below(&mut self, count: usize) -> usize {
         self.random.random_range(0..count)
     }

@@ -41,8 +41,9 @@ pub(crate) struct ShipScale {
 
 impl ShipScale {
     /// Returns the scale of a ship; without a length, that of a ship with the usual Froude number.
-    fn from_speed(length_m: Option<f64>, speed_m_s: f64, froude: f64) -> Self {
-        let usual = || (speed_m_s / froude).powi(2) / GRAVITY;
+    fn from_speed(length_m: Option<f64>, speed_m_s: f64, limits: &SegmentThresholds) -> Self {
+        let of_froude = || (speed_m_s / limits.froude).powi(2) / GRAVITY;
+        let usual = || of_froude().max(limits.least_length_m);
         let length_m = length_m.unwrap_or_else(usual);
         Self { length_m, speed_m_s, time_s: length_m / speed_m_s }
     }
@@ -55,7 +56,7 @@ impl LogCells {
         length_m: Option<f64>,
         limits: SegmentThresholds,
     ) -> Option<Self> {
-        let scale = ShipScale::from_speed(length_m, speed_under_way(blocks)?, limits.froude);
+        let scale = ShipScale::from_speed(length_m, speed_under_way(blocks)?, &limits);
         // A cell is a whole number of blocks, so that no block has to be split.
         let times = (limits.cell * scale.time_s / blocks.width_s).floor().clamp(1.0, 1e9);
         let width_s = times * blocks.width_s;
@@ -103,4 +104,18 @@ fn speed_under_way(blocks: &LogBlocks) -> Option<f64> {
 pub(crate) fn select_quantile(values: &mut [f64], share: f64) -> Option<f64> {
     let at = ((values.len() as f64 * share) as usize).min(values.len().checked_sub(1)?);
     Some(*values.select_nth_unstable_by(at, f64::total_cmp).1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::segmentation::thresholds::THRESHOLDS;
+
+    #[test]
+    fn a_record_of_a_ship_that_lies_still_has_the_scale_of_a_model() {
+        let estimated = |speed_m_s| ShipScale::from_speed(None, speed_m_s, &THRESHOLDS).length_m;
+        assert_eq!(estimated(0.01), 0.5);
+        assert!((estimated(7.0) - 124.9).abs() < 0.1, "by Froude's number");
+        assert_eq!(ShipScale::from_speed(Some(0.3), 0.01, &THRESHOLDS).length_m, 0.3);
+    }
 }

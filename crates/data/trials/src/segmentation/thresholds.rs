@@ -10,6 +10,9 @@ pub(crate) struct SegmentThresholds {
     /// dimensionless. Source: merchant ships in service have 0.15 to 0.25 (Molland, Turnock and
     /// Hudson, Ship Resistance and Propulsion, 2011).
     pub froude: f64,
+    /// `L_0`: least length that is estimated from a speed, m. Source: derived: free-running models
+    /// are longer, whatever slow speed the median of a record is.
+    pub least_length_m: f64,
     /// `t_c`: time over which rudder, revolutions and yaw are averaged, by `T`. Source: derived:
     /// longer than the period of waves met (6 to 12 s, where `T` is 15 to 40 s), shorter than a
     /// zigzag holds its rudder (2 to 4 `T`).
@@ -71,6 +74,7 @@ pub(crate) struct SegmentThresholds {
 /// Values of the thresholds.
 pub(crate) const THRESHOLDS: SegmentThresholds = SegmentThresholds {
     froude: 0.2,
+    least_length_m: 0.5,
     cell: 0.5,
     level: 400.0,
     share: 0.25,
