@@ -34,8 +34,8 @@ const FEWEST: usize = 3;
 const RESTART: Duration = Duration::from_secs(1);
 /// Pause between two requests of one client, ms.
 const PAUSE_MS: std::ops::Range<u64> = 20..120;
-/// Pause between two refinements, ms.
-const JOB_PAUSE_MS: u64 = 4000;
+/// Pause between two refinements; none is requested while one waits or runs for each worker.
+const JOB_PAUSE: Duration = Duration::from_secs(4);
 /// Longer than the key of a request is held for a process that has been killed.
 const KEY_HELD: Duration = Duration::from_secs(75);
 /// Time for all jobs to end after the load.
@@ -270,8 +270,10 @@ async fn refine(load: Arc<Load>) -> Result<(), Failure> {
         if load.is_over() {
             break;
         }
-        load.send(&Write::refinement(workers::SHIP, &format!("work-{count}"))).await;
-        tokio::time::sleep(Duration::from_millis(JOB_PAUSE_MS)).await;
+        if workers::unfinished(&load.client).await < WORKERS {
+            load.send(&Write::refinement(workers::SHIP, &format!("work-{count}"))).await;
+        }
+        tokio::time::sleep(JOB_PAUSE).await;
     }
     Ok(())
 }
@@ -303,7 +305,7 @@ async fn settle_unanswered(load: &Load) -> usize {
 /// Waits until all refinements have ended, each by one version; those that were set aside because
 /// both their workers were killed are retried. Returns how many there are, and were retried.
 async fn settle_jobs(field: &Field, client: &Client) -> Result<(usize, usize), Failure> {
-    workers::finished(field, client, DRAINED).await?;
+    workers::finished(client, DRAINED).await?;
     let mut retried = 0;
     for job in workers::all_jobs(client).await {
         let twice = job["error"].to_string().contains("ended its process twice");
@@ -313,7 +315,7 @@ async fn settle_jobs(field: &Field, client: &Client) -> Result<(usize, usize), F
             retried += 1;
         }
     }
-    workers::finished(field, client, DRAINED).await?;
+    workers::finished(client, DRAINED).await?;
     let all: Vec<Value> = workers::all_jobs(client).await;
     workers::judge_versions(field, client, &all).await;
     Ok((all.len(), retried))

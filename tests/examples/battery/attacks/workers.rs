@@ -108,7 +108,7 @@ async fn once(field: &Field, place: &Place, client: &Client) -> Result<(usize, u
             kills += kill_one(client, &mut workers).await;
             workers.push(worker(place).await?);
         }
-        finished(field, client, PATIENCE).await?;
+        finished(client, PATIENCE).await?;
         workers.into_iter().for_each(Process::kill);
     }
     judge_versions(field, client, &all_jobs(client).await).await;
@@ -144,18 +144,19 @@ pub(super) async fn all_jobs(client: &Client) -> Vec<Value> {
     client.items(&format!("/v1/jobs?ship={SHIP}")).await.unwrap_or_default()
 }
 
+/// Number of jobs of the ship that wait or run.
+pub(super) async fn unfinished(client: &Client) -> usize {
+    let pending = |job: &&Value| job["state"] == "queued" || job["state"] == "running";
+    all_jobs(client).await.iter().filter(pending).count()
+}
+
 /// Waits until all jobs of the ship have ended.
-pub(super) async fn finished(
-    field: &Field,
-    client: &Client,
-    patience: Duration,
-) -> Result<(), Failure> {
+pub(super) async fn finished(client: &Client, patience: Duration) -> Result<(), Failure> {
     let begun = Instant::now();
-    let is_final = |job: &Value| job["state"] != "queued" && job["state"] != "running";
-    while !all_jobs(client).await.iter().all(is_final) {
+    while unfinished(client).await > 0 {
         if begun.elapsed() > patience {
-            field.tally.wrong(format!("jobs do not end: {:?}", all_jobs(client).await));
-            return Err("jobs do not end".into());
+            let waiting = unfinished(client).await;
+            return Err(format!("{waiting} jobs do not end within {patience:?}").into());
         }
         tokio::time::sleep(Duration::from_millis(50)).await;
     }
