@@ -164,7 +164,8 @@ CREATE TABLE jobs (
     cancel_requested BIGINT NOT NULL CHECK (cancel_requested IN (0, 1)),
     lost_workers     BIGINT NOT NULL DEFAULT 0,
     author           TEXT NOT NULL,
-    small            BIGINT NOT NULL DEFAULT 0 CHECK (small IN (0, 1))
+    small            BIGINT NOT NULL DEFAULT 0 CHECK (small IN (0, 1)),
+    trace_parent     TEXT
 );
 CREATE INDEX jobs_by_ship ON jobs (ship, id);
 CREATE INDEX jobs_to_claim ON jobs (id) WHERE state IN ('queued', 'running');

@@ -32,4 +32,5 @@ mod rights;
 mod sea_trials;
 mod sisters;
 mod stopping;
+mod traces;
 mod upkeep;

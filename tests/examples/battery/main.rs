@@ -10,6 +10,7 @@
 mod arguments;
 mod attack;
 mod attacks;
+mod balancer;
 mod client;
 mod documents;
 mod faults;

@@ -16,7 +16,7 @@ use crate::client::Client;
 use crate::tally::Tally;
 
 /// How long a process may take until it says that it listens or works.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(180);
 const SAMPLING: Duration = Duration::from_millis(20);
 /// Bytes of a log that are shown.
 const SHOWN: usize = 300;

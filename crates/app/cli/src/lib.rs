@@ -33,7 +33,7 @@ use crate::failure::Failure;
 /// Runs the command of the process' arguments.
 pub fn run() -> ExitCode {
     // First of all, before any thread is started.
-    allocator::return_large_blocks();
+    allocator::configure_allocator();
     let arguments = Arguments::parse();
     match dispatch(&arguments) {
         Ok(()) => ExitCode::SUCCESS,

@@ -8,7 +8,7 @@ use sistership_store::{Actor, ObjectStorage, Store};
 use tokio::sync::RwLock;
 
 use crate::accounts::{Accounts, Credentials};
-use crate::compute_pool::ComputePool;
+use crate::compute_pool::{ComputePool, ComputeTurn};
 use crate::config::{Config, LeaseSettings, Limits};
 use crate::metrics::ServerMetrics;
 use crate::problem::{Problem, Result};
@@ -28,6 +28,10 @@ use sistership_web_support::payload::DocumentLimits;
 use sistership_web_support::spool::SpoolFolder;
 use sistership_web_support::upload::UploadPlace;
 
+/// Largest file, bytes on disk, or memory that its reading takes, that does not count as large: it
+/// is read in a tenth of a second.
+const SMALL_FILE_BYTES: u64 = 8 << 20;
+
 /// The shared state of a server. A clone is another handle on the same one.
 #[derive(Clone)]
 pub(crate) struct App(Arc<SharedState>, Arc<Archive>);
@@ -45,6 +49,7 @@ struct SharedState {
     spool: Arc<SpoolFolder>,
     no_room: AtomicBool,
     numerics: ComputePool,
+    small_files: ComputePool,
     files: ComputePool,
     turns: Arc<RwLock<()>>,
     metrics: ServerMetrics,
@@ -93,6 +98,7 @@ impl App {
             spool: Arc::new(SpoolFolder::with_root(config.data_dir.join("uploads"))),
             no_room: AtomicBool::new(false),
             numerics: ComputePool::new(cores),
+            small_files: ComputePool::new(1),
             // Reading a file may take seconds; it leaves half of the cores to other requests.
             files: ComputePool::new(cores.div_ceil(2)),
             turns: Arc::default(),
@@ -256,6 +262,13 @@ impl App {
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T> {
         self.0.numerics.run(&caller_name(), work).await
+    }
+
+    /// Waits for the turn to read a file of a size. Small files wait for no large one.
+    pub(crate) async fn wait_file_turn(&self, bytes: u64) -> Result<ComputeTurn> {
+        let is_small = bytes <= SMALL_FILE_BYTES;
+        let pool = if is_small { &self.0.small_files } else { &self.0.files };
+        pool.wait_turn(&caller_name()).await
     }
 
     /// Reads uploaded files on a blocking thread.

@@ -18,12 +18,20 @@ pub struct Actor {
     pub name: String,
     /// Origin of the request: a network address, a job or a process.
     pub origin: String,
+    /// W3C trace context of the request or job, if traces are exported: that of the jobs it queues.
+    pub trace_parent: Option<String>,
 }
 
 impl Actor {
     /// Creates an author with a name and the origin of the request.
     pub fn new(name: impl Into<String>, origin: impl Into<String>) -> Self {
-        Self { name: name.into(), origin: origin.into() }
+        Self { name: name.into(), origin: origin.into(), trace_parent: None }
+    }
+
+    /// Sets the trace context.
+    #[must_use]
+    pub fn with_trace_parent(self, trace_parent: Option<String>) -> Self {
+        Self { trace_parent, ..self }
     }
 
     /// Returns the author of commands on the archive's own files.

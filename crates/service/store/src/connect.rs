@@ -24,6 +24,18 @@ const POSTGRES_CONNECTIONS: u32 = 16;
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(6);
 /// Maximum wait for the answer of a connection that was idle.
 const PING_TIMEOUT: Duration = Duration::from_secs(1);
+/// Settings of a session, by which the server gives up what this program has given up. Otherwise a
+/// transaction whose connection went silent keeps its locks, and nothing can be written until the
+/// server notices, by default after two hours. A transaction waits for the program between two
+/// statements for at most 6 s, and for a lock a little less than the program waits for the
+/// statement, so that a lock that is held is not taken for a silent connection.
+const POSTGRES_SESSION: [(&str, &str); 5] = [
+    ("idle_in_transaction_session_timeout", "6s"),
+    ("lock_timeout", "7s"),
+    ("tcp_keepalives_idle", "10"),
+    ("tcp_keepalives_interval", "5"),
+    ("tcp_keepalives_count", "3"),
+];
 
 /// Opens the database at `url` and brings its schema up to date.
 pub(crate) async fn connect_database(url: &str) -> Result<Database> {
@@ -111,8 +123,13 @@ fn is_locked(error: &sqlx::Error) -> bool {
 
 async fn open_postgres(url: &str) -> Result<Database> {
     let options = PgConnectOptions::from_str(url)?.application_name("sistership");
+    // Without the settings of a session: the lock of a migration may be held for long by another
+    // process.
+    let migrating = postgres_options().max_connections(1).connect_with(options.clone()).await?;
+    migrate::migrate_postgres(&migrating).await?;
+    migrating.close().await;
+    let options = options.options(POSTGRES_SESSION);
     let pool: PgPool = postgres_options().connect_with(options.clone()).await?;
-    migrate::migrate_postgres(&pool).await?;
     let pool =
         PostgresPool::new(pool, move || postgres_options().connect_lazy_with(options.clone()));
     Ok(Database {

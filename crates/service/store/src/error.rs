@@ -117,6 +117,11 @@ impl StoreError {
         Self::Objects(ObjectsError::Folder(ErrorKind::StorageFull.into()))
     }
 
+    /// Returns the error of a database or object store that did not answer, and may answer later.
+    pub fn unanswered() -> Self {
+        Self::Database(sqlx::Error::Io(ErrorKind::TimedOut.into()))
+    }
+
     pub(crate) fn not_found(kind: &'static str, id: impl Into<String>) -> Self {
         Self::NotFound { kind, id: id.into() }
     }

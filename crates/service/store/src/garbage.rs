@@ -16,6 +16,8 @@ statements! {
     // Blocks the insertion of trials and versions until the end of the transaction; on SQLite the
     // write lock of the transaction does so.
     LOCK = pair("SELECT 1 WHERE FALSE", "LOCK TABLE trials, versions IN SHARE ROW EXCLUSIVE MODE");
+    // The lock is held until the last object has been removed, however long the bucket takes.
+    HOLD = pair("SELECT 1 WHERE FALSE", "SET LOCAL idle_in_transaction_session_timeout = 0");
     REFERRED = same("SELECT (SELECT COUNT(*) FROM trials WHERE object_key = $1) \
         + (SELECT COUNT(*) FROM versions WHERE weights_key = $1) AS rows");
 }
@@ -37,6 +39,7 @@ impl Store {
         keys: &[String],
     ) -> Result<Vec<String>> {
         let mut tx = self.begin().await?;
+        tx.execute(HOLD, &[]).await?;
         tx.execute(LOCK, &[]).await?;
         let removed = find_unreferenced(&mut tx, keys).await?;
         let removal = |key: &String| objects.remove_object(key.clone());

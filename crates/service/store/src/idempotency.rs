@@ -15,6 +15,8 @@ use crate::store::Store;
 pub const TAKE_OVER_AFTER: Duration = Duration::from_secs(60);
 /// Interval at which the executor of a request reports that it is alive.
 pub const PROLONG_EVERY: Duration = Duration::from_secs(15);
+/// Pause between two attempts to remove the key of a request that failed.
+const ABANDON_EVERY: Duration = Duration::from_secs(1);
 /// Time for which an answer is kept for replay.
 pub const KEEP_KEYS: Duration = Duration::from_secs(7 * 24 * 3600);
 
@@ -103,7 +105,13 @@ impl IdempotencyRepository<'_> {
             0 => resolve_existing(&mut tx, scope, key, request_sha256, now).await?,
             _ => RequestClaim::New(new_ticket(scope, key, now)),
         };
-        tx.commit().await?;
+        if let Err(error) = tx.commit().await {
+            // Nobody knows whether the key is held; nobody executes the request.
+            if let RequestClaim::New(ticket) = begun {
+                self.abandon_in_background(ticket);
+            }
+            return Err(error);
+        }
         Ok(begun)
     }
 
@@ -128,6 +136,19 @@ impl IdempotencyRepository<'_> {
         let mut tx = self.0.begin().await?;
         tx.execute(ABANDON, args![scope: scope, key: key, created_us: *began_us]).await?;
         tx.commit().await
+    }
+
+    /// Removes the key of a request that failed as soon as the database answers, unless the key
+    /// expires before: the same request is refused meanwhile.
+    pub fn abandon_in_background(&self, ticket: RequestTicket) {
+        let store = self.0.clone();
+        let abandoning = async move {
+            while store.idempotency().abandon_ticket(&ticket).await.is_err() {
+                tokio::time::sleep(ABANDON_EVERY).await;
+            }
+        };
+        // Without an effect where the key has been taken over meanwhile.
+        tokio::spawn(tokio::time::timeout(TAKE_OVER_AFTER, abandoning));
     }
 
     /// Removes the keys that are older than [`KEEP_KEYS`] and returns their number.

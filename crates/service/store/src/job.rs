@@ -13,7 +13,7 @@ macro_rules! job {
             $before,
             " id, kind, ship, request, state, progress, message, result, error, attempt, fence, \
              lease_until_us, worker, created_us, started_us, finished_us, cancel_requested, \
-             lost_workers, author, small ",
+             lost_workers, author, small, trace_parent ",
             $after
         )
     };
@@ -123,6 +123,8 @@ record! {
         pub author: String,
         /// True for a job of seconds, which precedes large ones of its author.
         pub small: bool,
+        /// W3C trace context of the request, if traces were exported.
+        pub trace_parent: Option<String>,
     }
 }
 

@@ -16,8 +16,8 @@ use crate::store::Store;
 
 statements! {
     INSERT = same(job!("INSERT INTO jobs (id, kind, ship, request, state, progress, message, \
-        attempt, fence, created_us, cancel_requested, author, small) VALUES ($1, $2, $3, $4, \
-        'queued', 0, '', 0, 0, $5, 0, $6, $7) RETURNING", ""));
+        attempt, fence, created_us, cancel_requested, author, small, trace_parent) VALUES ($1, $2, \
+        $3, $4, 'queued', 0, '', 0, 0, $5, 0, $6, $7, $8) RETURNING", ""));
     GET = same(job!("SELECT", "FROM jobs WHERE id = $1"));
     LIST = same(job!("SELECT", "FROM jobs WHERE id < COALESCE($1, '~') ORDER BY id DESC LIMIT $2"));
     // The cast gives PostgreSQL the type of a parameter that is only compared with NULL.
@@ -213,9 +213,10 @@ pub(crate) async fn insert_job(
 ) -> Result<Job> {
     checks::check_name("kind", &new.kind)?;
     checks::check_json("request", &new.request)?;
-    let (id, now, author) = (store.new_id(), store.now_us(), Actor::current().name);
+    let (id, now, actor) = (store.new_id(), store.now_us(), Actor::current());
     let values = args![id: &id, kind: &new.kind, ship: &new.ship, request: &new.request,
-        created_us: now, author: &author, small: i64::from(new.small)];
+        created_us: now, author: &actor.name, small: i64::from(new.small),
+        trace_parent: &actor.trace_parent];
     let job = tx.fetch_one(INSERT, values).await?;
     tx.mark_queued();
     let after = json!({ "kind": new.kind, "ship": new.ship });

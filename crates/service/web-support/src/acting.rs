@@ -6,6 +6,8 @@ use std::sync::Arc;
 use sistership_auth::Rights;
 use sistership_store::Actor;
 
+use crate::trace_context::current_trace_parent;
+
 tokio::task_local! {
     static ACTING: RequestActor;
 }
@@ -59,7 +61,8 @@ impl RequestActor {
     /// Runs a future in the name of this principal, which is also the author of changes in the
     /// store.
     pub async fn run_scoped<T>(self, work: impl Future<Output = T>) -> T {
-        let actor = Actor::new(self.principal.name.clone(), self.origin.clone());
+        let actor = Actor::new(self.principal.name.clone(), self.origin.clone())
+            .with_trace_parent(current_trace_parent());
         ACTING.scope(self, actor.run_scoped(work)).await
     }
 }

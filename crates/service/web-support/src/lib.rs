@@ -23,6 +23,7 @@ pub mod ship_search;
 pub mod spool;
 mod spool_folder;
 pub mod tidy;
+pub mod trace_context;
 pub mod upload;
 
 pub use sistership_request_types as field;

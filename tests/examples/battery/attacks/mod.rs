@@ -12,6 +12,7 @@ mod races;
 mod rights;
 mod slow;
 mod soak;
+mod two_servers;
 mod workers;
 
 use crate::attack::Attack;
@@ -31,6 +32,7 @@ pub fn all() -> Vec<Box<dyn Attack>> {
         Box::new(outages::Outages),
         Box::new(neighbours::Neighbours),
         Box::new(rights::Rights),
+        Box::new(two_servers::TwoServers),
         Box::new(soak::Soak),
     ]
 }

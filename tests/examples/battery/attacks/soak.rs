@@ -17,6 +17,8 @@ use crate::documents;
 const SAMPLING: Duration = Duration::from_millis(500);
 /// Clients at a time.
 const CLIENTS: u64 = 4;
+/// Pause of a client between two requests, so that the load is the same on a slower machine.
+const PAUSE: Duration = Duration::from_millis(100);
 /// Part of the time after which samples count: caches fill before.
 const WARM: f64 = 0.4;
 /// Time from which a slope is judged: over a shorter one, the scatter of the allocator decides.
@@ -114,6 +116,7 @@ async fn load(
             _ => client.request(Method::GET, &format!("/v1/ships/{}/model", documents::PATTERN)),
         };
         client.send(request).await;
+        tokio::time::sleep(PAUSE).await;
     }
     Ok(())
 }

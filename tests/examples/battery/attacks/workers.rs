@@ -14,7 +14,8 @@ use crate::documents;
 use crate::place::Place;
 use crate::process::Process;
 
-const SHIP: &str = "worked";
+/// The ship that is refined.
+pub(super) const SHIP: &str = "worked";
 const WORKERS: usize = 2;
 const PATIENCE: Duration = Duration::from_secs(120);
 /// A job that ends its process this often is set aside.
@@ -56,7 +57,7 @@ async fn run(field: &Field) -> Result<(), Failure> {
 }
 
 /// A ship with trials.
-async fn prepare(client: &Client) -> Result<(), Failure> {
+pub(super) async fn prepare(client: &Client) -> Result<(), Failure> {
     let ship = client.request(Method::POST, "/v1/ships").header("content-type", "application/yaml");
     let made = client.try_send(ship.body(documents::ship(SHIP))).await?;
     let trials = documents::trials()?;
@@ -107,21 +108,25 @@ async fn once(field: &Field, place: &Place, client: &Client) -> Result<(usize, u
             kills += kill_one(client, &mut workers).await;
             workers.push(worker(place).await?);
         }
-        finished(field, client).await?;
+        finished(client, PATIENCE).await?;
         workers.into_iter().for_each(Process::kill);
     }
+    judge_versions(field, client, &all_jobs(client).await).await;
+    Ok((jobs, kills))
+}
+
+/// Every job has succeeded, each by one version of its own.
+pub(super) async fn judge_versions(field: &Field, client: &Client, jobs: &[Value]) {
     let versions = client.items(&format!("/v1/models/{SHIP}/versions")).await.unwrap_or_default();
-    let all = all_jobs(client).await;
-    let done = all.iter().filter(|job| job["state"] == "succeeded");
+    let done = jobs.iter().filter(|job| job["state"] == "succeeded");
     let mut made: Vec<u64> = done.filter_map(|job| job["result"]["version"].as_u64()).collect();
     made.sort_unstable();
     if versions.len() != made.len() || !made.iter().copied().eq(1..=made.len() as u64) {
         field.tally.wrong(format!("{} versions came of jobs that name {made:?}", versions.len()));
     }
-    for job in all.iter().filter(|job| job["state"] != "succeeded") {
+    for job in jobs.iter().filter(|job| job["state"] != "succeeded") {
         field.tally.wrong(format!("a job of which no worker was to blame: {job}"));
     }
-    Ok((jobs, kills))
 }
 
 /// Kills a worker that holds a job which has lost none yet, if one does; gives how many.
@@ -134,17 +139,24 @@ async fn kill_one(client: &Client, workers: &mut Vec<Process>) -> usize {
     usize::from(held)
 }
 
-async fn all_jobs(client: &Client) -> Vec<Value> {
+/// All jobs of the ship.
+pub(super) async fn all_jobs(client: &Client) -> Vec<Value> {
     client.items(&format!("/v1/jobs?ship={SHIP}")).await.unwrap_or_default()
 }
 
-async fn finished(field: &Field, client: &Client) -> Result<(), Failure> {
+/// Number of jobs of the ship that wait or run.
+pub(super) async fn unfinished(client: &Client) -> usize {
+    let pending = |job: &&Value| job["state"] == "queued" || job["state"] == "running";
+    all_jobs(client).await.iter().filter(pending).count()
+}
+
+/// Waits until all jobs of the ship have ended.
+pub(super) async fn finished(client: &Client, patience: Duration) -> Result<(), Failure> {
     let begun = Instant::now();
-    let is_final = |job: &Value| job["state"] != "queued" && job["state"] != "running";
-    while !all_jobs(client).await.iter().all(is_final) {
-        if begun.elapsed() > PATIENCE {
-            field.tally.wrong(format!("jobs do not end: {:?}", all_jobs(client).await));
-            return Err("jobs do not end".into());
+    while unfinished(client).await > 0 {
+        if begun.elapsed() > patience {
+            let waiting = unfinished(client).await;
+            return Err(format!("{waiting} jobs do not end within {patience:?}").into());
         }
         tokio::time::sleep(Duration::from_millis(50)).await;
     }

@@ -57,6 +57,8 @@ pub struct ConfigFile {
     pub log: Option<String>,
     /// `--log-format`
     pub log_format: Option<LogFormat>,
+    /// `--otlp-endpoint`
+    pub otlp_endpoint: Option<String>,
 }
 
 /// Reads a file, if one is named. Relative paths in it start at its folder.

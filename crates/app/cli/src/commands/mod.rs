@@ -52,6 +52,7 @@ pub mod ships;
 pub mod similar;
 pub mod simulate;
 pub(crate) mod store;
+mod traces;
 mod trial_simulation;
 pub mod users;
 pub mod validate;

@@ -109,7 +109,7 @@ pub fn run(serve: &ServeArguments, zoo: &[PathBuf]) -> Result<(), Failure> {
     let file = serve.store.read_config()?;
     let config = server_config(serve, &file)?;
     // After the configuration: its faults are printed as errors of the call, not logged.
-    serve.log.start_log(&file)?;
+    let _traces = serve.log.start_log(&file)?;
     let start = async {
         let running = Server::start(config.clone()).await.map_err(start_failure)?;
         let url = running.url();

@@ -45,7 +45,7 @@ pub struct WorkArguments {
 pub fn run(work: &WorkArguments) -> Result<(), Failure> {
     let file = work.store.read_config()?;
     let config = worker_config(work, &file)?;
-    work.log.start_log(&file)?;
+    let _traces = work.log.start_log(&file)?;
     let start = async {
         let workers = Workers::start(config.clone())
             .await

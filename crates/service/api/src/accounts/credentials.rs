@@ -113,3 +113,36 @@ impl Accounts<'_> {
         self.credentials.known.clear_all();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use std::sync::Arc;
+    use std::sync::mpsc::channel;
+    use std::time::{Duration, Instant};
+
+    use super::*;
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn guesses_do_not_delay_a_name_that_has_signed_in_before() {
+        let credentials = Arc::new(Credentials::new(None, true, None));
+        let ann = SignInAttempt { name: "ann", from: "10.0.0.1" };
+        credentials.attempts.record_success(ann, Instant::now());
+        let (release, held) = channel::<()>();
+        let (guessed, begun) = (Arc::clone(&credentials), Arc::new(tokio::sync::Notify::new()));
+        let tell = Arc::clone(&begun);
+        let guessing = tokio::spawn(async move {
+            let guess = SignInAttempt { name: "bob", from: "10.0.0.2" };
+            let compare = move || {
+                tell.notify_one();
+                held.recv().is_ok()
+            };
+            guessed.compare_password(guess, compare).await.unwrap()
+        });
+        begun.notified().await;
+        let compared = credentials.compare_password(ann, || true);
+        assert!(tokio::time::timeout(Duration::from_secs(5), compared).await.unwrap().unwrap());
+        release.send(()).unwrap();
+        assert!(guessing.await.unwrap());
+    }
+}

@@ -52,6 +52,8 @@ impl From<Problem> for JobError {
     fn from(problem: Problem) -> Self {
         match problem.status {
             507 => Self::Store(StoreError::out_of_space()),
+            // The database or the object store did not answer a step of the job.
+            503 => Self::Store(StoreError::unanswered()),
             _ => permanent_failure(problem.detail),
         }
     }
@@ -71,6 +73,8 @@ mod tests {
         let late = tokio::time::timeout(Duration::ZERO, std::future::pending::<()>()).await;
         let late = StoreError::from(ObjectsError::from(late.unwrap_err()));
         assert!(matches!(JobError::from(DeriveError::Store(late)), JobError::Store(_)));
+        let problem = Problem::from(StoreError::unanswered());
+        assert!(matches!(JobError::from(problem), JobError::Store(_)));
         let damaged = ObjectsError::Damaged { key: "a".into(), actual: "b".into() };
         assert!(matches!(JobError::from(StoreError::from(damaged)), JobError::Failed(_)));
     }

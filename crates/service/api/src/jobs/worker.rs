@@ -15,6 +15,8 @@ use crate::app::App;
 use sistership_jobs::fleet::{BULK_JOB_KIND, PRIOR_JOB_KIND};
 use sistership_jobs::request::{BRANCH_JOB_KIND, DIAGNOSIS_JOB_KIND, REFINEMENT_JOB_KIND};
 use sistership_listener::StopSignal;
+use sistership_web_support::trace_context::{current_trace_parent, set_remote_parent};
+use tracing::Instrument as _;
 
 /// Interval at which progress is written while it changes.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
@@ -140,14 +142,22 @@ impl Worker {
         }
     }
 
-    #[tracing::instrument(skip_all, fields(job = %job.id, attempt = job.attempt))]
+    /// Runs a job in a span of its own, within the trace of the request that queued it.
     async fn run_job(&mut self, job: &Job) {
+        let span =
+            tracing::info_span!("job", job = %job.id, kind = job.kind, attempt = job.attempt);
+        set_remote_parent(&span, job.trace_parent.as_deref());
+        self.run_within(job).instrument(span).await;
+    }
+
+    async fn run_within(&mut self, job: &Job) {
         tracing::info!("begun");
         let (progress, seen) = JobProgress::new();
         // The job acts in the name of the user who queued it; the audit names both.
-        let actor = Actor::new(job.author.clone(), format!("job {}", job.id));
+        let actor = Actor::new(job.author.clone(), format!("job {}", job.id))
+            .with_trace_parent(current_trace_parent());
         let work = run_work(self.app.clone(), job.clone(), progress.clone());
-        let work = tokio::spawn(actor.run_scoped(work));
+        let work = tokio::spawn(actor.run_scoped(work).in_current_span());
         let mut watched = WatchedWork { work, progress, seen };
         let ended = self.supervise(job, &mut watched).await;
         if let Err(error) = self.record_end(job, ended, watched.progress.stop_reason()).await {

@@ -1,10 +1,15 @@
 //! Uploads with everything that a manifest may declare.
 
+use std::time::Duration;
+
 use reqwest::StatusCode;
 use reqwest::multipart::{Form, Part};
+use sistership_store::ObjectsPlace;
 use sistership_store::testing::TestDatabase;
 
-use super::harness::{Harness, read};
+use super::harness::{Harness, config, read};
+use crate::Server;
+use crate::process::Process;
 
 /// Two segments of a log, a heading from a sensor's own file, knots, a derived yaw rate.
 const MANIFEST: &str = "
@@ -62,5 +67,37 @@ async fn declarations_sensors_and_stretches_are_taken_and_kept() {
         read(post("/v1/trials", form(&whole, &files[..1])).await.unwrap()).await;
     assert_eq!(status, StatusCode::UNPROCESSABLE_ENTITY);
     assert_eq!(problem["errors"][0]["field"], "trials[0].sensors[0].file", "{problem}");
+    harness.server.stop().await;
+}
+
+/// Large files of one caller do not delay small ones.
+#[tokio::test]
+async fn small_files_wait_for_no_large_one() {
+    let database = TestDatabase::new_sqlite();
+    let mut config = config(&database);
+    config.workers = 0;
+    let (process, app) = Process::start(&config, false).await.unwrap();
+    let (mut large, patience) = (Vec::new(), Duration::from_millis(200));
+    while let Ok(turn) = tokio::time::timeout(patience, app.wait_file_turn(u64::MAX)).await {
+        large.push(turn.unwrap());
+    }
+    assert!(!large.is_empty());
+    let small = tokio::time::timeout(patience, app.wait_file_turn(1000)).await;
+    assert!(small.is_ok_and(|turn| turn.is_ok()));
+    process.stop().await;
+}
+
+/// Only what needs objects waits for a bucket that does not answer.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_server_starts_while_its_bucket_does_not_answer() {
+    let database = TestDatabase::new_sqlite();
+    let mut config = config(&database);
+    let nowhere = Some("http://127.0.0.1:1".to_owned());
+    config.objects = ObjectsPlace::parse_s3("s3://samples/fleet", nowhere, None).unwrap();
+    let server = Server::start(config).await.unwrap();
+    let harness = Harness { server, client: reqwest::Client::new(), database };
+    let ask = async |path: &str| harness.client.get(harness.url(path)).send().await.unwrap();
+    assert_eq!(ask("/readyz").await.status(), StatusCode::SERVICE_UNAVAILABLE);
+    assert_eq!(ask("/v1/ships").await.status(), StatusCode::OK);
     harness.server.stop().await;
 }

@@ -1,40 +1,59 @@
-//! Memory for a file of an upload, taken before the file is read.
+//! Turn and memory for a file of an upload, taken before the file is read. Requests that wait for
+//! their turn hold no memory, of which others would then have none.
 
 use sistership_trials::{MemoryDemand, demand_of_trial, measuring_bytes};
 
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
-use sistership_jobs::budget::{self, MemoryShare, MemoryShortage};
+use sistership_jobs::budget::{self, MemoryShortage};
 use sistership_web_support::upload::UploadedTrial;
 
-/// Takes the memory of a file from its reading to the storing of its samples, and sets the number
-/// of rows that the mapping reserves.
+/// Runs work on a file when it is its turn and the memory for it is free. The number of rows that
+/// the mapping reserves is set before.
 ///
 /// # Errors
 /// Returns an error that names the file if the memory is too small, or not free in time.
-pub(super) async fn reserve_memory(
+pub(super) async fn run_with_memory<T: Send + 'static>(
     app: &App,
-    trial: &mut UploadedTrial,
-) -> Result<Option<MemoryShare>> {
-    let name = trial.name.clone();
-    // Measuring the file takes memory itself, which is estimated from its path alone.
+    mut trial: UploadedTrial,
+    work: impl FnOnce(&UploadedTrial) -> T + Send + 'static,
+) -> Result<T> {
+    let measured = measure_trial(app, &trial).await?;
+    trial.mapping.room = measured.rows;
+    let turn = app.wait_file_turn(measured.bytes).await?;
+    let share = budget::reserve_share(measured.bytes)
+        .await
+        .map_err(|shortage| named_shortage(&trial.name, Some(measured), shortage))?;
+    let run = move || {
+        let done = work(&trial);
+        drop(share);
+        done
+    };
+    turn.run(run).await
+}
+
+/// Measures what the reading of a file takes. That takes memory itself, which is estimated from the
+/// paths alone, and given back before more is requested: no task may hold some of the memory while
+/// it waits for the rest.
+async fn measure_trial(app: &App, trial: &UploadedTrial) -> Result<MemoryDemand> {
     let paths = std::iter::once(&trial.path).chain(trial.sensors.iter().map(|(_, path)| path));
-    let each: std::io::Result<Vec<u64>> = paths.map(|path| measuring_bytes(path)).collect();
-    let measuring = each.map_err(Problem::internal)?.iter().sum();
+    let (mut size, mut measuring) = (0, 0);
+    for path in paths {
+        size += std::fs::metadata(path).map_err(Problem::internal)?.len();
+        measuring += measuring_bytes(path).map_err(Problem::internal)?;
+    }
+    let turn = app.wait_file_turn(size).await?;
     let share = budget::reserve_share(measuring)
         .await
-        .map_err(|shortage| named_shortage(&name, None, shortage))?;
+        .map_err(|shortage| named_shortage(&trial.name, None, shortage))?;
     let (path, mapping, sensors) =
         (trial.path.clone(), trial.mapping.clone(), trial.sensors.clone());
-    let measure = move || demand_of_trial(&path, &mapping, &sensors);
-    let measured = app.read_files(measure).await?.map_err(Problem::internal)?;
-    // Given back before more is requested: no task may hold some of the memory while it waits for
-    // the rest.
-    drop(share);
-    trial.mapping.room = measured.rows;
-    budget::reserve_share(measured.bytes)
-        .await
-        .map_err(|shortage| named_shortage(&name, Some(measured), shortage))
+    let measure = move || {
+        let measured = demand_of_trial(&path, &mapping, &sensors);
+        drop(share);
+        measured
+    };
+    turn.run(measure).await?.map_err(Problem::internal)
 }
 
 fn named_shortage(name: &str, measured: Option<MemoryDemand>, shortage: MemoryShortage) -> Problem {

@@ -6,7 +6,7 @@ use sistership_trials::{
 };
 use sistership_web_support::upload::{TrialUpload, UploadedTrial};
 
-use super::memory::reserve_memory;
+use super::memory::run_with_memory;
 use crate::app::App;
 use crate::problem::{Problem, Result};
 
@@ -19,7 +19,7 @@ pub(crate) async fn read_each<T: Send + 'static>(
     let mut made = Vec::with_capacity(upload.manifest.manifest.trials.len());
     for (at, trial) in upload.trials().enumerate() {
         let of = of.clone();
-        made.push(with_memory(app, trial, move |trial| of(at, read_trial_rows(trial))).await?);
+        made.push(run_with_memory(app, trial, move |trial| of(at, read_trial_rows(trial))).await?);
     }
     Ok(made)
 }
@@ -31,7 +31,7 @@ pub(crate) async fn read_each<T: Send + 'static>(
 pub(crate) async fn read_one(upload: &TrialUpload, app: &App, at: usize) -> Result<TrialWithRows> {
     let trial = upload.trials().nth(at);
     let trial = trial.ok_or_else(|| Problem::invalid("file", "is not one of this upload"))?;
-    with_memory(app, trial, read_trial_rows).await?.map_err(|refused| vec![refused].into())
+    run_with_memory(app, trial, read_trial_rows).await?.map_err(|refused| vec![refused].into())
 }
 
 /// Returns faults of the values of all files that the manifest does not exclude yet; none of a file
@@ -39,7 +39,7 @@ pub(crate) async fn read_one(upload: &TrialUpload, app: &App, at: usize) -> Resu
 pub(crate) async fn find_faults(upload: &TrialUpload, app: &App) -> Result<Vec<Exclusion>> {
     let mut found = Vec::new();
     for (trial, listed) in upload.trials().zip(&upload.manifest.manifest.trials) {
-        let faults = with_memory(app, trial, |trial| match trial.open() {
+        let faults = run_with_memory(app, trial, |trial| match trial.open() {
             Ok(source) => find_source_faults(source, &trial.mapping),
             Err(_) => Vec::new(),
         });
@@ -47,20 +47,6 @@ pub(crate) async fn find_faults(upload: &TrialUpload, app: &App) -> Result<Vec<E
         found.extend(faults.await?.into_iter().map(of_file));
     }
     Ok(found)
-}
-
-/// Runs work on a file once the memory for it is free.
-async fn with_memory<T: Send + 'static>(
-    app: &App,
-    mut trial: UploadedTrial,
-    work: impl FnOnce(&UploadedTrial) -> T + Send + 'static,
-) -> Result<T> {
-    let share = reserve_memory(app, &mut trial).await?;
-    let run = move || {
-        let _share = share;
-        work(&trial)
-    };
-    app.read_files(run).await
 }
 
 fn read_trial_rows(trial: &UploadedTrial) -> std::result::Result<TrialWithRows, Refusal> {
@@ -76,7 +62,7 @@ pub(crate) async fn check_upload(upload: &TrialUpload, app: &App) -> Result<Vec<
             Ok(source) => check_source(source, &trial.mapping),
             Err(error) => unreadable_file(&trial.name, &error),
         };
-        outcomes.push(with_memory(app, trial, check).await?);
+        outcomes.push(run_with_memory(app, trial, check).await?);
     }
     Ok(outcomes)
 }

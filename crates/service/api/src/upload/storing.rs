@@ -10,7 +10,7 @@ use sistership_trials::samples::{self, SamplesError};
 use sistership_trials::{ManifestFile, Refusal, read_trial};
 use tempfile::NamedTempFile;
 
-use super::memory::reserve_memory;
+use super::memory::run_with_memory;
 use super::reading::read_failure;
 use crate::app::App;
 use crate::jobs::{DIAGNOSIS_JOB_KIND, DiagnosisJob, is_small};
@@ -101,14 +101,11 @@ fn unknown_ship(ship: &str) -> Problem {
 /// Returns the refusals of all files together.
 async fn read_upload(upload: &TrialUpload, app: &App) -> Result<Vec<AcceptedTrial>> {
     let (mut accepted, mut refused) = (Vec::new(), Vec::new());
-    for mut trial in upload.trials() {
-        // The share of memory is held until the samples are on disk.
-        let (share, inner) = (reserve_memory(app, &mut trial).await?, app.clone());
-        let read = move || {
-            let _share = share;
-            read_arrived(&trial, inner.spool())
-        };
-        match app.read_files(read).await?? {
+    for trial in upload.trials() {
+        let inner = app.clone();
+        // The memory is held until the samples are on disk.
+        let read = move |trial: &UploadedTrial| read_arrived(trial, inner.spool());
+        match run_with_memory(app, trial, read).await?? {
             Ok(trial) => accepted.push(trial),
             Err(refusal) => refused.push(refusal),
         }

@@ -15,6 +15,7 @@ use crate::app::App;
 use crate::problem::{MEDIA, Problem};
 use sistership_listener::PeerInfo;
 use sistership_web_support::large::count_large;
+use sistership_web_support::trace_context::{TRACE_PARENT, set_remote_parent};
 
 /// Gives the request an id, logs and counts it, and turns every error into a problem with that id.
 pub(crate) async fn wrap_request(State(app): State<App>, request: Request, next: Next) -> Response {
@@ -23,6 +24,8 @@ pub(crate) async fn wrap_request(State(app): State<App>, request: Request, next:
     let peer = request.extensions().get::<PeerInfo>().cloned();
     let for_people = is_for_people(&request);
     let span = tracing::info_span!("request", %id, method = %request.method(), path = request.uri().path());
+    let parent = request.headers().get(TRACE_PARENT).and_then(|value| value.to_str().ok());
+    set_remote_parent(&span, parent);
     async move {
         let start = Instant::now();
         // The memory that the request takes is released when this scope ends, whatever the handler

@@ -155,10 +155,11 @@ async fn commit_reply(
     Ok(reply)
 }
 
-/// Gives up a ticket. If that fails, a later request takes it over once it has expired.
+/// Gives up a ticket, in the background where the database does not answer.
 async fn abandon_ticket(store: &Store, ticket: &RequestTicket) {
     if let Err(error) = store.idempotency().abandon_ticket(ticket).await {
-        tracing::warn!(%error, "the record of a failed request could not be removed");
+        tracing::warn!(%error, "the record of a failed request could not be removed yet");
+        store.idempotency().abandon_in_background(ticket.clone());
     }
 }
 

@@ -20,7 +20,8 @@ const MAY: &[(&str, &str)] = &[
     ("seal_check", "SEALED"),
     // One row for each setting.
     ("row_seal", "SETTINGS"),
-    // Not a query.
+    // No queries.
+    ("garbage", "HOLD"),
     ("garbage", "LOCK"),
 ];
 /// Plan steps of lists that a statement has made itself.

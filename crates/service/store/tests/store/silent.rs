@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use sistership_store::testing::TestDatabase;
-use sistership_store::{Store, SystemClock};
+use sistership_store::{RequestClaim, Store, SystemClock, sha256_hex};
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{UnixListener, UnixStream};
 
@@ -84,6 +84,9 @@ async fn a_store_gives_up_connections_that_go_silent() {
         let ask = async || store.ships().get(names[0]).await;
         let asks = (0..16).map(|_| ask());
         futures::future::join_all(asks).await;
+        // A transaction that holds the row which is written afterwards.
+        let held = store.begin_unit();
+        held.store().ships().create(&ship(name)).await.unwrap();
         proxy.silence();
         let start = Instant::now();
         assert!(store.check_health().await.is_err(), "round {round}");
@@ -94,5 +97,23 @@ async fn a_store_gives_up_connections_that_go_silent() {
         assert!(store.ships().get(name).await.is_ok());
         assert!(store.check_health().await.is_ok());
         println!("recovered after {:?}", start.elapsed());
+    }
+}
+
+/// The key of a request that failed because the database did not answer can be used again soon
+/// after it does, not only when the key expires.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_key_is_given_up_when_the_database_answers_again() {
+    let Some(database) = TestDatabase::new_postgres().await else { return };
+    let (proxy, store) = behind_proxy(&database).await;
+    let hash = sha256_hex(b"a request");
+    let begin = async || store.idempotency().begin_request("POST /v1/ships", "key", &hash).await;
+    let Ok(RequestClaim::New(ticket)) = begin().await else { panic!() };
+    proxy.silence();
+    store.idempotency().abandon_in_background(ticket);
+    let start = Instant::now();
+    while !matches!(begin().await, Ok(RequestClaim::New(_))) {
+        assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+        tokio::time::sleep(Duration::from_millis(200)).await;
     }
 }
