@@ -74,7 +74,8 @@ fn read_particular(form: &FormFields, field: &ParticularField) -> Result<Option<
         let message = format!("`{text}` is not a number; write one such as 12.5");
         PageError::invalid_field(field.name, message)
     })?;
-    Ok(Some(if knots.is_some() { number * KNOT_M_S } else { number }))
+    // Rounded, so that the form shows a short number again.
+    Ok(Some(if knots.is_some() { (1e4 * number * KNOT_M_S).round() / 1e4 } else { number }))
 }
 
 #[derive(Template)]
@@ -92,8 +93,10 @@ struct ParticularsPage<'a> {
 /// Returns an error if the ship's document cannot be read.
 pub fn particulars_page(shell: PageShell, ship: &Ship) -> Result<String> {
     let vessel = parse_vessel(&ship.name, &ship.document)?;
-    let text =
-        |name: &str| vessel.particular(name).map_or_else(String::new, |value| value.to_string());
+    // Those that are stated, without derived ones.
+    let text = |name: &str| {
+        vessel.particulars.get(name).map_or_else(String::new, |of| of.value.to_string())
+    };
     let page = ParticularsPage {
         shell: shell.at_place("/"),
         ship: &ship.name,
@@ -113,7 +116,8 @@ pub fn changed_document(ship: &Ship, form: &FormFields) -> Result<Value> {
     let mut document: Value = serde_json::from_str(&ship.document)?;
     let mut changed = Map::new();
     for field in &PARTICULARS {
-        match (read_particular(form, field)?, vessel.particular(field.name)) {
+        let before = vessel.particulars.get(field.name).map(|of| of.value);
+        match (read_particular(form, field)?, before) {
             (None, _) => {
                 if let Some(values) = document["particulars"]["values"].as_object_mut() {
                     values.remove(field.name);
