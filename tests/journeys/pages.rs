@@ -297,7 +297,7 @@ async fn version(server: &TestServer) {
     assert!(page(server, "/compare?v=nobody").await.contains("there is no model `nobody`"));
 }
 
-/// What no instrument records is stated in forms, and stands in the acceptance summary.
+/// Conditions that no instrument records are stated in forms, and stand in the acceptance summary.
 async fn stated(server: &TestServer) {
     let summary = format!("/ships/{NAME}/versions/1/acceptance");
     let open = page(server, &summary).await;

@@ -27,7 +27,7 @@ pub(crate) struct ConditionField {
     pub kind: ConditionKind,
 }
 
-/// How a condition is written.
+/// Kind of the input of a condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ConditionKind {
     /// A date of the calendar.
