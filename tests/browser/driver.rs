@@ -176,6 +176,29 @@ impl Browser {
         self.told(Method::POST, &format!("/element/{id}/value"), &json!({ "text": text })).await;
     }
 
+    /// Presses keys where the focus is.
+    pub async fn press(&self, keys: &str) {
+        let mut actions: Vec<Value> = Vec::new();
+        for key in keys.chars().map(String::from) {
+            actions.push(json!({ "type": "keyDown", "value": key }));
+            actions.push(json!({ "type": "keyUp", "value": key }));
+        }
+        let keyboard = json!({ "type": "key", "id": "keyboard", "actions": actions });
+        self.told(Method::POST, "/actions", &json!({ "actions": [keyboard] })).await;
+    }
+
+    /// Presses the Tab key until something has the focus.
+    pub async fn tab_to(&self, css: &str) {
+        let there = format!("return document.activeElement?.matches(\"{css}\") ?? false");
+        for _ in 0..200 {
+            if self.run(&there).await == json!(true) {
+                return;
+            }
+            self.press("\u{e004}").await;
+        }
+        panic!("the Tab key does not reach {css}");
+    }
+
     /// Chooses from a list what has a value.
     pub async fn choose(&self, css: &str, value: &str) {
         self.click(&format!("{css} option[value='{value}']")).await;

@@ -49,6 +49,7 @@ async fn shown(browser: &Browser, name: &str) {
 async fn create(browser: &Browser, server: &TestServer) {
     browser.go(&format!("{}/new-ship", server.url())).await;
     shown(browser, "new-ship").await;
+    browser.click("main form details > summary").await;
     for (field, text) in files::PARTICULARS {
         browser.fill(&format!("#{field}"), text).await;
     }
@@ -194,6 +195,8 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
     browser.leave_by(&format!("form[action='/ships/{SHIP}/champion'] button.quiet")).await;
     browser.until("does not hold").await;
     told(&server, &["family", "create", "sisters", "--foundation", "mariner/1", "--ship", SHIP]);
+    let summary = format!("/ships/{SHIP}/versions/1/acceptance");
+    let particulars = format!("/ships/{SHIP}/particulars");
     let pages = [
         ("/jobs", "jobs"),
         ("/zoo", "zoo"),
@@ -201,6 +204,8 @@ async fn a_person_refines_and_another_promotes_in_a_browser() {
         ("/zoo/effects/wind", "effect"),
         ("/families", "families"),
         ("/families/sisters", "family"),
+        (summary.as_str(), "acceptance"),
+        (particulars.as_str(), "particulars"),
     ];
     for (path, name) in pages {
         browser.go(&format!("{}{path}", server.url())).await;

@@ -212,6 +212,8 @@ async fn journey(server: TestServer) {
     trial(&server).await;
     version(&server).await;
     others(&server).await;
+    stated(&server).await;
+    administered(&server).await;
     promoted(&server).await;
     refused(&server).await;
     in_a_browser(&server).await;
@@ -293,6 +295,70 @@ async fn version(server: &TestServer) {
         assert!(both.contains(part), "the comparison lacks {part}");
     }
     assert!(page(server, "/compare?v=nobody").await.contains("there is no model `nobody`"));
+}
+
+/// Conditions that no instrument records are stated in forms, and stand in the acceptance summary.
+async fn stated(server: &TestServer) {
+    let summary = format!("/ships/{NAME}/versions/1/acceptance");
+    let open = page(server, &summary).await;
+    for part in ["not stated", "MSC.137(76)", "Checked by", "Trials used"] {
+        assert!(open.contains(part), "the summary lacks {part}");
+    }
+    let at = format!("/ships/{NAME}/conditions");
+    let shown = page(server, &format!("{at}?version=1")).await;
+    let trials = fields(&shown).into_iter().filter(|(name, _)| name == "trial");
+    let mut all: Vec<(String, String)> = trials.collect();
+    let pair = |name: &str, text: &str| (name.to_owned(), text.to_owned());
+    all.extend([pair("date", "2026-11-28"), pair("place", HOSTILE), pair("version", "1")]);
+    all.extend([pair("draught_fore_m", "8"), pair("draught_aft_m", "9,5")]);
+    all.push(pair("form_token", &token(&shown)));
+    let sent = form(server, &at, &all).send().await.expect("an answer");
+    assert_eq!(sent.url().path(), summary);
+    let filled = read(sent, &summary).await;
+    for part in ["2026-11-28", SHOWN, "1.50 m by the stern"] {
+        assert!(filled.contains(part), "the summary lacks {part}");
+    }
+    let signed = [("role", "checked"), ("person", "Ann Smith")];
+    let to = format!("/ships/{NAME}/versions/1/sign");
+    let signed = read(send(server, &summary, &to, &signed).await, &to).await;
+    assert!(signed.contains("Ann Smith"), "{signed}");
+    let at = format!("/ships/{NAME}/particulars");
+    let mut all = fields(&page(server, &at).await);
+    all.iter_mut()
+        .filter(|(name, _)| name == "gm_m")
+        .for_each(|(_, text)| *text = "0.4".to_owned());
+    let refused = form(server, &at, &all).send().await.expect("an answer");
+    assert_eq!(refused.status(), 422, "a changed figure needs a source");
+    all.retain(|(name, _)| name != "citation");
+    all.push(pair("citation", "inclining test"));
+    let ship = read(form(server, &at, &all).send().await.expect("an answer"), &at).await;
+    assert!(ship.contains("Revision 2") && ship.contains("typed-in"), "{ship}");
+}
+
+/// Families and webhooks are made on pages, and the example is loaded.
+async fn administered(server: &TestServer) {
+    let family = [("name", "sisters"), ("title", "Sisters"), ("foundation", "kvlcc2/1")];
+    let made = send(server, "/families", "/families", &family).await;
+    assert_eq!(made.url().path(), "/families/sisters");
+    let to = "/families/sisters/members";
+    let grown = send(server, "/families/sisters", to, &[("members", NAME)]).await;
+    assert!(read(grown, to).await.contains(&format!("href=\"/ships/{NAME}\"")));
+    let webhook = [
+        ("title", HOSTILE),
+        ("url", "https://hooks.slack.com/services/a/b"),
+        ("event", "champion.moved"),
+    ];
+    let made = read(send(server, "/webhooks", "/webhooks", &webhook).await, "/webhooks").await;
+    assert!(made.contains("not shown again"), "{made}");
+    let list = page(server, "/webhooks").await;
+    assert!(list.contains("Slack") && list.contains("another version is in use"), "{list}");
+    let end = list.split("action=\"").find(|part| part.contains("/end\"")).expect("a form");
+    let end = end.split('"').next().unwrap_or_default().to_owned();
+    assert!(read(send(server, "/webhooks", &end, &[]).await, &end).await.contains("ended"));
+    let loaded = send(server, "/webhooks", "/example", &[]).await;
+    assert_eq!(loaded.url().path(), "/ships/northern-star");
+    let ship = read(loaded, "/ships/northern-star").await;
+    assert!(ship.contains("turn-port-20.csv") && ship.contains("Refine its model"), "{ship}");
 }
 
 async fn others(server: &TestServer) {

@@ -32,7 +32,7 @@ pub use diagnosis::{
     DiagnosisInput, change_words, dependence_sentence, distinct_hypotheses, origin_sentence,
     render_diagnosis,
 };
-pub use refinement::{RefinementInput, render_refinement};
+pub use refinement::{RefinementInput, imo_verdict, render_refinement};
 pub use rendered::{RenderedReport, ReportError, VersionLabel};
 pub use validation::render_validation;
 pub use words::{axis_words, field_words, variable_words};

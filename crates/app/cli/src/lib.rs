@@ -21,7 +21,7 @@ mod values;
 mod weights;
 mod zoo;
 
-pub use demo::sea_trials;
+pub use sistership_jobs::example::sea_trials;
 
 use std::process::ExitCode;
 

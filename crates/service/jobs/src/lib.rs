@@ -12,6 +12,7 @@ pub mod condition;
 pub mod derive;
 pub mod environment;
 pub mod error;
+pub mod example;
 pub mod fleet;
 pub mod input;
 pub mod inputs;

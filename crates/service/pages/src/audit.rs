@@ -1,6 +1,7 @@
 //! The page of the audit log.
 
 use askama::Template;
+use serde_json::Value;
 use sistership_jobs::Archive;
 use sistership_store::{AuditEntry, AuditFilter, PageRequest};
 
@@ -12,6 +13,8 @@ use crate::shell::PageShell;
 
 /// Number of entries on one page.
 const ENTRIES: i64 = 50;
+/// Length of an id (RFC 9562).
+const ID_CHARS: usize = 36;
 
 #[derive(Template)]
 #[template(path = "audit.html")]
@@ -31,6 +34,8 @@ struct EntryRow {
     /// What was done, in words.
     sentence: String,
     subject: String,
+    /// Kind of the subject.
+    kind: String,
     before: String,
     after: String,
 }
@@ -64,7 +69,7 @@ pub async fn audit_page(archive: &Archive, shell: PageShell, query: &FormFields)
 }
 
 /// Verbs of the audit in the past tense; others are shown as they are.
-const VERBS: [(&str, &str); 16] = [
+const VERBS: [(&str, &str); 20] = [
     ("create", "created"),
     ("update", "changed"),
     ("delete", "deleted"),
@@ -81,11 +86,17 @@ const VERBS: [(&str, &str); 16] = [
     ("begin", "began"),
     ("end", "ended"),
     ("add", "added a member to"),
+    ("set", "set"),
+    ("save", "saved"),
+    ("sign", "signed"),
+    ("conditions", "stated the conditions of"),
 ];
 
-/// Returns an entry in words: `created the ship kcs` of `ship.create` and `ship:kcs`.
-fn action_words(action: &str, subject: &str) -> String {
-    let (kind, name) = subject.split_once(':').unwrap_or(("", subject));
+/// Returns an entry in words: `created the ship kcs` of `ship.create` and `ship:kcs`. A subject
+/// whose name is an id has the name of its state.
+fn action_words(action: &str, subject: &str, state: &Value) -> String {
+    let (kind, id) = subject.split_once(':').unwrap_or(("", subject));
+    let name = subject_name(id, state);
     let (noun, verb) = action.split_once('.').unwrap_or(("", action));
     let known = VERBS.iter().find(|(word, _)| *word == verb);
     match known {
@@ -95,16 +106,32 @@ fn action_words(action: &str, subject: &str) -> String {
     }
 }
 
+/// Name of a subject for people: where it is an id, its name, title or kind, and its ship.
+fn subject_name(id: &str, state: &Value) -> String {
+    let is_id = id.len() == ID_CHARS && id.bytes().filter(|byte| *byte == b'-').count() == 4;
+    let text = |name: &str| state[name].as_str();
+    let own = ["name", "title", "kind", "verdict"].into_iter().find_map(text);
+    match (is_id, own, text("ship")) {
+        (true, Some(own), Some(ship)) => format!("{own} of {ship}"),
+        (true, Some(own), None) => own.to_owned(),
+        (true, None, Some(ship)) => format!("of {ship}"),
+        _ => id.to_owned(),
+    }
+}
+
 impl EntryRow {
     fn from_entry(entry: AuditEntry) -> Self {
         let AuditEntry { number, at_us, actor, origin, action, subject, .. } = entry;
         let (before, after) = (entry.state_before, entry.state_after);
+        let state = after.as_deref().or(before.as_deref());
+        let state = state.and_then(|text| serde_json::from_str(text).ok()).unwrap_or_default();
         Self {
             number,
             at: format_date(at_us),
             actor,
             origin,
-            sentence: action_words(&action, &subject),
+            sentence: action_words(&action, &subject, &state),
+            kind: subject.split(':').next().unwrap_or_default().to_owned(),
             subject,
             before: before.unwrap_or_default(),
             after: after.unwrap_or_default(),
@@ -115,11 +142,17 @@ impl EntryRow {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     #[test]
     fn entries_read_as_sentences() {
-        assert_eq!(action_words("ship.create", "ship:kcs"), "created the ship kcs");
-        assert_eq!(action_words("alias.move", "ship:kcs"), "moved the alias of ship kcs");
-        assert_eq!(action_words("roles.set", "user:ann"), "set of the roles, user ann");
+        let words = |action, subject| action_words(action, subject, &Value::Null);
+        assert_eq!(words("ship.create", "ship:kcs"), "created the ship kcs");
+        assert_eq!(words("alias.move", "alias:kcs/champion"), "moved the alias kcs/champion");
+        assert_eq!(words("roles.set", "user:ann"), "set the roles of user ann");
+        let state = json!({ "name": "turn.csv", "ship": "kcs" });
+        let trial = "trial:01a227a8-faf3-7733-be81-0f54c0096a3e";
+        let told = action_words("trial.create", trial, &state);
+        assert_eq!(told, "created the trial turn.csv of kcs");
     }
 }

@@ -10,6 +10,7 @@ use crate::cursor::{decode_cursor, encode_cursor};
 use crate::date::format_date;
 use crate::error::Result;
 use crate::form::FormFields;
+use crate::pickers;
 use crate::picture::render_svg;
 use crate::shell::PageShell;
 use crate::sparkline::sparkline;
@@ -25,6 +26,8 @@ struct FamiliesPage {
     shell: PageShell,
     families: Vec<FamilyRow>,
     next: Option<String>,
+    /// Names that the field of the foundation offers.
+    known: Vec<String>,
 }
 
 struct FamilyRow {
@@ -58,7 +61,9 @@ pub async fn families_page(
             title: family.title,
         });
     }
-    Ok(FamiliesPage { shell: shell.at_place("/families"), families: rows, next }.render()?)
+    let known = pickers::model_names(archive).await?;
+    let shell = shell.at_place("/families");
+    Ok(FamiliesPage { shell, families: rows, next, known }.render()?)
 }
 
 #[derive(Template)]

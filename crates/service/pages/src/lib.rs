@@ -7,6 +7,7 @@
 pub mod audit;
 mod beginning;
 pub mod compare;
+pub mod conditions;
 mod cursor;
 mod date;
 mod error;
@@ -16,6 +17,7 @@ mod form;
 pub mod jobs;
 mod named;
 pub mod new_ship;
+pub mod particulars;
 pub mod people;
 mod pickers;
 mod picture;

@@ -1,38 +1,24 @@
 //! The form of a new ship: its fields become a vessel document.
 
 use askama::Template;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
+use sistership_model::categories::known_categories;
 
-use crate::error::{PageError, Result};
+use crate::error::Result;
 use crate::form::FormFields;
+use crate::particulars::{PARTICULARS, ParticularField, new_particulars};
 use crate::shell::PageShell;
 
-/// Particulars in the form: name, label, and whether similarity and transfer need it.
-pub const PARTICULARS: [(&str, &str, bool); 14] = [
-    ("lpp_m", "Length between perpendiculars, m", true),
-    ("beam_m", "Beam, m", true),
-    ("draught_m", "Draught, m", true),
-    ("displacement_m3", "Displacement, m³", true),
-    ("service_speed_m_s", "Service speed, m/s", true),
-    ("block_coefficient", "Block coefficient", false),
-    ("x_g_m", "Centre of gravity forward of midship, m", false),
-    ("yaw_gyradius_ratio", "Yaw radius of gyration divided by length", false),
-    ("rudder_area_m2", "Rudder area, m²", false),
-    ("rudder_height_m", "Rudder height, m", false),
-    ("propeller_diameter_m", "Propeller diameter, m", false),
-    ("gm_m", "Metacentric height, m", false),
-    ("frontal_area_m2", "Frontal area above water, m²", false),
-    ("lateral_area_m2", "Lateral area above water, m²", false),
-];
-
-/// Key of the single source.
-const SOURCE_KEY: &str = "typed-in";
+/// Maximum length of a name for addresses, characters.
+const MAX_NAME_CHARS: usize = 64;
 
 #[derive(Template)]
 #[template(path = "new_ship.html")]
 struct NewShipPage<'a> {
     shell: &'a PageShell,
-    particulars: &'static [(&'static str, &'static str, bool)],
+    particulars: &'static [ParticularField],
+    /// Categories that the form offers; others may be typed in.
+    categories: Vec<&'static str>,
 }
 
 /// Returns the form.
@@ -40,7 +26,8 @@ struct NewShipPage<'a> {
 /// # Errors
 /// Returns an error if the page cannot be rendered.
 pub fn new_ship_page(shell: &PageShell) -> Result<String> {
-    Ok(NewShipPage { shell, particulars: &PARTICULARS }.render()?)
+    let categories = known_categories();
+    Ok(NewShipPage { shell, particulars: &PARTICULARS, categories }.render()?)
 }
 
 /// Returns the vessel document of a form's fields, as `models/schema/vessel.json` describes it.
@@ -48,36 +35,24 @@ pub fn new_ship_page(shell: &PageShell) -> Result<String> {
 /// # Errors
 /// Returns an error that names a field which is missing or no number.
 pub fn vessel_document(form: &FormFields) -> Result<Value> {
-    let text = |name: &str| {
-        let text = form.get_text(name).map(str::trim).filter(|text| !text.is_empty());
-        text.ok_or_else(|| PageError::invalid_field(name, "is required".to_owned()))
-    };
-    let mut values = Map::new();
-    // Optional particulars that are empty are left out of the document.
-    for (name, _, needed) in PARTICULARS {
-        match form.get_text(name).map(str::trim).filter(|text| !text.is_empty()) {
-            None if needed => {
-                return Err(PageError::invalid_field(name, "is required".to_owned()));
-            }
-            None => {}
-            Some(text) => {
-                // A decimal comma is accepted.
-                let value: Option<f64> = text.replace(',', ".").parse().ok();
-                let value = value.filter(|value| value.is_finite()).ok_or_else(|| {
-                    PageError::invalid_field(name, format!("`{text}` is not a number"))
-                })?;
-                values.insert(name.to_owned(), json!(value));
-            }
-        }
-    }
+    let (sources, particulars) = new_particulars(form)?;
+    let title = form.required_text("title")?;
     Ok(json!({
         "kind": "vessel",
-        "name": text("name")?,
-        "title": text("title")?,
-        "category": text("category")?,
-        "sources": { SOURCE_KEY: { "citation": text("citation")? } },
-        "particulars": { "source": SOURCE_KEY, "values": values },
+        "name": form.get_text("name").map_or_else(|| short_name(title), str::to_owned),
+        "title": title,
+        "category": form.required_text("category")?,
+        "sources": sources,
+        "particulars": particulars,
     }))
+}
+
+/// Returns a name for addresses: the title in lower-case letters, digits and hyphens.
+fn short_name(title: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+    let spelled: String = title.chars().map(plain).collect();
+    let words = spelled.split('-').filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join("-").chars().take(MAX_NAME_CHARS).collect()
 }
 
 #[cfg(test)]
@@ -113,6 +88,12 @@ mod tests {
         let vessel = sistership_model::Vessel::from_file("form", file).unwrap();
         assert_eq!(vessel.particular("beam_m"), Some(25.4));
         assert!(document["particulars"]["values"].get("block_coefficient").is_none());
+    }
+
+    #[test]
+    fn a_ship_without_a_short_name_is_named_by_its_title() {
+        let document = vessel_document(&fields(&[("name", ""), ("title", "M/V Anna II")]));
+        assert_eq!(document.unwrap()["name"], "m-v-anna-ii");
     }
 
     #[test]

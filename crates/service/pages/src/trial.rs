@@ -10,11 +10,13 @@ use sistership_model::version::RecipeTrial;
 use sistership_model::{Law, Model};
 use sistership_report::numbers::format_significant;
 use sistership_report::plots::{HullOutline, LiveChart};
+use sistership_report::variable_words;
 use sistership_simulation::Ship;
 use sistership_simulation::error::SquaredError;
 use sistership_simulation::recorded::{ReplaySettings, replay_trial};
 use sistership_store::{PageRequest, Trial};
 
+use crate::conditions::{CONDITIONS, ConditionField, stated_text};
 use crate::date::format_date;
 use crate::error::Result;
 use crate::plot::{LINES, PlotTrack, track_chart};
@@ -30,6 +32,8 @@ pub struct TrialPageInputs {
     samples: Samples,
     champion: Option<ChampionModel>,
     versions: Vec<(i64, String)>,
+    /// Conditions as they are stated for it: name and text.
+    conditions: Vec<(&'static str, String)>,
 }
 
 struct ChampionModel {
@@ -80,10 +84,19 @@ pub async fn gather_inputs(
     Ok(TrialPageInputs {
         champion: load_champion(archive, &trial.ship).await?,
         versions: fitted_versions(archive, &trial).await?,
+        conditions: stated_conditions(archive, &trial.id).await?,
         shell: shell.at_place("/"),
         trial,
         samples,
     })
+}
+
+/// Returns the conditions that are stated for a trial.
+async fn stated_conditions(archive: &Archive, id: &str) -> Result<Vec<(&'static str, String)>> {
+    let stated = archive.store.trials().stated_conditions(id).await?;
+    let text = |field: &ConditionField| stated_text(stated.as_ref(), field.name).to_owned();
+    let all = CONDITIONS.iter().map(|field| (field.label, text(field)));
+    Ok(all.filter(|(_, text)| !text.is_empty()).collect())
 }
 
 async fn load_champion(archive: &Archive, ship: &str) -> Result<Option<ChampionModel>> {
@@ -154,6 +167,18 @@ fn format_json(json: &str) -> String {
     serde_json::to_string_pretty(&value).unwrap_or_default()
 }
 
+/// Returns an error with the name of its channel, in words and the unit of readers.
+fn error_words(channel: &str, value: f64) -> (String, String) {
+    match variable_words(channel) {
+        (words, "deg", _) => {
+            (words.to_owned(), format!("{} deg", format_significant(value.to_degrees(), 3)))
+        }
+        (words, unit, shown) => {
+            (words.to_owned(), format!("{} {unit}", format_significant(shown(value), 3)))
+        }
+    }
+}
+
 impl ChampionModel {
     /// Simulates the rudder and revolutions of a trial; returns the track and its errors.
     ///
@@ -170,8 +195,7 @@ impl ChampionModel {
         let run = replay_trial(&ship, trial, &ReplaySettings::default())
             .map_err(|error| error.to_string())?;
         let errors = SquaredError::from_trial(trial, &run).rmse_by_channel();
-        let errors =
-            errors.into_iter().map(|(name, value)| (name, format_significant(value, 3))).collect();
+        let errors = errors.into_iter().map(|(name, value)| error_words(&name, value)).collect();
         let name = format!("champion, version {}", self.number);
         Ok((PlotTrack::from_simulation(LINES[0], name, &run.track, run.has_roll), errors))
     }

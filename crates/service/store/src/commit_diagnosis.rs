@@ -128,8 +128,9 @@ async fn notify_webhooks(
     let ship = &diagnosis.report.ship;
     if found.verdict != COMPLETE {
         let effects: Value = serde_json::from_str(&found.effects).unwrap_or_default();
+        let trials: Value = serde_json::from_str(&found.trials).unwrap_or_default();
         let about = json!({ "diagnosis": found.id, "verdict": found.verdict, "effects": effects,
-            "report": found.report_id });
+            "report": found.report_id, "diagnosed": found.version_id, "trials": trials });
         webhooks::notify(store, tx, webhooks::DIAGNOSIS_FAILED, ship, about).await?;
     }
     match diagnosis.drift {

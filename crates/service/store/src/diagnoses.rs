@@ -19,6 +19,9 @@ statements! {
     ALL = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, unexplained, \
         drift, created_us FROM diagnoses WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
     // '~' sorts after every id: without a cursor the list starts at the latest one.
+    // Ids are in the order of time.
+    NEWEST = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, \
+        unexplained, drift, created_us FROM diagnoses ORDER BY id DESC LIMIT $1");
     BY_VERSION = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, \
         unexplained, drift, created_us FROM diagnoses WHERE (version_id = $1 OR made_id = $1) AND id < COALESCE($2, \
         '~') ORDER BY id DESC LIMIT $3");
@@ -89,6 +92,11 @@ impl DiagnosisRepository<'_> {
             .fetch_all(ALL, args![after: &page.after, limit: page.fetch_limit()?])
             .await?;
         Ok(page.build_page(diagnoses, |diagnosis: &DiagnosisRow| diagnosis.id.clone()))
+    }
+
+    /// Lists the newest diagnoses of all ships, the latest first.
+    pub async fn list_newest(&self, limit: i64) -> Result<Vec<DiagnosisRow>> {
+        Ok(self.0.database().fetch_all(NEWEST, args![limit: limit]).await?)
     }
 
     /// Lists the diagnoses that concern a version, the latest first: those of the version, and the

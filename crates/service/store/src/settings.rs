@@ -1,9 +1,10 @@
 //! Settings that apply to all processes of a store.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::actor::Actor;
 use crate::arguments::args;
+use crate::checks;
 use crate::database::AuditedTransaction;
 use crate::error::{Result, StoreError};
 use crate::record::record;
@@ -14,6 +15,8 @@ use crate::store::Store;
 const CHAMPION: &str = "champion";
 /// Name of the setting that requires it.
 const SECOND_PERSON: &str = "second-person";
+/// Name of the setting with the URL of the server.
+const PUBLIC_URL: &str = "public-url";
 
 statements! {
     GET = same("SELECT value FROM settings WHERE name = $1");
@@ -54,16 +57,38 @@ impl StoreSettings<'_> {
         let mut tx = self.0.begin().await?;
         let before = is_on(tx.fetch_optional(GET, args![name: SECOND_PERSON]).await?);
         let value = if on { "on" } else { "off" };
-        let values = args![name: SECOND_PERSON, value: value, changed_us: self.0.now_us()];
-        tx.execute(PUT, values).await?;
-        let (before, after) = (json!({ SECOND_PERSON: before }), json!({ SECOND_PERSON: on }));
-        tx.record_audit_event(
-            self.0.now_us(),
-            "settings.set",
-            "settings".to_owned(),
-            Some(before),
-            Some(after),
-        );
+        let states = (json!({ SECOND_PERSON: before }), json!({ SECOND_PERSON: on }));
+        self.put(tx, (SECOND_PERSON, value), states).await
+    }
+
+    /// Returns the URL under which people reach the server, for links in messages.
+    pub async fn public_url(&self) -> Result<Option<String>> {
+        let found: Option<SettingValue> =
+            self.0.database().fetch_optional(GET, args![name: PUBLIC_URL]).await?;
+        Ok(found.map(|found| found.value).filter(|value| !value.is_empty()))
+    }
+
+    /// Sets the URL under which people reach the server; empty for none.
+    pub async fn set_public_url(&self, url: &str) -> Result<()> {
+        checks::check_text("url", url)?;
+        let mut tx = self.0.begin().await?;
+        let before: Option<SettingValue> = tx.fetch_optional(GET, args![name: PUBLIC_URL]).await?;
+        let before = before.map(|before| before.value);
+        let states = (json!({ PUBLIC_URL: before }), json!({ PUBLIC_URL: url }));
+        self.put(tx, (PUBLIC_URL, url), states).await
+    }
+
+    /// Writes a setting with its audit entry, and commits.
+    async fn put(
+        &self,
+        mut tx: AuditedTransaction,
+        (name, value): (&str, &str),
+        (before, after): (Value, Value),
+    ) -> Result<()> {
+        let now = self.0.now_us();
+        tx.execute(PUT, args![name: name, value: value, changed_us: now]).await?;
+        let subject = "settings".to_owned();
+        tx.record_audit_event(now, "settings.set", subject, Some(before), Some(after));
         tx.commit().await
     }
 }

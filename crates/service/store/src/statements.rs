@@ -42,11 +42,11 @@ mod prepare {
     use crate::error::{Result, StoreError};
     use crate::store::Store;
     use crate::{
-        aliases, audit, bulks, chain, current, diagnoses, effects, families, free_space, garbage,
-        grants, idempotency, identities, integrity, jobs, keys, laws, notes, overviews,
+        aliases, audit, bulks, chain, changes, current, diagnoses, effects, families, free_space,
+        garbage, grants, idempotency, identities, integrity, jobs, keys, laws, notes, overviews,
         queue_order, reports, row_seal, seal_check, search, search_index, sessions, settings,
-        ships, statistics, store, tags, templates, trials, users, version, versions, webhooks,
-        work,
+        ships, sign_offs, statistics, store, tags, templates, trial_conditions, trials, users,
+        version, versions, webhooks, work,
     };
 
     pub(crate) const ALL: &[(&str, &[(&str, super::Statement)])] = &[
@@ -56,6 +56,7 @@ mod prepare {
         ("audit", audit::STATEMENTS),
         ("bulks", bulks::STATEMENTS),
         ("chain", chain::STATEMENTS),
+        ("changes", changes::STATEMENTS),
         ("current", current::STATEMENTS),
         ("diagnoses", diagnoses::STATEMENTS),
         ("families", families::STATEMENTS),
@@ -79,11 +80,13 @@ mod prepare {
         ("sessions", sessions::STATEMENTS),
         ("settings", settings::STATEMENTS),
         ("ships", ships::STATEMENTS),
+        ("sign_offs", sign_offs::STATEMENTS),
         ("templates", templates::STATEMENTS),
         ("standings", overviews::STATEMENTS),
         ("statistics", statistics::STATEMENTS),
         ("store", store::STATEMENTS),
         ("tags", tags::STATEMENTS),
+        ("trial_conditions", trial_conditions::STATEMENTS),
         ("trials", trials::STATEMENTS),
         ("users", users::STATEMENTS),
         ("version", version::STATEMENTS),

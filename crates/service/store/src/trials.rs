@@ -327,7 +327,7 @@ impl TrialRepository<'_> {
 }
 
 /// Returns the subject of audit entries about a trial.
-fn audit_subject(trial: &Trial) -> String {
+pub(crate) fn audit_subject(trial: &Trial) -> String {
     format!("trial:{}", trial.id)
 }
 

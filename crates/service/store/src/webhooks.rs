@@ -360,7 +360,13 @@ async fn insert_deliveries(
         return Ok(());
     }
     let now = store.now_us();
-    let body = json!({ "event": event, "ship": ship, "at_us": now, "about": about }).to_string();
+    // The page of this server that the event is about: a version, otherwise the ship.
+    let page = match about["version"].as_i64() {
+        Some(number) => format!("/ships/{ship}/versions/{number}"),
+        None => format!("/ships/{ship}"),
+    };
+    let body = json!({ "event": event, "ship": ship, "at_us": now, "about": about, "page": page });
+    let body = body.to_string();
     // One body for all webhooks, checked once.
     checks::check_json("body", &body)?;
     for webhook in listening {

@@ -33,7 +33,8 @@ pub(crate) struct SummaryFact {
 impl AcceptanceSummary {
     pub fn from_input(input: &RefinementInput<'_>, content: &RefinementContent<'_>) -> Self {
         let imo = &content.manoeuvres.imo;
-        let (verdict, verdict_class) = imo_verdict(imo);
+        let verdicts: Vec<_> = imo.iter().map(|one| (one.criterion, one.refined_pass)).collect();
+        let (verdict, verdict_class) = imo_verdict(&verdicts);
         let facts = ship_facts(input).into_iter().chain(condition_facts(input.trials));
         Self {
             verdict,
@@ -50,11 +51,12 @@ impl AcceptanceSummary {
     }
 }
 
-/// Verdict on all criteria of the refined model, in a sentence.
-fn imo_verdict(imo: &[CriterionComparison<'_>]) -> (String, &'static str) {
+/// Returns the verdict on all criteria of a model in a sentence, and its class: `good`, `bad` or
+/// `open`. `imo` has name and verdict of each criterion.
+pub fn imo_verdict(imo: &[(&str, Option<bool>)]) -> (String, &'static str) {
     let with = |pass: Option<bool>| -> Vec<String> {
-        let some = imo.iter().filter(|one| one.refined_pass == pass);
-        some.map(|one| one.criterion.to_owned()).collect()
+        let some = imo.iter().filter(|(_, own)| *own == pass);
+        some.map(|(name, _)| (*name).to_owned()).collect()
     };
     let (failed, unknown) = (with(Some(false)), with(None));
     // One failure decides; what could not be evaluated is never counted as met.
@@ -98,7 +100,7 @@ fn ship_facts(input: &RefinementInput<'_>) -> Vec<SummaryFact> {
 
 /// Conditions of the trials: what their channels tell.
 fn condition_facts(trials: &[&Trial]) -> Vec<SummaryFact> {
-    let by_hand = "No record has it: write it in, and add a note on the ship's page";
+    let by_hand = "the form of conditions, linked from the version's acceptance summary";
     let blank = |name| SummaryFact { name, value: Err(by_hand) };
     let wind = channel_range(trials, &[Channel::WindSpeed, Channel::ApparentWindSpeed])
         .map(|(low, high)| format!("{} to {}", with_knots(low, 1), with_knots(high, 1)));
@@ -217,12 +219,10 @@ mod tests {
 
     #[test]
     fn one_failure_decides_the_verdict() {
-        let (met, failed) = (criterion("advance", Some(true)), criterion("turn", Some(false)));
-        assert!(imo_verdict(&[met]).0.contains("meets all"));
-        let unknown = criterion("stop", None);
-        let (text, class) = imo_verdict(&[failed, unknown]);
+        assert!(imo_verdict(&[("advance", Some(true))]).0.contains("meets all"));
+        let (text, class) = imo_verdict(&[("turn", Some(false)), ("stop", None)]);
         assert!(text.contains("does not meet MSC.137(76): turn.") && class == "bad", "{text}");
-        assert_eq!(imo_verdict(&[criterion("stop", None)]).1, "open");
+        assert_eq!(imo_verdict(&[("stop", None)]).1, "open");
     }
 
     #[test]

@@ -24,6 +24,7 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
+pub use acceptance::imo_verdict;
 pub use input::RefinementInput;
 
 use crate::rendered::{RenderedReport, ReportError};

@@ -2,7 +2,6 @@
 //! report.
 
 mod client;
-pub mod sea_trials;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -11,37 +10,14 @@ use clap::Args;
 use serde_json::{Value, json};
 use sistership_api::{Config, RunningServer, Server};
 use sistership_identification::refine::HeldOut;
+use sistership_jobs::example::{self, HELD_OUT_TRIALS, SHIP_NAME, SHIP_YAML, TRIAL_SHIP};
 use sistership_model::{Trial, Zoo};
-use sistership_simulation::Ship;
-use sistership_trials::samples::to_csv;
 
 use self::client::ApiClient;
-use self::sea_trials::{TrialManoeuvre, record_programme};
 use crate::commands::refine_text;
 use crate::commands::store::block_on;
 use crate::failure::{Failure, about_file};
 use crate::output;
-
-/// Ship of the demonstration: particulars only, without a model.
-const SHIP_YAML: &str = include_str!("ship.yaml");
-const SHIP_NAME: &str = "northern-star";
-/// Ship that provides the trials: with roll, propeller and rudder, and a law that no other ship of
-/// the zoo has.
-const TRIAL_SHIP: &str = "sr108";
-const SPEED_M_S: f64 = 10.47;
-const SEED: u64 = 1;
-/// Manoeuvres of the trials; the last two are held out from fit and selection, to judge the model.
-const PROGRAMME: [TrialManoeuvre; 8] = [
-    TrialManoeuvre::Zigzag(10.0, 10.0),
-    TrialManoeuvre::Zigzag(-10.0, 5.0),
-    TrialManoeuvre::Zigzag(20.0, 20.0),
-    TrialManoeuvre::Turn(12.0),
-    TrialManoeuvre::Turn(-15.0),
-    TrialManoeuvre::Turn(30.0),
-    TrialManoeuvre::Turn(-20.0),
-    TrialManoeuvre::Zigzag(15.0, 15.0),
-];
-const HELD_OUT_TRIALS: usize = 2;
 
 const ABOUT: &str = "\
 Starts the server on a database in FOLDER, creates a ship, uploads trials, selects a source,
@@ -84,13 +60,7 @@ fn record_trials(zoo: &Zoo) -> Result<Vec<Trial>, Failure> {
     output::print_note(
         "1/8  simulating the trials: SR108 with roll, by Son and Nomoto's law, with sensor noise",
     );
-    let model = zoo.find_model(TRIAL_SHIP).map_err(|error| Failure::Refused(error.to_string()))?;
-    let law = zoo
-        .law(&model.law)
-        .ok_or_else(|| Failure::Refused(format!("the law `{}` is not in the zoo", model.law)))?;
-    let ship = Ship::new(&model, law).map_err(|error| Failure::Refused(error.to_string()))?;
-    record_programme(&ship, SPEED_M_S, &PROGRAMME, SEED)
-        .map_err(|stopped| Failure::Refused(stopped.to_string()))
+    example::record_trials(zoo).map_err(Failure::Refused)
 }
 
 /// Removes an old demonstration; a folder with any other file is refused.
@@ -154,16 +124,9 @@ async fn run_steps(running: &RunningServer, trials: &[Trial], out: &Path) -> Res
 }
 
 async fn upload_trials(api: &ApiClient, trials: &[Trial]) -> Result<(), Failure> {
-    let mut files = Vec::new();
-    let mut entries = Vec::new();
-    for trial in trials {
-        let mut bytes = Vec::new();
-        to_csv(&mut bytes, trial).map_err(|error| Failure::Refused(error.to_string()))?;
-        entries.push(json!({ "file": trial.name, "manoeuvre": trial.manoeuvre }));
-        files.push((trial.name.clone(), bytes));
-    }
+    let files = example::trial_files(trials).map_err(Failure::Refused)?;
     // JSON is YAML.
-    let manifest = json!({ "kind": "trials", "ship": SHIP_NAME, "trials": entries }).to_string();
+    let manifest = example::trial_manifest(trials).to_string();
     let uploaded = api.upload_trials(manifest, files).await?;
     let rows: i64 = uploaded["trials"]
         .as_array()

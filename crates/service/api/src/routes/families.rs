@@ -175,16 +175,32 @@ async fn create(
     // The work runs in one transaction with the key: family and members are kept together or not at
     // all.
     let work = |app: App| async move {
-        let members = check_ship_count("members", new.members)?;
-        let foundation = resolve_version(app.store(), "foundation", &new.foundation).await?.head;
-        let title = new.title.as_deref().unwrap_or(&new.name);
-        let family = app.store().families().create(&new.name, title, &foundation.id).await?;
-        app.store().families().add_members(&family.name, &members).await?;
+        let family = create_family(&app, new).await?;
         let name = family.name.clone();
         let reply = StoredReply::new(StatusCode::CREATED, &FamilyView::load(&app, family).await?)?;
         Ok(reply.with_location(&["v1", "families", &name]))
     };
     key.run_once(&app, payload.bytes(), work).await
+}
+
+async fn create_family(app: &App, new: NewFamily) -> Result<Family> {
+    let members = check_ship_count("members", new.members)?;
+    let foundation = resolve_version(app.store(), "foundation", &new.foundation).await?.head;
+    let title = new.title.as_deref().unwrap_or(&new.name);
+    let family = app.store().families().create(&new.name, title, &foundation.id).await?;
+    app.store().families().add_members(&family.name, &members).await?;
+    Ok(family)
+}
+
+/// Creates a family as the form of a page describes it.
+pub(super) async fn create_from_page(app: &App, asked: Value) -> Result<Family> {
+    let new: NewFamily =
+        serde_json::from_value(asked).map_err(|why| Problem::invalid("form", why.to_string()))?;
+    // Before the family is written: a wrong name leaves none behind.
+    for ship in &new.members {
+        app.store().ships().get(ship).await?;
+    }
+    create_family(app, new).await
 }
 
 /// Get a family

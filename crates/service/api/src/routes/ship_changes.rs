@@ -102,13 +102,19 @@ async fn replace(
             ),
         ));
     }
+    let ship = store_changed_ship(&app, &vessel, revision).await?;
+    Ok(ShipDetail::load(&app, ship).await?.etag_response())
+}
+
+/// Stores the changed document of a ship that is still at a revision.
+pub(super) async fn store_changed_ship(app: &App, vessel: &Vessel, revision: i64) -> Result<Ship> {
     let zoo = app.stored_laws().await?;
     // The same check as for a new ship, before anything is written.
-    zoo.check_models(&vessel)?;
-    let new = new_ship(&vessel).map_err(Problem::internal)?;
-    let ship: Ship = app.store().ships().update(&new, revision).await?;
-    publish_models(app.store(), &zoo, &vessel, &ship.document).await?;
-    Ok(ShipDetail::load(&app, ship).await?.etag_response())
+    zoo.check_models(vessel)?;
+    let new = new_ship(vessel).map_err(Problem::internal)?;
+    let ship = app.store().ships().update(&new, revision).await?;
+    publish_models(app.store(), &zoo, vessel, &ship.document).await?;
+    Ok(ship)
 }
 
 /// Delete a ship; its versions stay, and `undelete` restores it

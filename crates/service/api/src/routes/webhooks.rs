@@ -166,7 +166,24 @@ async fn list(
     responses((status = 201, body = NewWebhookView, headers(("Location" = String))))
 )]
 async fn create(State(app): State<App>, payload: DocumentBody) -> Result<Response> {
-    let WebhookRequest { title, url, ship, events, drift_above } = payload.parse_json()?;
+    let (secret, row) = create_webhook(&app, payload.parse_json()?).await?;
+    let location = encode_path(&["v1", "webhooks", &row.id]);
+    let about = WebhookView::load(&app, row).await?;
+    let view = NewWebhookView { secret, about };
+    // Neither the browser nor a proxy may store the secret.
+    let head = [(header::LOCATION, location), (header::CACHE_CONTROL, "no-store".to_owned())];
+    Ok((StatusCode::CREATED, head, Json(view)).into_response())
+}
+
+/// Creates a webhook as the form of a page describes it; returns its secret.
+pub(super) async fn create_from_page(app: &App, asked: Value) -> Result<(String, Webhook)> {
+    let asked =
+        serde_json::from_value(asked).map_err(|why| Problem::invalid("form", why.to_string()))?;
+    create_webhook(app, asked).await
+}
+
+async fn create_webhook(app: &App, asked: WebhookRequest) -> Result<(String, Webhook)> {
+    let WebhookRequest { title, url, ship, events, drift_above } = asked;
     // The address is checked again at each delivery, as a name may lead elsewhere later.
     check_url(&url, app.limits().webhooks_private)
         .map_err(|message| Problem::invalid("url", message))?;
@@ -179,12 +196,7 @@ async fn create(State(app): State<App>, payload: DocumentBody) -> Result<Respons
         events: events.into_iter().map(|event| event.as_str().to_owned()).collect(),
     };
     let row = app.store().webhooks().create(&new).await?;
-    let location = encode_path(&["v1", "webhooks", &row.id]);
-    let about = WebhookView::load(&app, row).await?;
-    let view = NewWebhookView { secret: new.secret, about };
-    // Neither the browser nor a proxy may store the secret.
-    let head = [(header::LOCATION, location), (header::CACHE_CONTROL, "no-store".to_owned())];
-    Ok((StatusCode::CREATED, head, Json(view)).into_response())
+    Ok((new.secret, row))
 }
 
 /// Get a webhook

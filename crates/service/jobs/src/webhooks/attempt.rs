@@ -12,42 +12,46 @@ use super::addresses::{check_url, is_public};
 /// Timeout of an attempt.
 const TIMEOUT: Duration = Duration::from_secs(15);
 
-/// Sends a delivery once; returns the status of the answer, or the reason of the failure.
-pub(super) async fn send_once(
-    delivery: &Delivery,
-    webhook: &Webhook,
-    now_us: i64,
-    private: bool,
-) -> Result<String, String> {
-    // The client's own timeout does not include the look-up of the name.
-    let sent = tokio::time::timeout(TIMEOUT, send_delivery(delivery, webhook, now_us, private));
-    sent.await.unwrap_or_else(|_| Err("no answer in time".to_owned()))
+/// An attempt to send a delivery.
+pub(super) struct DeliveryAttempt<'a> {
+    pub delivery: &'a Delivery,
+    pub webhook: &'a Webhook,
+    /// Body in the format of the receiver.
+    pub body: String,
+    pub now_us: i64,
+    /// True if the receiver may be in a private network and use plain http.
+    pub private: bool,
 }
 
-async fn send_delivery(
-    delivery: &Delivery,
-    webhook: &Webhook,
-    now_us: i64,
-    private: bool,
-) -> Result<String, String> {
-    // Checked again: the setting may have changed since the webhook was created.
-    let url = check_url(&webhook.url, private)?;
-    let client = pinned_client(&url, &resolve_addresses(&url, private).await?)?;
-    let at_s = now_us / 1_000_000;
-    // The time is part of the signed text, so that a receiver can refuse a replay.
-    let signed = sign_message(&webhook.secret, format!("{at_s}.{}", delivery.body).as_bytes());
-    let request = client
-        .post(url)
-        .header("Content-Type", "application/json")
-        .header("Sistership-Event", &delivery.event)
-        .header("Sistership-Delivery", &delivery.id)
-        .header("Sistership-Signature", format!("t={at_s},v1={signed}"))
-        .body(delivery.body.clone());
-    let answer = request.send().await.map_err(|error| describe_error(&error))?;
-    // The body of the answer is not read: it could be of any size and content.
-    match answer.status() {
-        status if status.is_success() => Ok(status.as_u16().to_string()),
-        status => Err(format!("answered {}", status.as_u16())),
+impl DeliveryAttempt<'_> {
+    /// Sends the delivery once; returns the status of the answer, or the reason of the failure.
+    pub async fn send_once(self) -> Result<String, String> {
+        // The client's own timeout does not include the look-up of the name.
+        let sent = tokio::time::timeout(TIMEOUT, self.send_delivery());
+        sent.await.unwrap_or_else(|_| Err("no answer in time".to_owned()))
+    }
+
+    async fn send_delivery(self) -> Result<String, String> {
+        let Self { delivery, webhook, body, now_us, private } = self;
+        // Checked again: the setting may have changed since the webhook was created.
+        let url = check_url(&webhook.url, private)?;
+        let client = pinned_client(&url, &resolve_addresses(&url, private).await?)?;
+        let at_s = now_us / 1_000_000;
+        // The time is part of the signed text, so that a receiver can refuse a replay.
+        let signed = sign_message(&webhook.secret, format!("{at_s}.{body}").as_bytes());
+        let request = client
+            .post(url)
+            .header("Content-Type", "application/json")
+            .header("Sistership-Event", &delivery.event)
+            .header("Sistership-Delivery", &delivery.id)
+            .header("Sistership-Signature", format!("t={at_s},v1={signed}"))
+            .body(body);
+        let answer = request.send().await.map_err(|error| describe_error(&error))?;
+        // The body of the answer is not read: it could be of any size and content.
+        match answer.status() {
+            status if status.is_success() => Ok(status.as_u16().to_string()),
+            status => Err(format!("answered {}", status.as_u16())),
+        }
     }
 }
 

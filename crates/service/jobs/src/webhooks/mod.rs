@@ -3,6 +3,7 @@
 
 mod addresses;
 mod attempt;
+mod message;
 
 use std::collections::HashSet;
 use std::time::Duration;
@@ -11,7 +12,10 @@ use futures::future::join_all;
 use sistership_store::{Delivery, Store, Webhook};
 use tokio::task::JoinSet;
 
+use self::attempt::DeliveryAttempt;
+
 pub use addresses::check_url;
+pub use message::MessageFormat;
 
 /// Settings of the deliveries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,7 +114,16 @@ async fn deliver(
     delivery: &Delivery,
     webhook: &Webhook,
 ) -> sistership_store::Result<()> {
-    match attempt::send_once(delivery, webhook, store.now_us(), settings.private).await {
+    let base = store.settings().public_url().await?;
+    let format = MessageFormat::from_url(&webhook.url);
+    let attempt = DeliveryAttempt {
+        delivery,
+        webhook,
+        body: format.render_body(&delivery.body, base.as_deref()),
+        now_us: store.now_us(),
+        private: settings.private,
+    };
+    match attempt.send_once().await {
         Ok(answer) => store.webhooks().record_arrival(&delivery.id, &answer).await,
         Err(reason) => {
             let due = retry_delay(delivery.attempts).map(|pause| store.now_us() + to_micros(pause));

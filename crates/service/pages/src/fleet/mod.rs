@@ -1,7 +1,9 @@
 //! The fleet: a list of the ships, the one that most needs attention first.
 
+mod drift_trend;
 mod first_steps;
 mod query;
+mod recent;
 
 use askama::Template;
 use sistership_jobs::Archive;
@@ -13,8 +15,10 @@ use sistership_jobs::search::{self, SearchCriteria, VectorCache};
 use sistership_report::numbers::{format_significant, format_stated};
 use sistership_store::{FactRange, FoundShip, ListPage, PageRequest, ShipKey, ShipOverview};
 
+use self::drift_trend::drift_trend;
 use self::first_steps::FirstSteps;
 use self::query::{FleetQuery, SortOrder};
+use self::recent::{RecentShip, recent_ships};
 use crate::cursor::encode_cursor;
 use crate::error::Result;
 use crate::form::FormFields;
@@ -24,6 +28,8 @@ use crate::sparkline::sparkline;
 
 /// Number of ships on one page.
 const SHIPS_PER_PAGE: i64 = 50;
+/// Number of ships that are named as the worst.
+const WORST_SHIPS: usize = 5;
 /// Number of families named in a row.
 const FAMILIES_PER_ROW: usize = 4;
 
@@ -39,7 +45,23 @@ struct FleetPage {
     next: Option<String>,
     changing: bool,
     first_steps: Option<FirstSteps>,
+    dashboard: Option<FleetDashboard>,
+}
+
+/// Overview of the fleet above the list of its ships.
+struct FleetDashboard {
     counts: Vec<ConditionCount>,
+    /// Ships that most need attention, of a fleet that is longer than a screen.
+    worst: Vec<WorstShip>,
+    recent: Vec<RecentShip>,
+    /// Chart of the drift over the last weeks, SVG.
+    drift: Option<String>,
+}
+
+/// Ship that needs attention, and why.
+struct WorstShip {
+    name: String,
+    why: String,
 }
 
 /// Number of ships of the fleet in a condition.
@@ -86,14 +108,19 @@ pub async fn fleet_page(
         ship_row(ship, standing, &deleted, query.sort)
     };
     let ships: Vec<ShipRow> = found.items.into_iter().map(row).collect::<Result<_>>()?;
-    let is_fleet = query.collection == Some(ShipCollection::Fleet);
+    let is_overview = query.collection == Some(ShipCollection::Fleet)
+        && !query.has_filter()
+        && !query.is_continued();
     let names: Vec<&str> = ships.iter().map(|ship| ship.name.as_str()).collect();
     let page = FleetPage {
-        first_steps: match is_fleet && !query.has_filter() && !query.is_continued() {
+        first_steps: match is_overview {
             true => FirstSteps::find(archive, &names).await?,
             false => None,
         },
-        counts: if is_fleet { count_conditions(archive).await? } else { Vec::new() },
+        dashboard: match is_overview && !ships.is_empty() {
+            true => Some(FleetDashboard::read(archive, &ships).await?),
+            false => None,
+        },
         shell: shell.at_place("/"),
         particulars: search::particular_names().collect(),
         metrics: search::searchable_metrics().collect(),
@@ -104,6 +131,30 @@ pub async fn fleet_page(
         changing: !archive.store.search_index().list_stale("", 1).await?.is_empty(),
     };
     Ok(page.render()?)
+}
+
+impl FleetDashboard {
+    async fn read(archive: &Archive, ships: &[ShipRow]) -> Result<Self> {
+        let failing = ships.iter().filter(|ship| ship.class == UrgencyClass::DoesNotHold.name());
+        let worst = failing.take(WORST_SHIPS).map(WorstShip::from_row).collect();
+        Ok(Self {
+            counts: count_conditions(archive).await?,
+            // A short list has its worst ships in sight.
+            worst: if ships.len() > WORST_SHIPS { worst } else { Vec::new() },
+            recent: recent_ships(archive).await?,
+            drift: drift_trend(archive).await?.as_ref().map(render_svg).transpose()?,
+        })
+    }
+}
+
+impl WorstShip {
+    fn from_row(row: &ShipRow) -> Self {
+        let why = match row.why.as_str() {
+            "" => "something unexplained".to_owned(),
+            why => why.to_owned(),
+        };
+        Self { name: row.name.clone(), why }
+    }
 }
 
 /// Counts the ships of the fleet by condition, most urgent first.
@@ -159,7 +210,10 @@ fn ship_row(
 /// Returns the effects that a champion lacks, or that it has drifted.
 fn condition_reason(condition: &Condition) -> String {
     match condition.verdict.as_deref() {
-        Some("drift") => "drift".to_owned(),
+        Some("drift") => match &condition.drift {
+            Some(drift) => format!("drift, {} times", format_significant(drift.ratio, 2)),
+            None => "drift".to_owned(),
+        },
         _ => condition.effects.join(", "),
     }
 }

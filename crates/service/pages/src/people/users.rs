@@ -4,7 +4,7 @@ use askama::Template;
 use sistership_jobs::Archive;
 use sistership_store::{IdentityRow, KeyRow, PageRequest, User};
 
-use super::roles::format_roles;
+use super::roles::RoleRow;
 use crate::cursor::{decode_cursor, encode_cursor};
 use crate::date::format_date;
 use crate::error::Result;
@@ -28,7 +28,7 @@ struct UsersPage {
 struct UserRow {
     name: String,
     title: String,
-    roles: String,
+    roles: Vec<RoleRow>,
     /// Identities of the user at OpenID providers.
     identities: Vec<IdentityRow>,
     enabled: bool,
@@ -39,7 +39,7 @@ struct KeyRowView {
     prefix: String,
     title: String,
     user: String,
-    roles: String,
+    roles: Vec<RoleRow>,
     created: String,
     ends: String,
     used: String,
@@ -60,7 +60,7 @@ pub async fn users_page(archive: &Archive, shell: PageShell, query: &FormFields)
         let roles = store.grants().list_by_principal(&User::principal_name(&user.name)).await?;
         let identities = store.identities().list_by_user(&user.name).await?;
         let (enabled, created) = (user.is_enabled(), format_date(user.created_us));
-        let (User { name, title, .. }, roles) = (user, format_roles(&roles));
+        let (User { name, title, .. }, roles) = (user, RoleRow::from_grants(&roles));
         users.push(UserRow { name, title, roles, identities, enabled, created });
     }
     // Users and keys have separate cursors on one page.
@@ -71,7 +71,7 @@ pub async fn users_page(archive: &Archive, shell: PageShell, query: &FormFields)
     let next_keys = encode_cursor(list.next.as_ref());
     for row in list.items {
         let roles = store.grants().list_by_principal(&KeyRow::principal_name(&row.prefix)).await?;
-        keys.push(KeyRowView::from_key(row, format_roles(&roles), store.now_us()));
+        keys.push(KeyRowView::from_key(row, RoleRow::from_grants(&roles), store.now_us()));
     }
     let second_person = store.settings().requires_second_person().await?;
     let shell = shell.at_place("/users");
@@ -79,7 +79,7 @@ pub async fn users_page(archive: &Archive, shell: PageShell, query: &FormFields)
 }
 
 impl KeyRowView {
-    fn from_key(row: KeyRow, roles: String, now_us: i64) -> Self {
+    fn from_key(row: KeyRow, roles: Vec<RoleRow>, now_us: i64) -> Self {
         let valid = row.is_valid(now_us);
         let KeyRow {
             prefix,

@@ -13,6 +13,7 @@ use sistership_jobs::archive::parse_vessel;
 use sistership_jobs::champions::most_similar_ships;
 use sistership_jobs::condition::{Condition, SinceTrial, WeighedDiagnosis};
 use sistership_jobs::search::urgency::UrgencyClass;
+use sistership_model::particulars::Particulars;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Vessel, Zoo};
 use sistership_priors::similarity::RankedSource;
@@ -24,6 +25,7 @@ use self::next_step::{NextStep, ShipSituation, StepAction};
 use self::versions::{VersionRow, list_versions};
 use crate::date::format_date;
 use crate::error::Result;
+use crate::particulars::PARTICULARS;
 use crate::picture::render_svg;
 use crate::rows::{JobRow, TrialRow};
 use crate::shell::PageShell;
@@ -255,10 +257,7 @@ impl ShipPageInputs {
             since: self.condition.since.as_ref().map(since_text),
             evidence: self.condition.diagnoses.iter().map(EvidenceRow::from_diagnosis).collect(),
             revision: champion.map(|alias| alias.revision),
-            particulars: particulars
-                .iter()
-                .map(|(name, of)| ParticularRow::from_quantity(name, of))
-                .collect(),
+            particulars: ordered_particulars(particulars),
             drawing: drawing.as_ref().map(render_svg).transpose()?,
             similar: similar.into_iter().map(SimilarRow::from_ranked).collect(),
             compare: comparison_address(&self.ship.name, &self.versions.0),
@@ -266,6 +265,14 @@ impl ShipPageInputs {
         };
         Ok(page.render()?)
     }
+}
+
+/// Rows of particulars, in the order of forms; the others follow by name.
+fn ordered_particulars(particulars: &Particulars) -> Vec<ParticularRow> {
+    let mut all: Vec<(&String, &Quantity)> = particulars.iter().collect();
+    let place = |name: &str| PARTICULARS.iter().position(|field| field.name == name);
+    all.sort_by_key(|(name, _)| place(name).unwrap_or(PARTICULARS.len()));
+    all.into_iter().map(|(name, of)| ParticularRow::from_quantity(name, of)).collect()
 }
 
 /// Returns the address of a comparison of the two newest versions.

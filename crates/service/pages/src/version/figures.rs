@@ -23,6 +23,10 @@ pub(super) struct CriterionRow {
     pub name: String,
     pub unit: String,
     pub value: String,
+    /// The value as a number, if the manoeuvre reached it.
+    pub number: Option<f64>,
+    pub pass: Option<bool>,
+    pub band: String,
     pub limit: String,
     pub verdict: &'static str,
     pub class: &'static str,
@@ -42,7 +46,8 @@ pub(super) fn figure_rows(
     let plain = plain.filter(|figure| !figure.name.starts_with("IMO"));
     let criteria = sailed.imo.iter().map(|criterion| {
         let name = format!("IMO: {}", criterion.criterion);
-        let share = find_band(&name, bands).and_then(|band| band["pass"].as_f64());
+        let own = find_band(&name, bands);
+        let share = own.and_then(|band| band["pass"].as_f64());
         let (verdict, class) = match criterion.pass {
             Some(true) => ("met", "good"),
             Some(false) => ("not met", "bad"),
@@ -52,6 +57,9 @@ pub(super) fn figure_rows(
             name: criterion.criterion.clone(),
             unit: criterion.unit.clone(),
             value: format_value(criterion.value),
+            number: criterion.value,
+            pass: criterion.pass,
+            band: own.and_then(band_limits).map_or_else(String::new, format_limits),
             limit: format_significant(criterion.limit, 3),
             verdict,
             class,
@@ -67,8 +75,7 @@ fn format_value(value: Option<f64>) -> String {
 }
 
 fn figure_row(figure: &NamedFigure, bands: &Value) -> FigureRow {
-    let band = find_band(&figure.name, bands)
-        .and_then(|band| Some((band["low"].as_f64()?, band["high"].as_f64()?)));
+    let band = find_band(&figure.name, bands).and_then(band_limits);
     // A band is judged by its width relative to the value.
     let wide = |(low, high): (f64, f64)| {
         figure.value.is_some_and(|value| high - low > WIDE_SHARE * value.abs())
@@ -77,11 +84,18 @@ fn figure_row(figure: &NamedFigure, bands: &Value) -> FigureRow {
         name: figure.name.clone(),
         unit: figure.unit.clone(),
         value: format_value(figure.value),
-        band: band.map_or_else(String::new, |(low, high)| {
-            format!("{} to {}", format_significant(low, 3), format_significant(high, 3))
-        }),
+        band: band.map_or_else(String::new, format_limits),
         wide: band.is_some_and(wide),
     }
+}
+
+/// Limits of a band.
+fn band_limits(band: &Value) -> Option<(f64, f64)> {
+    Some((band["low"].as_f64()?, band["high"].as_f64()?))
+}
+
+fn format_limits((low, high): (f64, f64)) -> String {
+    format!("{} to {}", format_significant(low, 3), format_significant(high, 3))
 }
 
 /// Returns the band of a figure, by its name.

@@ -87,6 +87,11 @@ impl ManoeuvreCache {
 }
 
 impl ManoeuvreResults {
+    /// Name of each criterion, and whether it is met.
+    pub fn verdicts(&self) -> Vec<(&str, Option<bool>)> {
+        self.criteria.iter().map(|row| (row.name.as_str(), row.pass)).collect()
+    }
+
     fn from_version(document: &VersionDocument, law: &Law) -> Result<Self> {
         let model = &document.model;
         // A model that cannot be simulated still has its page, with the reason among the notes.

@@ -1,5 +1,6 @@
 //! The page of a version: its coefficients, standard manoeuvres, range of validity, and lineage.
 
+mod acceptance;
 mod coefficients;
 mod figures;
 mod lineage;
@@ -14,7 +15,7 @@ use sistership_jobs::archive::version_document;
 use sistership_jobs::version::VersionDocument;
 use sistership_model::Law;
 use sistership_report::numbers::format_stated;
-use sistership_report::variable_words;
+use sistership_report::{imo_verdict, variable_words};
 use sistership_store::{PageRequest, Version};
 
 use self::coefficients::AxisCoefficients;
@@ -25,6 +26,7 @@ use crate::error::Result;
 use crate::picture::render_svg;
 use crate::shell::PageShell;
 
+pub use self::acceptance::{SummaryInputs, gather_summary};
 pub use self::manoeuvres::ManoeuvreCache;
 
 /// Inputs of the page.
@@ -51,6 +53,8 @@ struct VersionPage<'a> {
     speed: Option<String>,
     effects: Vec<EffectRow>,
     sailed: Arc<ManoeuvreResults>,
+    /// Verdict on the standards of IMO in a sentence, and its class.
+    verdict: (String, &'static str),
     validity: Vec<(String, String, String)>,
     lineage: String,
     promotable: bool,
@@ -106,6 +110,7 @@ impl VersionPageInputs {
     /// Returns an error if the page cannot be rendered.
     pub fn render_html(&self, known: &ManoeuvreCache) -> Result<String> {
         let model = &self.document.model;
+        let sailed = known.get_or_simulate(&self.version.head.id, &self.document, &self.law)?;
         let page = VersionPage {
             of: self,
             shell: &self.shell,
@@ -113,7 +118,8 @@ impl VersionPageInputs {
             coefficients: coefficients::coefficients_by_axis(model, &self.law),
             speed: model.speed_m_s.map(speed_words),
             effects: effect_rows(model),
-            sailed: known.get_or_simulate(&self.version.head.id, &self.document, &self.law)?,
+            verdict: imo_verdict(&sailed.verdicts()),
+            sailed,
             validity: validity_rows(model),
             lineage: render_svg(&self.lineage.draw())?,
             promotable: !self.aliases.iter().any(|alias| alias == CHAMPION),

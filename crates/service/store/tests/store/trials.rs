@@ -1,4 +1,5 @@
-use sistership_store::{NewTrial, ObjectStorage, PageRequest};
+use serde_json::json;
+use sistership_store::{Actor, ChangeKind, NewTrial, ObjectStorage, PageRequest};
 
 use crate::support::*;
 
@@ -21,6 +22,38 @@ async fn a_trial_needs_its_ship(on: &TestStore) {
     on.store.ships().create(&ship("kcs")).await.unwrap();
     on.store.ships().delete("kcs", None).await.unwrap();
     assert_not_found(on.store.trials().insert(&trial("kcs", "turn")).await, "ship");
+}
+
+async fn the_latest_statement_about_a_trial_counts(on: &TestStore) {
+    on.store.ships().create(&ship("kcs")).await.unwrap();
+    let trials = on.store.trials();
+    let mut ids = Vec::new();
+    for name in ["one", "two"] {
+        ids.push(trials.insert(&trial("kcs", name)).await.unwrap().row.id);
+    }
+    assert_eq!(trials.stated_conditions(&ids[0]).await.unwrap(), None);
+    trials.state_conditions("kcs", &ids, &json!({ "place": "Skagerrak" })).await.unwrap();
+    let mended = json!({ "place": "Kattegat" });
+    trials.state_conditions("kcs", &ids[..1], &mended).await.unwrap();
+    assert_eq!(trials.stated_conditions(&ids[0]).await.unwrap(), Some(mended));
+    let kept = trials.stated_conditions(&ids[1]).await.unwrap().unwrap();
+    assert_eq!(kept["place"], "Skagerrak");
+    // A trial of another ship is not there for the caller, and then none is stated.
+    let both = [ids[1].clone(), "none".to_owned()];
+    assert_not_found(trials.state_conditions("kcs", &both, &json!({})).await, "trial");
+    assert_not_found(trials.state_conditions("pcc", &ids, &json!({})).await, "trial");
+    assert_eq!(trials.stated_conditions(&ids[1]).await.unwrap(), Some(kept));
+}
+
+async fn recent_changes_are_those_of_people(on: &TestStore) {
+    on.store.ships().create(&ship("kcs")).await.unwrap();
+    let ann = Actor::new("ann", "192.0.2.1");
+    let upload = async { on.store.trials().insert(&trial("kcs", "one")).await.unwrap() };
+    let at_us = ann.run_scoped(upload).await.row.created_us;
+    let changes = on.store.recent_changes(0).await.unwrap();
+    let kinds: Vec<_> = changes.iter().map(|one| (one.ship.as_str(), &one.kind)).collect();
+    assert_eq!(kinds, [("kcs", &ChangeKind::TrialUploaded)], "the program has added the ship");
+    assert_eq!(on.store.recent_changes(at_us + 1).await.unwrap(), []);
 }
 
 async fn several_trials_are_put_in_all_or_none(on: &TestStore) {
@@ -125,6 +158,8 @@ async fn trials_are_listed_in_the_order_of_upload(on: &TestStore) {
 on_both_databases!(
     the_same_samples_are_one_trial,
     a_trial_needs_its_ship,
+    the_latest_statement_about_a_trial_counts,
+    recent_changes_are_those_of_people,
     several_trials_are_put_in_all_or_none,
     a_job_follows_trials_or_both_are_undone,
     a_deleted_trial_comes_back,

@@ -35,6 +35,20 @@ async fn each_model_counts_for_itself_and_newest_first(on: &TestStore) {
     assert_eq!(on.store.versions().latest("pcc").await.unwrap().head.number, 1);
 }
 
+async fn versions_are_signed_by_people(on: &TestStore) {
+    versions(on, "kcs", 1).await;
+    let store = on.store.versions();
+    assert_eq!(store.list_sign_offs("kcs", 1).await.unwrap(), []);
+    store.sign_off("kcs", 1, "checked", "Ann Smith").await.unwrap();
+    store.sign_off("kcs", 1, "approved", "Bob Jones").await.unwrap();
+    let signed = store.list_sign_offs("kcs", 1).await.unwrap();
+    let names: Vec<_> = signed.iter().map(|one| (one.role.as_str(), one.person.as_str())).collect();
+    assert_eq!(names, [("approved", "Bob Jones"), ("checked", "Ann Smith")]);
+    assert_invalid(store.sign_off("kcs", 1, "liked", "Ann").await, "role");
+    assert_invalid(store.sign_off("kcs", 1, "checked", " ").await, "person");
+    assert_not_found(store.sign_off("kcs", 2, "checked", "Ann").await, "version");
+}
+
 async fn children_name_their_parent(on: &TestStore) {
     let parent = versions(on, "kvlcc2", 1).await.remove(0).id;
     for model in ["kvlcc2", "esso-tanker"] {
@@ -67,6 +81,7 @@ async fn a_refused_alias_takes_no_number(on: &TestStore) {
 }
 
 on_both_databases!(
+    versions_are_signed_by_people,
     a_version_is_found_again,
     each_model_counts_for_itself_and_newest_first,
     children_name_their_parent,

@@ -4,7 +4,7 @@ use axum::extract::State;
 use axum::response::Response;
 use serde_json::{Value, json};
 
-use super::super::{aliases, diagnoses, refinements};
+use super::super::{aliases, diagnoses, families, refinements};
 use super::answer::redirect_to;
 use crate::app::App;
 use crate::problem::{Problem, Result};
@@ -12,6 +12,7 @@ use crate::web::field::Remark;
 use crate::web::form::PageForm;
 use crate::web::{Id, Name, PathParams, Word};
 use sistership_jobs::aliases::CHAMPION;
+use sistership_pages::FormFields;
 use sistership_store::ExpectedRevision;
 
 /// Queues a refinement, and leads to its job.
@@ -102,4 +103,36 @@ pub(super) async fn retry_job(
     PageForm(_): PageForm,
 ) -> Result<Response> {
     Ok(redirect_to(&format!("/jobs/{}", app.store().jobs().retry(&id).await?.id)))
+}
+
+/// Creates a family with the ships that the form names.
+pub(super) async fn create_family(
+    State(app): State<App>,
+    PageForm(form): PageForm,
+) -> Result<Response> {
+    let asked = json!({
+        "name": form.required_text("name")?,
+        "title": form.required_text("title")?,
+        "foundation": form.required_text("foundation")?,
+        "members": ship_names(&form),
+    });
+    let family = families::create_from_page(&app, asked).await?;
+    Ok(redirect_to(&format!("/families/{}", family.name)))
+}
+
+pub(super) async fn add_members(
+    State(app): State<App>,
+    PathParams(family): PathParams<Word>,
+    PageForm(form): PageForm,
+) -> Result<Response> {
+    form.required_text("members")?;
+    app.store().families().add_members(&family, &ship_names(&form)).await?;
+    Ok(redirect_to(&format!("/families/{}", &*family)))
+}
+
+/// Names of ships, separated by spaces or commas.
+fn ship_names(form: &FormFields) -> Vec<String> {
+    let text = form.get_text("members").unwrap_or_default();
+    let names = text.split([' ', ',', '\n', '\r', '\t']).filter(|name| !name.is_empty());
+    names.map(str::to_owned).collect()
 }

@@ -2,10 +2,12 @@
 
 mod answer;
 mod draft;
+mod example;
 mod form_actions;
 mod new_ship;
 mod openid;
 mod people;
+mod statements;
 mod views;
 
 use axum::Router;
@@ -23,6 +25,7 @@ pub(super) fn page_routes(limits: &Limits) -> Router<App> {
         .route("/", get(views::fleet_page))
         .route("/new-ship", get(new_ship::new_ship_form))
         .route("/ships", post(new_ship::create_ship))
+        .route("/example", post(example::load_example))
         .route("/ships/{ship}", get(views::ship_page))
         .route("/ships/{ship}/refine", post(form_actions::refine_ship))
         .route("/ships/{ship}/diagnose", post(form_actions::diagnose_ship))
@@ -30,7 +33,17 @@ pub(super) fn page_routes(limits: &Limits) -> Router<App> {
         .route("/ships/{ship}/note", post(form_actions::add_note))
         .route("/ships/{ship}/tag", post(form_actions::add_tag))
         .route("/ships/{ship}/untag", post(form_actions::remove_tag))
+        .route(
+            "/ships/{ship}/particulars",
+            get(statements::particulars_form).post(statements::change_particulars),
+        )
+        .route(
+            "/ships/{ship}/conditions",
+            get(statements::conditions_form).post(statements::state_conditions),
+        )
         .route("/ships/{ship}/versions/{number}", get(views::version_page))
+        .route("/ships/{ship}/versions/{number}/acceptance", get(statements::summary_page))
+        .route("/ships/{ship}/versions/{number}/sign", post(statements::sign_version))
         .route(
             "/ships/{ship}/uploads/{draft}",
             get(draft::review_draft).post(draft::apply_corrections),
@@ -39,8 +52,9 @@ pub(super) fn page_routes(limits: &Limits) -> Router<App> {
         .route("/trials/{id}", get(views::trial_page))
         .route("/compare", get(views::compare_page))
         .route("/playground", get(views::playground_page))
-        .route("/families", get(views::families_page))
+        .route("/families", get(views::families_page).post(form_actions::create_family))
         .route("/families/{family}", get(views::family_page))
+        .route("/families/{family}/members", post(form_actions::add_members))
         .route("/zoo", get(views::zoo_page))
         .route("/zoo/laws/{law}", get(views::law_page))
         .route("/zoo/effects/{effect}", get(views::effect_page))
@@ -63,6 +77,9 @@ pub(super) fn page_routes(limits: &Limits) -> Router<App> {
         .route("/keys", post(people::make_key))
         .route("/keys/{prefix}/revoke", post(people::revoke_key))
         .route("/settings", post(people::change_settings))
+        .route("/webhooks", get(people::webhooks_page).post(people::make_webhook))
+        .route("/webhooks/address", post(people::set_address))
+        .route("/webhooks/{id}/end", post(people::end_webhook))
         .route("/audit", get(people::audit_page))
         .layer(DefaultBodyLimit::max(FORM_BYTES));
     // Uploads have a limit of their own.

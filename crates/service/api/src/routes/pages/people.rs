@@ -11,6 +11,7 @@ use sistership_pages::people::{LinkedIdentities, ProviderLink};
 use sistership_pages::{FormFields, audit, people};
 use sistership_store::{KeyRow, User};
 
+use super::super::webhooks;
 use super::answer::{local_path, page_response, redirect_to, with_cookie};
 use crate::app::App;
 use crate::problem::{Problem, Result};
@@ -18,7 +19,7 @@ use crate::rights::{AuthenticationKind, RequestActor, current_actor};
 use crate::web::field::{KeyPrefix, UserName};
 use crate::web::form::{PageForm, page_shell};
 use crate::web::guard::origin_of;
-use crate::web::{PathParams, QueryParams};
+use crate::web::{Id, PathParams, QueryParams};
 use sistership_web_support::host;
 
 type PageQuery = QueryParams<Vec<(String, String)>>;
@@ -152,11 +153,19 @@ pub(super) async fn users_page(
     ))
 }
 
-/// Parses roles that a person has written, separated by spaces.
+/// Parses the roles that a form keeps, and the one that it adds: a role, and the ship or family for
+/// which it is given.
 fn parse_roles(form: &FormFields) -> Result<Vec<Grant>> {
-    let words = form.get_text("roles").unwrap_or_default().split_whitespace();
-    let read = |word: &str| word.parse().map_err(|message| Problem::invalid("roles", message));
-    words.map(read).collect()
+    let kept = form.get_texts("roles").flat_map(str::split_whitespace).map(str::to_owned);
+    let added = match (form.get_text("role"), form.get_text("scope")) {
+        (None, _) => None,
+        (Some(role), None) => Some(role.to_owned()),
+        (Some(role), Some(kind)) => {
+            Some(format!("{role}@{kind}:{}", form.required_text("scope_name")?))
+        }
+    };
+    let read = |word: String| word.parse().map_err(|message| Problem::invalid("roles", message));
+    kept.chain(added).map(read).collect()
 }
 
 pub(super) async fn create_user(
@@ -247,4 +256,43 @@ pub(super) async fn audit_page(
     Ok(page_response(
         audit::audit_page(app.archive(), page_shell(&app), &FormFields::from(query)).await?,
     ))
+}
+
+pub(super) async fn webhooks_page(State(app): State<App>) -> Result<Response> {
+    Ok(page_response(people::webhooks_page(app.archive(), page_shell(&app)).await?))
+}
+
+/// Creates a webhook, and shows its secret: no other page ever does.
+pub(super) async fn make_webhook(
+    State(app): State<App>,
+    PageForm(form): PageForm,
+) -> Result<Response> {
+    let (secret, webhook) =
+        webhooks::create_from_page(&app, people::webhook_request(&form)?).await?;
+    let mut page =
+        page_response(people::new_webhook_page(page_shell(&app), &webhook.title, &secret)?);
+    page.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
+    Ok(page)
+}
+
+pub(super) async fn end_webhook(
+    State(app): State<App>,
+    PathParams(id): PathParams<Id>,
+    PageForm(_): PageForm,
+) -> Result<Response> {
+    app.store().webhooks().end_webhook(&id).await?;
+    Ok(redirect_to("/webhooks"))
+}
+
+/// Sets the address of the server for links in messages.
+pub(super) async fn set_address(
+    State(app): State<App>,
+    PageForm(form): PageForm,
+) -> Result<Response> {
+    let url = form.get_text("public_url").unwrap_or_default();
+    if !url.is_empty() && !url.starts_with("https://") && !url.starts_with("http://") {
+        return Err(Problem::invalid("public_url", "must begin with https:// or http://"));
+    }
+    app.store().settings().set_public_url(url).await?;
+    Ok(redirect_to("/webhooks"))
 }

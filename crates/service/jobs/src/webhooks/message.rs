@@ -1,0 +1,139 @@
+//! Body of a delivery: JSON for programs, or a sentence with a link for chat rooms, whose services
+//! are recognised by the host of the webhook.
+
+use reqwest::Url;
+use serde_json::{Value, json};
+
+/// Hosts of Slack.
+const SLACK_HOSTS: [&str; 2] = ["hooks.slack.com", "hooks.slack-gov.com"];
+/// Endings of the hosts of Microsoft Teams: connectors and workflows.
+const TEAMS_HOSTS: [&str; 3] =
+    [".webhook.office.com", ".logic.azure.com", ".api.powerplatform.com"];
+
+/// Form in which a receiver takes events.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MessageFormat {
+    /// The event as JSON.
+    Json,
+    /// A message of Slack (Incoming Webhooks).
+    Slack,
+    /// An adaptive card in Microsoft Teams.
+    Teams,
+}
+
+impl MessageFormat {
+    /// Returns the format of a receiver by its URL.
+    pub fn from_url(url: &str) -> Self {
+        let url = Url::parse(url).ok();
+        let host = url.as_ref().and_then(Url::host_str).unwrap_or_default();
+        match host {
+            host if SLACK_HOSTS.contains(&host) => Self::Slack,
+            host if TEAMS_HOSTS.iter().any(|ending| host.ends_with(ending)) => Self::Teams,
+            _ => Self::Json,
+        }
+    }
+
+    /// Name for people.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Json => "JSON",
+            Self::Slack => "Slack",
+            Self::Teams => "Microsoft Teams",
+        }
+    }
+
+    /// Returns the body to send; `base` is the URL of this server, for links.
+    pub(super) fn render_body(self, event: &str, base: Option<&str>) -> String {
+        let parsed: Value = serde_json::from_str(event).unwrap_or_default();
+        let (text, link) = (event_sentence(&parsed), event_link(&parsed, base));
+        match (self, link) {
+            (Self::Json, _) => event.to_owned(),
+            (Self::Slack, None) => json!({ "text": text }).to_string(),
+            (Self::Slack, Some(link)) => {
+                json!({ "text": format!("{text} <{link}|Open>") }).to_string()
+            }
+            (Self::Teams, link) => teams_card(&text, link.as_deref()).to_string(),
+        }
+    }
+}
+
+/// Returns an event in a sentence.
+fn event_sentence(event: &Value) -> String {
+    let (ship, about) = (event["ship"].as_str().unwrap_or("a ship"), &event["about"]);
+    let words = |value: &Value| -> String {
+        let all = value.as_array().into_iter().flatten().filter_map(Value::as_str);
+        all.collect::<Vec<_>>().join(", ")
+    };
+    match event["event"].as_str() {
+        Some("champion.moved") => {
+            let reason = about["reason"].as_str().unwrap_or("no reason given");
+            format!("{ship}: version {} is in use now ({reason}).", about["version"])
+        }
+        Some("diagnosis.failed") => {
+            let missing = words(&about["effects"]);
+            let missing =
+                if missing.is_empty() { "something unexplained".to_owned() } else { missing };
+            let trials = match about["trials"].as_array().map_or(0, Vec::len) {
+                0 => String::new(),
+                1 => ", by 1 trial".to_owned(),
+                count => format!(", by {count} trials"),
+            };
+            format!("{ship}: its model no longer holds. It lacks {missing}{trials}.")
+        }
+        Some("drift") => {
+            let ratio = about["ratio"].as_f64().unwrap_or_default();
+            format!("{ship}: unexplained force is {ratio:.1} times that of the fitted trials.")
+        }
+        _ => format!("{ship}: something changed."),
+    }
+}
+
+/// Returns the address of the page that an event is about.
+fn event_link(event: &Value, base: Option<&str>) -> Option<String> {
+    let base = base?.trim_end_matches('/');
+    Some(format!("{base}{}", event["page"].as_str()?))
+}
+
+fn teams_card(text: &str, link: Option<&str>) -> Value {
+    let open = link.map(|link| json!({ "type": "Action.OpenUrl", "title": "Open", "url": link }));
+    let card = json!({
+        "$schema": "http://adaptivecards.io/schemas/adaptive-card.json",
+        "type": "AdaptiveCard",
+        "version": "1.4",
+        "body": [{ "type": "TextBlock", "text": text, "wrap": true }],
+        "actions": open.into_iter().collect::<Vec<_>>(),
+    });
+    json!({ "type": "message", "attachments": [
+        { "contentType": "application/vnd.microsoft.card.adaptive", "content": card }] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EVENT: &str = r#"{"event":"champion.moved","ship":"kcs","page":"/ships/kcs/versions/2",
+        "about":{"version":2,"reason":"looked over"}}"#;
+
+    #[test]
+    fn chat_rooms_are_recognised_by_their_host() {
+        let of = MessageFormat::from_url;
+        assert_eq!(of("https://hooks.slack.com/services/T/B/x"), MessageFormat::Slack);
+        assert_eq!(of("https://prod-1.westeurope.logic.azure.com/x"), MessageFormat::Teams);
+        assert_eq!(of("https://hooks.slack.com.evil.example/x"), MessageFormat::Json);
+        assert_eq!(MessageFormat::Json.render_body(EVENT, None), EVENT);
+    }
+
+    #[test]
+    fn a_message_has_the_version_and_a_link() {
+        let base = Some("https://ships.example/");
+        let slack = MessageFormat::Slack.render_body(EVENT, base);
+        assert!(slack.contains("kcs: version 2 is in use now (looked over)."), "{slack}");
+        assert!(slack.contains("<https://ships.example/ships/kcs/versions/2|Open>"), "{slack}");
+        let teams = MessageFormat::Teams.render_body(EVENT, base);
+        assert!(
+            teams.contains("\"url\":\"https://ships.example/ships/kcs/versions/2\""),
+            "{teams}"
+        );
+        assert!(!MessageFormat::Teams.render_body(EVENT, None).contains("OpenUrl"));
+    }
+}

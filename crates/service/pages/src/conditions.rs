@@ -1,0 +1,216 @@
+//! The form of the conditions of trials: what an acceptance summary states and no instrument
+//! records.
+
+use askama::Template;
+use serde_json::{Map, Value};
+use sistership_jobs::Archive;
+use sistership_store::{PageRequest, Trial};
+
+use crate::error::{PageError, Result};
+use crate::form::FormFields;
+use crate::shell::PageShell;
+
+/// Number of trials that the form lists.
+const LISTED_TRIALS: i64 = 200;
+/// Maximum length of a condition, characters.
+const MAX_CHARS: usize = 300;
+
+/// A condition in the form.
+pub(crate) struct ConditionField {
+    /// Name in stored statements.
+    pub name: &'static str,
+    /// Label.
+    pub label: &'static str,
+    /// Example under the label.
+    pub hint: &'static str,
+    /// Type of the input.
+    pub kind: ConditionKind,
+}
+
+/// Kind of the input of a condition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ConditionKind {
+    /// A date of the calendar.
+    Date,
+    /// A length, m.
+    Metres,
+    /// Words.
+    Words,
+}
+
+/// The conditions, in the order of the summary.
+pub(crate) const CONDITIONS: [ConditionField; 10] = {
+    const fn field(
+        name: &'static str,
+        label: &'static str,
+        hint: &'static str,
+        kind: ConditionKind,
+    ) -> ConditionField {
+        ConditionField { name, label, hint, kind }
+    }
+    use ConditionKind::{Date, Metres, Words};
+    [
+        field("date", "Date of the trials", "", Date),
+        field("place", "Place", "For example Skagerrak, 57.9 N 9.8 E", Words),
+        field("wind", "Wind", "For example 6 m/s from south-west, Beaufort 4", Words),
+        field("sea", "Sea and swell", "For example significant height 0.5 m, sea state 2", Words),
+        field("depth", "Water depth", "For example 180 m, or deep", Words),
+        field("draught_fore_m", "Draught fore, m", "", Metres),
+        field("draught_aft_m", "Draught aft, m", "", Metres),
+        field("displacement", "Displacement during the trials", "For example 21 800 t", Words),
+        field("instruments", "Instruments", "For example DGPS, gyro compass, Doppler log", Words),
+        field("remarks", "Remarks", "For example ballast condition, hull cleaned in May", Words),
+    ]
+};
+
+#[derive(Template)]
+#[template(path = "conditions.html")]
+struct ConditionsPage<'a> {
+    shell: PageShell,
+    ship: &'a str,
+    trials: Vec<TrialChoice>,
+    fields: Vec<(&'static ConditionField, String)>,
+    /// Version whose summary asked for the conditions.
+    version: Option<&'a str>,
+}
+
+impl ConditionsPage<'_> {
+    fn is_date(&self, field: &ConditionField) -> bool {
+        field.kind == ConditionKind::Date
+    }
+
+    fn is_metres(&self, field: &ConditionField) -> bool {
+        field.kind == ConditionKind::Metres
+    }
+}
+
+/// A trial to which the conditions may apply.
+struct TrialChoice {
+    id: String,
+    name: String,
+    manoeuvre: String,
+    chosen: bool,
+    /// Date that is stated for it.
+    date: String,
+}
+
+/// Returns the form; the field `trial` of the query chooses one, otherwise those without a
+/// statement are chosen.
+///
+/// # Errors
+/// Returns an error if there is no such ship or the store fails.
+pub async fn conditions_page(
+    archive: &Archive,
+    shell: PageShell,
+    ship: &str,
+    query: &FormFields,
+) -> Result<String> {
+    let store = &archive.store;
+    store.ships().get(ship).await?;
+    let trials = store.trials().list(ship, &PageRequest::first_page(LISTED_TRIALS)).await?.items;
+    let only = query.get_text("trial");
+    let (mut choices, mut shown) = (Vec::new(), None);
+    for trial in trials {
+        let stated = store.trials().stated_conditions(&trial.id).await?;
+        let chosen = only.map_or(stated.is_none(), |only| only == trial.id);
+        // The form begins with what is known of the chosen trial, else of any.
+        if stated.is_some() && (shown.is_none() || (only.is_some() && chosen)) {
+            shown.clone_from(&stated);
+        }
+        choices.push(TrialChoice::new(trial, stated.as_ref(), chosen));
+    }
+    // Where all have a statement, it is changed for all.
+    if choices.iter().all(|choice| !choice.chosen) {
+        choices.iter_mut().for_each(|choice| choice.chosen = true);
+    }
+    let text = |field: &ConditionField| stated_text(shown.as_ref(), field.name).to_owned();
+    let page = ConditionsPage {
+        shell: shell.at_place("/"),
+        ship,
+        trials: choices,
+        fields: CONDITIONS.iter().map(|field| (field, text(field))).collect(),
+        version: query.get_text("version"),
+    };
+    Ok(page.render()?)
+}
+
+impl TrialChoice {
+    fn new(trial: Trial, stated: Option<&Value>, chosen: bool) -> Self {
+        let manoeuvre = trial.manoeuvre.unwrap_or_default();
+        let date = stated_text(stated, "date").to_owned();
+        Self { id: trial.id, name: trial.name, manoeuvre, chosen, date }
+    }
+}
+
+/// Text of a condition of a statement; empty if it is not stated.
+pub(crate) fn stated_text<'a>(stated: Option<&'a Value>, name: &str) -> &'a str {
+    stated.and_then(|stated| stated[name].as_str()).unwrap_or_default()
+}
+
+/// Returns the statement of a form: each condition that is filled in, as text.
+///
+/// # Errors
+/// Returns an error that names a field which is too long, no date or no number.
+pub fn read_conditions(form: &FormFields) -> Result<Value> {
+    let mut stated = Map::new();
+    for field in &CONDITIONS {
+        let Some(text) = form.get_text(field.name) else { continue };
+        let wrong = |message: String| Err(PageError::invalid_field(field.name, message));
+        match field.kind {
+            ConditionKind::Date if !is_date(text) => {
+                return wrong(format!("`{text}` is not a date; write it as 2026-11-29"));
+            }
+            ConditionKind::Metres => {
+                form.number_within(field.name, (0.0, 40.0), 0.0)?;
+            }
+            _ if text.chars().count() > MAX_CHARS => {
+                return wrong(format!("has more than {MAX_CHARS} characters; shorten it"));
+            }
+            _ => {}
+        }
+        stated.insert(field.name.to_owned(), Value::from(text));
+    }
+    Ok(Value::Object(stated))
+}
+
+/// Returns true for a date as `2026-11-29`.
+fn is_date(text: &str) -> bool {
+    let parts: Vec<&str> = text.split('-').collect();
+    let number = |part: &str, digits: usize| {
+        (part.len() == digits).then(|| part.parse::<u32>().ok()).flatten()
+    };
+    match parts.as_slice() {
+        [year, month, day] => {
+            number(year, 4).is_some()
+                && number(month, 2).is_some_and(|month| (1..=12).contains(&month))
+                && number(day, 2).is_some_and(|day| (1..=31).contains(&day))
+        }
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn read(pairs: &[(&str, &str)]) -> Result<Value> {
+        let owned = |(name, text): &(&str, &str)| ((*name).to_owned(), (*text).to_owned());
+        read_conditions(&FormFields::from(pairs.iter().map(owned).collect::<Vec<_>>()))
+    }
+
+    #[test]
+    fn conditions_are_stated_or_their_field_is_named() {
+        let stated = read(&[("date", "2026-11-29"), ("draught_aft_m", "8,5"), ("sea", "")]);
+        let stated = stated.unwrap();
+        assert_eq!(stated["draught_aft_m"], "8,5");
+        assert!(stated.get("sea").is_none(), "{stated}");
+        for (name, text) in
+            [("date", "29.11.2026"), ("date", "2026-13-01"), ("draught_fore_m", "deep")]
+        {
+            let error = read(&[(name, text)]).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("{name}: ")), "{error}");
+        }
+        assert!(read(&[("place", &"x".repeat(301))]).is_err());
+    }
+}
