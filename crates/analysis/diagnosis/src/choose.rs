@@ -161,6 +161,7 @@ impl EffectChoice {
         count: usize,
     ) -> Result<bool, RefineError> {
         let mut found = judge_companions(search, base, count)?;
+        base.release_coefficients();
         let mut believed = Vec::new();
         for (place, hypothesis) in found.iter_mut().enumerate() {
             let evidence = self.last_evidence(search, hypothesis)?;

@@ -111,7 +111,7 @@ impl MarginalInformation {
         Some(Self {
             information: part - cross.transpose() * factor.solve(&cross),
             right: remaining - cross.transpose() * factor.solve(&right),
-            ..self.clone()
+            ..self.without_columns()
         })
     }
 
@@ -142,7 +142,7 @@ impl MarginalInformation {
         Self {
             information: sums.tr_mul(&(&self.information * sums)),
             right: sums.tr_mul(&self.right),
-            ..self.clone()
+            ..self.without_columns()
         }
     }
 
@@ -153,7 +153,18 @@ impl MarginalInformation {
         Self {
             information: DMatrix::from_fn(size, size, one),
             right: DVector::from_fn(size, |i, _| self.right[columns[i]]),
-            ..self.clone()
+            ..self.without_columns()
+        }
+    }
+
+    /// The same information without any column of an effect.
+    fn without_columns(&self) -> Self {
+        Self {
+            deviance: self.deviance,
+            information: DMatrix::zeros(0, 0),
+            right: DVector::zeros(0),
+            answers: DMatrix::zeros(self.answers.nrows(), 0),
+            shift: self.shift.clone(),
         }
     }
 

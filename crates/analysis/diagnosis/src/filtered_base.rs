@@ -3,10 +3,9 @@
 //! of the coefficients are already available.
 
 use std::collections::BTreeMap;
-use std::ops::AddAssign;
+use std::ops::{AddAssign, Range};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 use sistership_model::manifest::VelocityFrame;
 
@@ -15,8 +14,8 @@ use super::evidence::DiscrepancyFactor;
 use super::hypothesis::JudgedHypothesis;
 use super::linearised_trials::LinearisedTrials;
 use sistership_filtering::{
-    AxisDiscrepancies, EffectCandidate, FilterColumns, GramMatrix, LinearisationDetail,
-    LinearisedPart, ResidualSystem, linearise, whiten_columns, whiten_part,
+    AxisDiscrepancies, EffectCandidate, FilterColumns, FilterGains, GramMatrix,
+    LinearisationDetail, LinearisedPart, ResidualSystem, WhitenedColumns, linearise,
 };
 use sistership_identification::refine::RefineError;
 
@@ -41,8 +40,14 @@ pub(super) struct FilteredLevel {
     coefficients: Mutex<Option<WhitenedCoefficients>>,
 }
 
-/// Whitened residual and columns of the coefficients, by trial and part: columns by readings.
-type WhitenedCoefficients = Arc<Vec<Vec<DMatrix<f64>>>>;
+/// Filter of a part, and the residual and the columns of the coefficients that have passed it.
+struct FilteredCoefficients {
+    gains: FilterGains,
+    columns: WhitenedColumns,
+}
+
+/// Whitened residual and columns of the coefficients, by trial and part.
+type WhitenedCoefficients = Arc<Vec<Vec<FilteredCoefficients>>>;
 
 impl FilteredLevel {
     pub fn level_discrepancies(&self) -> &AxisDiscrepancies {
@@ -68,13 +73,21 @@ impl<'a> FilteredBase<'a> {
                 workspace.linearised_parts().par_iter().map(one).collect::<Result<_, _>>()?;
             Ok(FilteredLevel { level, discrepancies, grams, coefficients: Mutex::default() })
         };
-        Ok(Self {
-            taken: taken.to_vec(),
-            levels: levels.into_iter().map(at).collect::<Result<_, RefineError>>()?,
-            coefficients,
-            workspace,
-            judged: Mutex::default(),
-        })
+        let levels = levels.into_iter().map(at).collect::<Result<_, RefineError>>()?;
+        // The products of the candidates suffice.
+        let mut workspace = workspace;
+        let present: usize = taken.iter().map(|candidate| candidate.at.len()).sum();
+        workspace.truncate_columns(coefficients + present);
+        let (taken, judged) = (taken.to_vec(), Mutex::default());
+        Ok(Self { taken, levels, coefficients, workspace, judged })
+    }
+
+    /// Releases the whitened columns of the coefficients, which are many times as large as the
+    /// trials; they are computed again when a hypothesis is judged.
+    pub fn release_coefficients(&self) {
+        for level in &self.levels {
+            *level.coefficients.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        }
     }
 
     /// Judges a hypothesis once, and returns the stored result afterwards.
@@ -131,8 +144,9 @@ impl<'a> FilteredBase<'a> {
         }
         let of_part = |part: &LinearisedPart| {
             // Only the coefficients pass the filter: the candidates' columns are many more.
-            let rows = whitened_rows(&self.workspace, (part, self.coefficients), &at.discrepancies);
-            Ok(rows?.0)
+            let gains = FilterGains::new(part, &self.workspace.noise, &at.discrepancies)?;
+            let columns = gains.whiten_columns(part, self.coefficients);
+            Ok(FilteredCoefficients { gains, columns })
         };
         let one = |parts: &Vec<LinearisedPart>| {
             parts.iter().map(of_part).collect::<Result<Vec<_>, RefineError>>()
@@ -197,22 +211,10 @@ fn trial_products(
 ) -> Result<GramMatrix, RefineError> {
     let mut gram = GramMatrix::zeros(1 + workspace.columns().len());
     for part in parts {
-        let columns = part.sizes.columns;
-        let (rows, log_variance) = whitened_rows(workspace, (part, columns), discrepancies)?;
-        gram.add(&GramMatrix::from_columns(&rows, log_variance));
+        let gains = FilterGains::new(part, &workspace.noise, discrepancies)?;
+        gram.add(&gains.whitened_products(part));
     }
     Ok(gram)
-}
-
-/// Residual and the first columns of a part by readings, after the filter.
-fn whitened_rows(
-    workspace: &LinearisedTrials<'_>,
-    (part, columns): (&LinearisedPart, usize),
-    discrepancies: &AxisDiscrepancies,
-) -> Result<(DMatrix<f64>, f64), RefineError> {
-    let (rows, log_variance) = whiten_columns(part, columns, &workspace.noise, discrepancies)?;
-    let width = 1 + columns;
-    Ok((DMatrix::from_vec(width, rows.len() / width, rows), log_variance))
 }
 
 /// A hypothesis at its values, ready for the products of its columns.
@@ -253,10 +255,10 @@ impl LinearisedHypothesis<'_, '_> {
         let (at, coefficients) =
             (&self.base.levels[level], self.base.whitened_coefficients(level)?);
         let trials: Vec<_> = self.linear.iter().zip(coefficients.iter().zip(&at.grams)).collect();
-        trials
-            .into_par_iter()
-            .map(|(parts, known)| self.hypothesis_products(parts, known, &at.discrepancies))
-            .collect()
+        let of = |(parts, (known, all)): (&Vec<LinearisedPart>, (&Vec<_>, &GramMatrix))| {
+            self.hypothesis_products(parts, known, all)
+        };
+        Ok(trials.into_par_iter().map(of).collect())
     }
 
     /// Returns the products of each trial in pieces of equal duration.
@@ -268,88 +270,79 @@ impl LinearisedHypothesis<'_, '_> {
         level: usize,
         count: usize,
     ) -> Result<Vec<GramMatrix>, RefineError> {
-        let (at, coefficients) =
-            (&self.base.levels[level], self.base.whitened_coefficients(level)?);
+        let coefficients = self.base.whitened_coefficients(level)?;
         let trials: Vec<_> = self.linear.iter().zip(coefficients.iter()).collect();
-        let of = |(parts, known): (&Vec<LinearisedPart>, &Vec<DMatrix<f64>>)| {
-            self.piecewise_products(parts, known, &at.discrepancies, count)
+        let of = |(parts, known): (&Vec<LinearisedPart>, &Vec<FilteredCoefficients>)| {
+            self.piecewise_products(parts, known, count)
         };
-        let each: Vec<Vec<GramMatrix>> =
-            trials.into_par_iter().map(of).collect::<Result<_, _>>()?;
+        let each: Vec<Vec<GramMatrix>> = trials.into_par_iter().map(of).collect();
         Ok(each.into_iter().flatten().collect())
     }
 
     fn piecewise_products(
         &self,
         parts: &[LinearisedPart],
-        known: &[DMatrix<f64>],
-        discrepancies: &AxisDiscrepancies,
+        known: &[FilteredCoefficients],
         count: usize,
-    ) -> Result<Vec<GramMatrix>, RefineError> {
-        let width = self.base.coefficients + self.own_width();
-        let mut pieces = vec![GramMatrix::zeros(width); count];
+    ) -> Vec<GramMatrix> {
+        let c = self.base.coefficients;
+        let mut pieces = vec![GramMatrix::zeros(c + self.own_width()); count];
         // Only the columns' products are needed, so the likelihood terms stay zero.
-        for (part, coefficients) in parts.iter().zip(known) {
-            let own = self.own_rows(part, discrepancies)?.0;
-            let readings = own.nrows();
+        for (part, known) in parts.iter().zip(known) {
+            let own = known.gains.whiten_columns(part, part.sizes.columns);
+            let readings = own.reading_count();
             for (piece, gram) in pieces.iter_mut().enumerate() {
                 // Readings are divided by their number, so that pieces have nearly equal durations.
                 let (from, to) = (piece * readings / count, (piece + 1) * readings / count);
-                let known = coefficients.view((1, from), (self.base.coefficients, to - from));
-                let own = own.rows(from, to - from);
-                let square = GramMatrix::from_columns(&known.into_owned(), 0.0).products;
-                gram.products.view_mut((1, 1), square.shape()).add_assign(&square);
-                add_products(gram, &(known * own), &own.tr_mul(&own));
+                let square = known.columns.own_products(from..to);
+                let square = square.view((1, 1), (c, c));
+                gram.products.view_mut((1, 1), (c, c)).add_assign(&square);
+                add_products(gram, (&known.columns, &own), from..to);
             }
         }
-        Ok(pieces)
+        pieces
     }
 
     fn hypothesis_products(
         &self,
         parts: &[LinearisedPart],
-        (known, all): (&Vec<DMatrix<f64>>, &GramMatrix),
-        discrepancies: &AxisDiscrepancies,
-    ) -> Result<GramMatrix, RefineError> {
+        known: &[FilteredCoefficients],
+        all: &GramMatrix,
+    ) -> GramMatrix {
         let c = self.base.coefficients;
         let mut gram = GramMatrix::zeros(c + self.own_width());
-        // The coefficients' own products are those of the base, whose filter is the same.
+        // The coefficients' own products, and the terms of the filter, are those of the base.
         gram.products.view_mut((1, 1), (c, c)).copy_from(&all.products.view((1, 1), (c, c)));
-        for (part, coefficients) in parts.iter().zip(known) {
-            let (rows, log_variance) = self.own_rows(part, discrepancies)?;
-            add_products(&mut gram, &(coefficients.rows(1, c) * &rows), &rows.tr_mul(&rows));
-            gram.log_variance += log_variance;
-            gram.count += rows.nrows();
+        (gram.log_variance, gram.count) = (all.log_variance, all.count);
+        for (part, known) in parts.iter().zip(known) {
+            let own = known.gains.whiten_columns(part, part.sizes.columns);
+            add_products(&mut gram, (&known.columns, &own), 0..own.reading_count());
         }
-        Ok(gram)
+        gram
     }
 
     /// Number of columns: the residual and the parameters of the hypothesis.
     fn own_width(&self) -> usize {
         1 + self.linear.iter().flatten().next().map_or(0, |part| part.sizes.columns)
     }
-
-    /// Whitened columns, readings by columns.
-    fn own_rows(
-        &self,
-        part: &LinearisedPart,
-        discrepancies: &AxisDiscrepancies,
-    ) -> Result<(DMatrix<f64>, f64), RefineError> {
-        let (rows, log_variance) = whiten_part(part, &self.base.workspace.noise, discrepancies)?;
-        let width = self.own_width();
-        Ok((DMatrix::from_vec(width, rows.len() / width, rows).transpose(), log_variance))
-    }
 }
 
-/// Adds products of coefficients with a hypothesis' own columns, and of these among themselves.
-fn add_products(gram: &mut GramMatrix, cross: &DMatrix<f64>, square: &DMatrix<f64>) {
-    let (c, own) = cross.shape();
+/// Adds products of coefficients with a hypothesis' own columns, and of these among themselves, over
+/// some readings. The first known column is the residual of the base.
+fn add_products(
+    gram: &mut GramMatrix,
+    (known, own): (&WhitenedColumns, &WhitenedColumns),
+    readings: Range<usize>,
+) {
+    let cross = known.products_with(own, readings.clone());
+    let square = own.own_products(readings);
+    let (c, own) = (cross.nrows() - 1, cross.ncols());
     // The residual is at index 0; own columns follow those of the coefficients.
     let place = |i: usize| if i == 0 { 0 } else { c + i };
     for i in 0..own {
-        for k in 0..c {
-            gram.products[(1 + k, place(i))] += cross[(k, i)];
-            gram.products[(place(i), 1 + k)] += cross[(k, i)];
+        for k in 1..=c {
+            gram.products[(k, place(i))] += cross[(k, i)];
+            gram.products[(place(i), k)] += cross[(k, i)];
         }
         (0..own).for_each(|j| gram.products[(place(i), place(j))] += square[(i, j)]);
     }

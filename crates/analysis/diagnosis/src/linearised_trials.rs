@@ -235,6 +235,11 @@ impl<'a> LinearisedTrials<'a> {
         recorded.flatten().fold(0.0, |most, n| n.abs().max(most))
     }
 
+    /// Releases all linearised columns but the first.
+    pub fn truncate_columns(&mut self, count: usize) {
+        self.linear.par_iter_mut().flatten().for_each(|part| part.truncate_columns(count));
+    }
+
     pub fn motion_scales(&self) -> MotionScales {
         let rate = self.speed_m_s / self.lpp_m;
         let of = |axis: &Axis| {

@@ -10,7 +10,6 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 use sistership_model::trial::Channel;
 use sistership_model::uncertainty::FalseAlarmLevel;
@@ -22,8 +21,8 @@ use super::form_errors::form_error_columns;
 use super::linearised_trials::LinearisedTrials;
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::{
-    AxisColumn, AxisDiscrepancies, EffectCandidate, GramMatrix, LinearisedPart, TrialReadings,
-    whiten_part,
+    AxisColumn, AxisDiscrepancies, EffectCandidate, FilterGains, GramMatrix, LinearisedPart,
+    TrialReadings,
 };
 use sistership_identification::refine::RefineError;
 
@@ -283,10 +282,8 @@ fn trial_gram(
         (patterns, errors) = (own, forms.len());
         let part = part.weight_columns(&kept, &[], &|_| Vec::new());
         let part = part.append_axis_columns(&columns).append_axis_columns(&forms);
-        let (rows, log_variance) = whiten_part(&part, &workspace.noise, discrepancies)?;
-        let width = 1 + part.sizes.columns;
-        let rows = DMatrix::from_vec(width, rows.len() / width, rows);
-        let own = GramMatrix::from_columns(&rows, log_variance);
+        let gains = FilterGains::new(&part, &workspace.noise, discrepancies)?;
+        let own = gains.whitened_products(&part);
         match &mut gram {
             Some(sum) => sum.add(&own),
             None => gram = Some(own),

@@ -27,42 +27,64 @@ pub(super) fn find_unexplained(
     clean: Option<&BTreeMap<String, f64>>,
 ) -> Result<Vec<UnexplainedSegment>, RefineError> {
     let of_trial = |(place, trial): (usize, &&Trial)| {
-        let parts = &workspace.linearised_parts()[place];
-        unexplained_in_trial(
-            (workspace, &trial.name),
-            parts,
-            discrepancies,
-            (parameters, effects),
-            clean,
-        )
+        let parts: Vec<&LinearisedPart> = workspace.linearised_parts()[place].iter().collect();
+        let errors: Vec<PartErrors> = parts
+            .iter()
+            .map(|part| {
+                PartErrors::new(workspace, part, discrepancies, (parameters, Some(effects)))
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(unexplained_by_errors((workspace, &trial.name), &parts, &errors, clean))
     };
     let each: Vec<Vec<UnexplainedSegment>> =
-        workspace.trials.iter().enumerate().map(of_trial).collect::<Result<_, _>>()?;
+        workspace.trials.iter().enumerate().map(of_trial).collect::<Result<_, RefineError>>()?;
     let mut found: Vec<UnexplainedSegment> = each.into_iter().flatten().collect();
     found.sort_by(|a, b| b.rms_over_noise.total_cmp(&a.rms_over_noise));
     Ok(found)
 }
 
-/// Returns the unexplained segments of the parts of one trial.
-///
-/// # Errors
-/// Returns an error if the noise of a channel is unknown.
-pub(super) fn unexplained_in_trial(
+/// Prediction errors of a part: what is left, and the part of it that the errors of the laws of
+/// effects may cause, which is empty where it is not needed.
+pub(super) struct PartErrors {
+    pub left: Vec<f64>,
+    pub moved: Vec<f64>,
+}
+
+impl PartErrors {
+    fn new(
+        workspace: &LinearisedTrials<'_>,
+        part: &LinearisedPart,
+        discrepancies: &AxisDiscrepancies,
+        (parameters, effects): (&[f64], Option<&[f64]>),
+    ) -> Result<Self, RefineError> {
+        let (left, _) =
+            prediction_errors(&part.combine_columns(parameters), &workspace.noise, discrepancies)?;
+        let moved = match effects {
+            Some(effects) => {
+                column_responses(&part.combine_columns(effects), &workspace.noise, discrepancies)?
+            }
+            None => Vec::new(),
+        };
+        Ok(Self { left, moved })
+    }
+}
+
+/// Returns the unexplained segments of the parts of one trial, by their prediction errors.
+pub(super) fn unexplained_by_errors(
     (workspace, trial): (&LinearisedTrials<'_>, &str),
-    parts: &[LinearisedPart],
-    discrepancies: &AxisDiscrepancies,
-    (parameters, effects): (&[f64], &[f64]),
+    parts: &[&LinearisedPart],
+    errors: &[PartErrors],
     clean: Option<&BTreeMap<String, f64>>,
-) -> Result<Vec<UnexplainedSegment>, RefineError> {
+) -> Vec<UnexplainedSegment> {
     let limit = |channel: Channel| {
         let seen = clean.and_then(|clean| clean.get(channel.name())).copied().unwrap_or_default();
         THRESHOLDS.remainder.limit.max(THRESHOLDS.remainder.margin * seen)
     };
-    let sums = channel_sums(workspace, parts, discrepancies, (parameters, Some(effects)))?;
     let of = |(channel, sums): (Channel, BlockSums<'_>)| {
         sums.unexplained_segments(trial, channel, limit(channel))
     };
-    Ok(sums.into_iter().flat_map(of).collect())
+    let all = parts.iter().zip(errors);
+    all.flat_map(|(part, errors)| part_sums(workspace, part, errors)).flat_map(of).collect()
 }
 
 /// Returns a whole trial as the segment of a channel; none where the channel was not recorded.
@@ -122,34 +144,34 @@ fn channel_sums<'a>(
     discrepancies: &AxisDiscrepancies,
     (parameters, effects): (&[f64], Option<&[f64]>),
 ) -> Result<Vec<(Channel, BlockSums<'a>)>, RefineError> {
-    let block_s = THRESHOLDS.remainder.block * workspace.lpp_m / workspace.speed_m_s;
     let mut all = Vec::new();
     for part in parts {
-        let interval = (part.t_s[part.t_s.len() - 1] - part.t_s[0]) / (part.t_s.len() - 1) as f64;
-        // The filter reads one of `every` samples: the size of a block is in readings.
-        let size = (block_s / (interval * part.every as f64)).round().max(1.0) as usize;
-        let (left, _) =
-            prediction_errors(&part.combine_columns(parameters), &workspace.noise, discrepancies)?;
-        let moved = match effects {
-            Some(effects) => {
-                column_responses(&part.combine_columns(effects), &workspace.noise, discrepancies)?
-            }
-            None => Vec::new(),
-        };
-        for (place, &(channel, _)) in part
-            .channels
-            .iter()
-            .enumerate()
-            .filter(|(_, (channel, _))| THRESHOLDS.remainder.channels.contains(channel))
-        {
+        let errors = PartErrors::new(workspace, part, discrepancies, (parameters, effects))?;
+        all.extend(part_sums(workspace, part, &errors));
+    }
+    Ok(all)
+}
+
+fn part_sums<'a>(
+    workspace: &LinearisedTrials<'_>,
+    part: &'a LinearisedPart,
+    errors: &PartErrors,
+) -> Vec<(Channel, BlockSums<'a>)> {
+    let block_s = THRESHOLDS.remainder.block * workspace.lpp_m / workspace.speed_m_s;
+    let interval = (part.t_s[part.t_s.len() - 1] - part.t_s[0]) / (part.t_s.len() - 1) as f64;
+    // The filter reads one of `every` samples: the size of a block is in readings.
+    let size = (block_s / (interval * part.every as f64)).round().max(1.0) as usize;
+    let judged = part.channels.iter().enumerate();
+    judged
+        .filter(|(_, (channel, _))| THRESHOLDS.remainder.channels.contains(channel))
+        .map(|(place, &(channel, _))| {
             // Errors are in the order of readings, and by channel within each.
             let of = |all: &[f64]| {
                 block_sums(all.iter().skip(place).step_by(part.channels.len()).copied(), size)
             };
-            all.push((channel, BlockSums { part, size, sums: of(&left), moved: of(&moved) }));
-        }
-    }
-    Ok(all)
+            (channel, BlockSums { part, size, sums: of(&errors.left), moved: of(&errors.moved) })
+        })
+        .collect()
 }
 
 fn block_sums(values: impl Iterator<Item = f64>, size: usize) -> Vec<f64> {

@@ -9,6 +9,7 @@ use sistership_model::trial::Channel;
 use sistership_model::uncertainty::Discrepancy;
 
 use super::super::filter::{column_responses, prediction_errors, whiten_part};
+use super::super::filter_gains::FilterGains;
 use super::super::likelihood::part_deviances;
 use super::super::linearised::LinearisationSizes;
 use super::super::noise::NoiseLevel;
@@ -344,4 +345,52 @@ fn discrepancies_of_another_model_are_refused() {
     let less = vec![discrepancies()[0]];
     let refusal = whiten_part(&part, &noise(), &less).unwrap_err().to_string();
     assert!(refusal.contains("discrepancies of 1 accelerations, but the model has 2"), "{refusal}");
+}
+
+/// Strips of columns by known gains are the rows of the filter, to the last bit.
+#[test]
+fn known_gains_whiten_as_the_filter_does() {
+    for part in records() {
+        let (rows, log_variance) = whiten_part(&part, &noise(), &discrepancies()).unwrap();
+        let gains = FilterGains::new(&part, &noise(), &discrepancies()).unwrap();
+        let columns = gains.whiten_columns(&part, COLUMNS);
+        for column in 0..=COLUMNS {
+            let mut unit = [0.0; 1 + COLUMNS];
+            unit[column] = 1.0;
+            let own: Vec<f64> = rows.iter().skip(column).step_by(1 + COLUMNS).copied().collect();
+            assert_eq!(columns.weighted_sum(&unit), own);
+        }
+        let gram = columns.gram_matrix();
+        assert_eq!(gram.log_variance, log_variance);
+        let product: f64 = rows.chunks_exact(1 + COLUMNS).map(|row| row[0] * row[2]).sum();
+        assert_near(gram.products[(0, 2)], product, 1.0, "product");
+    }
+}
+
+/// A column in segments is the column of each and its free movement after it.
+#[test]
+fn segments_and_their_free_movements_are_the_column() {
+    for part in records() {
+        let gains = FilterGains::new(&part, &noise(), &discrepancies()).unwrap();
+        let starts = [FilterGains::input_place(2, true), FilterGains::input_place(4, false)];
+        let cut = gains.whiten_segments(&part, &[0, 1], &starts);
+        let whole = gains.whiten_columns(&part, COLUMNS);
+        let mut unit = vec![0.0; cut.columns.column_count()];
+        for column in 0..COLUMNS {
+            let mut whole_unit = [0.0; 1 + COLUMNS];
+            whole_unit[1 + column] = 1.0;
+            let expected = whole.weighted_sum(&whole_unit);
+            let mut moved = DVector::zeros(ORDER);
+            for (readings, end) in cut.readings.iter().zip(&cut.ends) {
+                unit.fill(0.0);
+                unit[..ORDER].copy_from_slice(moved.as_slice());
+                unit[cut.first + column] = 1.0;
+                let own = cut.columns.weighted_sum(&unit);
+                for reading in readings.clone() {
+                    assert_near(own[reading], expected[reading], 1.0, "reading");
+                }
+                moved = end.columns(0, ORDER) * moved + end.column(cut.first + column);
+            }
+        }
+    }
 }

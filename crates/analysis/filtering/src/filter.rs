@@ -128,7 +128,7 @@ impl SimdKernel for WhiteningKernel<'_> {
             if !k.is_multiple_of(linear.every) {
                 continue;
             }
-            filter.update(k, |error, variance| {
+            filter.update(k, |error, variance, _| {
                 let scale = variance.sqrt().recip();
                 rows.push(error[0] * scale);
                 // The error of a column is the movement that its parameter explains, with the sign

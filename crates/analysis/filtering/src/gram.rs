@@ -29,13 +29,6 @@ impl GramMatrix {
         Self { products: column_products(rows, (width, count)), log_variance, count }
     }
 
-    /// Sums the products of whitened readings as columns, the residual first in each; a matrix
-    /// without numbers is allowed.
-    pub fn from_columns(readings: &DMatrix<f64>, log_variance: f64) -> Self {
-        let products = column_products(readings.as_slice(), readings.shape());
-        Self { products, log_variance, count: readings.ncols() }
-    }
-
     /// Creates the sums of no sample.
     pub fn zeros(width: usize) -> Self {
         Self { products: DMatrix::zeros(width, width), log_variance: 0.0, count: 0 }

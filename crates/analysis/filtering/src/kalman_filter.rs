@@ -185,9 +185,9 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
     }
 
     /// Uses the readings of sample `k`; `take` receives each prediction error (the residual's, then
-    /// minus each column's) and its variance.
+    /// minus each column's), its variance, and its covariances with states and discrepancies.
     #[inline(always)]
-    pub fn update(&mut self, k: usize, mut take: impl FnMut(&[V], V)) {
+    pub fn update(&mut self, k: usize, mut take: impl FnMut(&[V], V, &[V])) {
         for channel in 0..self.parts[0].channels.len() {
             self.load_reading(k, channel);
             let own = match self.parts[0].by_state {
@@ -196,7 +196,7 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
             };
             // The variance of the innovation: that of the expected reading and that of the noise.
             let variance = own + V::splat(self.noise.reading_variance(channel));
-            take(&self.error, variance);
+            take(&self.error, variance, &self.gain);
             self.correct_state(variance);
         }
     }
@@ -294,6 +294,11 @@ impl<'p, V: FilterValue> KalmanFilter<'p, V> {
 }
 
 impl KalmanFilter<'_, f64> {
+    /// Transition of the last interval.
+    pub fn transition(&self) -> &TransitionMatrix<f64> {
+        &self.transition
+    }
+
     /// Deviation of each state and discrepancy; with columns, the residual's.
     pub fn state_mean(&self) -> DVector<f64> {
         DVector::from_fn(self.order, |place, _| self.deviations[place * self.width])

@@ -17,6 +17,7 @@ mod columns;
 mod correction;
 mod discrepancies;
 mod filter;
+mod filter_gains;
 mod filter_noise;
 mod filter_value;
 mod followed;
@@ -37,20 +38,21 @@ mod regressor_block;
 mod sample_block;
 mod secants;
 mod smoother;
+mod strip_filter;
+mod strip_products;
 mod symmetric_products;
 mod tangents;
 mod tapes;
 mod thresholds;
 mod transition;
+mod whitened_columns;
 
 pub use columns::{
     EffectCandidate, FilterColumns, NuisanceColumn, NuisanceKind, missing_term_name,
 };
 pub use discrepancies::AxisDiscrepancies;
-pub use filter::{
-    WhitenedRows, column_responses, filter_columns, filter_part, prediction_errors, whiten_columns,
-    whiten_part,
-};
+pub use filter::{WhitenedRows, column_responses, filter_columns, filter_part, prediction_errors};
+pub use filter_gains::FilterGains;
 pub use filter_noise::unknown_noise_error;
 pub use form_errors::{AxisColumn, FORM_ERRORS};
 pub use gram::GramMatrix;
@@ -63,3 +65,4 @@ pub use noise::{
 pub use record::TrialReadings;
 pub use smoother::{SmoothedDiscrepancies, smooth_discrepancies};
 pub use tapes::ResidualSystem;
+pub use whitened_columns::{SegmentedColumns, WhitenedColumns};

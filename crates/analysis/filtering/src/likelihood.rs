@@ -104,7 +104,7 @@ impl SimdKernel for DevianceKernel<'_> {
             if !k.is_multiple_of(parts[0].every) {
                 continue;
             }
-            filter.update(k, |error, variance| {
+            filter.update(k, |error, variance, _| {
                 for (lane, part) in parts.iter().enumerate() {
                     // A part that has ended stays at its last sample and no longer counts.
                     if k < part.samples.len() {

@@ -104,6 +104,22 @@ impl LinearisedPart {
         }
     }
 
+    /// Removes all columns but the first.
+    pub fn truncate_columns(&mut self, count: usize) {
+        let (all, seen) = (self.sizes.columns, self.measured.len());
+        if count >= all {
+            return;
+        }
+        let rows = self.accelerations.chunks_exact(all);
+        self.accelerations = rows.flat_map(|row| &row[..count]).copied().collect();
+        let kept: Vec<usize> = (0..seen).filter(|&place| self.measured[place] < count).collect();
+        let rows = self.by_column.chunks_exact(seen.max(1));
+        self.by_column = rows.flat_map(|row| kept.iter().map(|&place| row[place])).collect();
+        self.measured.retain(|column| *column < count);
+        self.by_rate.retain(|response| response.column.is_none_or(|column| column < count));
+        self.sizes.columns = count;
+    }
+
     /// Copy of the path and its filter, which are small in comparison with the columns.
     fn without_columns(&self) -> Self {
         Self {
@@ -253,5 +269,14 @@ mod tests {
             (part().combine_columns(&[0.5, 2.0]), cut.combine_columns(&[0.5, 2.0, 2.0]));
         assert_eq!(whole.accelerations, again.accelerations);
         assert_eq!(whole.by_column, again.by_column);
+    }
+
+    #[test]
+    fn the_first_columns_are_kept() {
+        let mut first = part();
+        first.truncate_columns(1);
+        assert_eq!((first.sizes.columns, &first.accelerations[..]), (1, &[1.0, 3.0][..]));
+        assert!(first.measured.is_empty() && first.by_column.is_empty());
+        assert!(first.by_rate.is_empty());
     }
 }

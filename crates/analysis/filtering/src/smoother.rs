@@ -97,7 +97,7 @@ fn filter_forward(
         }
         let expected = belief(&filter);
         if k.is_multiple_of(linear.every) {
-            filter.update(k, |_, _| {});
+            filter.update(k, |_, _, _| {});
         }
         // After the update, but still the transition by which this sample was predicted.
         let transition = filter.transition_matrix();

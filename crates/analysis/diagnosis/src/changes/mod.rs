@@ -6,6 +6,8 @@
 //! all of them. Coefficients and the effects that are already present may adjust within their
 //! uncertainty.
 
+mod reduced_trial;
+mod segment_products;
 mod source;
 mod trial_changes;
 mod windows;

@@ -1,12 +1,9 @@
 //! Changes that explain a trial.
 
-use std::collections::BTreeSet;
-use std::ops::AddAssign;
+use std::collections::{BTreeMap, BTreeSet};
 
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::super::coefficient_prior::CoefficientPrior;
 use super::super::evidence::{
     HypothesisEstimate, MarginalInformation, NormalPrior, not_positive_error,
 };
@@ -14,14 +11,16 @@ use super::super::hypothesis::JudgedHypothesis;
 use super::super::linearised_trials::LinearisedTrials;
 use super::super::misfit::{misfit_share, shape_error};
 use super::super::outcome::{ChangeCourse, EffectChange, UnexplainedSegment};
-use super::super::remainder::unexplained_in_trial;
+use super::super::remainder::{PartErrors, unexplained_by_errors};
 use super::super::search::HypothesisSearch;
 use super::super::values::values_with_errors;
 use sistership_filtering::{
-    AxisDiscrepancies, EffectCandidate, GramMatrix, LinearisedPart, whiten_part,
+    AxisDiscrepancies, EffectCandidate, FilterGains, GramMatrix, LinearisedPart, WhitenedColumns,
 };
 use sistership_identification::refine::RefineError;
 
+use super::reduced_trial::ReducedTrial;
+use super::segment_products::{KeptPart, SourceProducts, add_segment_products};
 use super::source::{ChangeSource, change_sources};
 use super::windows::{ChangeWindow, TrialSegments, central_interval};
 
@@ -31,21 +30,27 @@ pub(super) struct ChangeSearch<'s, 'a> {
     workspace: &'s LinearisedTrials<'a>,
     discrepancies: AxisDiscrepancies,
     sources: Vec<ChangeSource>,
-    /// Columns that are present together with a change: those of coefficients, and of the accepted
-    /// effects.
-    kept: Vec<usize>,
+    /// Number of columns that are present together with a change, which are the first: those of
+    /// coefficients, and of the accepted effects.
+    kept: usize,
     /// Priors of the accepted effects by the other trials.
     taken: Vec<NormalPrior>,
     /// Relative uncertainty of the accepted effects' laws, by their columns.
     open: Vec<f64>,
 }
 
-/// Columns of a trial that are present with any change, after the filter.
-struct KeptColumns {
+/// A trial with the columns that are present with any change.
+struct KeptTrial<'p> {
     place: usize,
-    /// Residual and columns by readings, by part.
-    rows: Vec<DMatrix<f64>>,
-    gram: GramMatrix,
+    parts: Vec<KeptPart<'p>>,
+    reduced: ReducedTrial,
+}
+
+/// Columns of a source with weights, by part, and their products with those that are present with
+/// any change.
+struct WeightedColumns {
+    parts: Vec<WhitenedColumns>,
+    products: SourceProducts,
 }
 
 /// A window of a source, with its evidence on a trial.
@@ -75,7 +80,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
             workspace,
             discrepancies: search.expected.clone(),
             sources: change_sources(search, workspace.columns()),
-            kept: (0..size + moved).collect(),
+            kept: size + moved,
             taken: (0..moved).map(|i| NormalPrior { mean: 0.0, deviation: deviation(i) }).collect(),
             open: vec![0.0; size]
                 .into_iter()
@@ -96,10 +101,15 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         least_evidence: f64,
         is_asked: &(dyn Fn(&str) -> bool + Sync),
     ) -> Result<Vec<EffectChange>, RefineError> {
-        let trial = &self.kept_columns(place)?;
-        let asked = self.sources.par_iter().filter(|source| is_asked(&source.candidate.effect));
-        let each: Vec<Option<EffectChange>> = asked
-            .map(|source| self.source_change(trial, source, least_evidence))
+        let trial = &self.kept_trial(place)?;
+        let asked: Vec<&ChangeSource> =
+            self.sources.iter().filter(|source| is_asked(&source.candidate.effect)).collect();
+        let weighed = self.segment_products(trial, &asked);
+        let each: Vec<Option<EffectChange>> = weighed
+            .par_iter()
+            .map(|(source, stretches, products)| {
+                self.source_change(trial, (source, *stretches, products), least_evidence)
+            })
             .collect::<Result<_, _>>()?;
         let mut found: Vec<EffectChange> = each.into_iter().flatten().collect();
         found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
@@ -109,16 +119,41 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         Ok(found)
     }
 
+    /// Products of each source by segments of a trial. Sources with as many segments share a pass.
+    fn segment_products<'w>(
+        &self,
+        trial: &KeptTrial<'_>,
+        asked: &[&'w ChangeSource],
+    ) -> Vec<(&'w ChangeSource, TrialSegments, SourceProducts)> {
+        let mut alike: BTreeMap<usize, (TrialSegments, Vec<&'w ChangeSource>)> = BTreeMap::new();
+        for &source in asked {
+            let Some(stretches) = self.divide_trial(trial.place, source) else { continue };
+            alike.entry(stretches.count).or_insert((stretches, Vec::new())).1.push(source);
+        }
+        let of_group = |(stretches, sources): (TrialSegments, Vec<&'w ChangeSource>)| {
+            let zeros = |source: &&ChangeSource| {
+                SourceProducts::zeros(1 + self.kept, stretches.count * source.columns.len())
+            };
+            let mut products: Vec<SourceProducts> = sources.iter().map(zeros).collect();
+            for kept in &trial.parts {
+                add_segment_products(kept, &sources, stretches, &mut products);
+            }
+            let all = sources.into_iter().zip(products);
+            all.map(|(source, products)| (source, stretches, products)).collect::<Vec<_>>()
+        };
+        let groups: Vec<_> = alike.into_values().collect();
+        groups.into_par_iter().flat_map_iter(of_group).collect()
+    }
+
     /// The most evident change of a source, where it explains all that remains of a trial.
     fn source_change(
         &self,
-        trial: &KeptColumns,
-        source: &ChangeSource,
+        trial: &KeptTrial<'_>,
+        (source, stretches, products): (&ChangeSource, TrialSegments, &SourceProducts),
         least_evidence: f64,
     ) -> Result<Option<EffectChange>, RefineError> {
-        let Some(stretches) = self.divide_trial(trial.place, source) else { return Ok(None) };
         // Windows at the segments' ends first; the time of the best one is then refined.
-        let coarse = self.segment_windows(trial, source, stretches)?;
+        let coarse = self.segment_windows(trial, source, (stretches, products))?;
         let taken = simplest_window(&coarse, least_evidence);
         let Some(taken) = taken.filter(|taken| taken.evidence > least_evidence) else {
             return Ok(None);
@@ -146,12 +181,11 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
     /// All windows of a source that begin and end at the limits of segments.
     fn segment_windows<'w>(
         &self,
-        trial: &KeptColumns,
+        trial: &KeptTrial<'_>,
         source: &'w ChangeSource,
-        stretches: TrialSegments,
+        (stretches, products): (TrialSegments, &SourceProducts),
     ) -> Result<Vec<WeighedChange<'w>>, RefineError> {
-        let cut =
-            self.source_information(trial, source, &|t_s| stretches.segment_membership(t_s))?;
+        let cut = trial.reduced.information(&products.cross, &products.own)?;
         let of = |window: ChangeWindow| {
             let spread = stretches.window_matrix(window, source.columns.len());
             weigh_window(source, window, cut.transform_columns(&spread), stretches)
@@ -162,7 +196,7 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
     /// Windows of a source at times between the neighbours of one.
     fn refined_windows<'w>(
         &self,
-        trial: &KeptColumns,
+        trial: &KeptTrial<'_>,
         source: &'w ChangeSource,
         stretches: TrialSegments,
         about: ChangeWindow,
@@ -171,7 +205,8 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         let shares = |t_s: f64| {
             windows.iter().map(|window| window.share_at(t_s, stretches.span_s)).collect()
         };
-        let cut = self.source_information(trial, source, &shares)?;
+        let SourceProducts { cross, own } = self.weighted_columns(trial, source, &shares).products;
+        let cut = trial.reduced.information(&cross, &own)?;
         let parameters = source.columns.len();
         // Columns are ordered by parameter, then by window.
         let of = |(at, window): (usize, &ChangeWindow)| {
@@ -181,120 +216,82 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
         Ok(windows.iter().enumerate().filter_map(of).collect())
     }
 
-    /// Information of a trial on the columns of a source, each once for every weight of a time,
-    /// with coefficients and the accepted effects integrated out.
-    fn source_information(
-        &self,
-        trial: &KeptColumns,
-        source: &ChangeSource,
-        weights: &dyn Fn(f64) -> Vec<f64>,
-    ) -> Result<MarginalInformation, RefineError> {
-        let gram = self.source_gram(trial, source, weights)?;
-        let all = MarginalInformation::new(&gram, &self.search.fixed)?;
-        let taken: Vec<usize> = (0..self.taken.len()).collect();
-        let own: Vec<usize> = (taken.len()..all.right.len()).collect();
-        if taken.is_empty() {
-            return Ok(all);
+    /// A trial with its filter and the columns that are present with any change.
+    fn kept_trial(&self, place: usize) -> Result<KeptTrial<'_>, RefineError> {
+        let mut gram = GramMatrix::zeros(1 + self.kept);
+        let mut parts = Vec::new();
+        for part in &self.workspace.linearised_parts()[place] {
+            let gains = FilterGains::new(part, &self.workspace.noise, &self.discrepancies)?;
+            let columns = gains.whiten_columns(part, self.kept);
+            gram.add(&columns.gram_matrix());
+            parts.push(KeptPart { part, gains, columns });
         }
-        all.marginalise_others(&taken, &self.taken, &own).ok_or_else(not_positive_error)
+        let reduced = ReducedTrial::new(&gram, &self.search.fixed, &self.taken)?;
+        Ok(KeptTrial { place, parts, reduced })
     }
 
-    /// Parts of a trial with some columns as they are, and the columns of a source multiplied by
-    /// weights.
-    fn weighted_parts(
+    /// Columns of a source, each once for every weight of a time.
+    fn weighted_columns(
         &self,
-        (place, kept): (usize, &[usize]),
+        trial: &KeptTrial<'_>,
         source: &ChangeSource,
         weights: &dyn Fn(f64) -> Vec<f64>,
-    ) -> Vec<LinearisedPart> {
-        let parts = self.workspace.linearised_parts()[place].iter();
-        parts.map(|part| part.weight_columns(kept, &source.columns, weights)).collect()
-    }
-
-    /// Columns of coefficients and of the accepted effects, which are the same for every change.
-    fn kept_columns(&self, place: usize) -> Result<KeptColumns, RefineError> {
-        let width = 1 + self.kept.len();
-        let mut gram = GramMatrix::zeros(width);
-        let mut whitened = |part: &LinearisedPart| {
-            let part = part.weight_columns(&self.kept, &[], &|_| Vec::new());
-            let (rows, log_variance) = self.whiten_part(&part)?;
-            gram.add(&GramMatrix::from_columns(&rows, log_variance));
-            Ok(rows)
+    ) -> WeightedColumns {
+        let of = |kept: &KeptPart<'_>| {
+            let part = kept.part.weight_columns(&[], &source.columns, weights);
+            kept.gains.whiten_columns(&part, part.sizes.columns)
         };
-        let parts = self.workspace.linearised_parts()[place].iter();
-        let rows = parts.map(&mut whitened).collect::<Result<_, RefineError>>()?;
-        Ok(KeptColumns { place, rows, gram })
-    }
-
-    /// Residual and columns by readings.
-    fn whiten_part(&self, part: &LinearisedPart) -> Result<(DMatrix<f64>, f64), RefineError> {
-        let (rows, log_variance) = whiten_part(part, &self.workspace.noise, &self.discrepancies)?;
-        let width = 1 + part.sizes.columns;
-        Ok((DMatrix::from_vec(width, rows.len() / width, rows), log_variance))
-    }
-
-    /// Products of the kept columns and those of a source.
-    fn source_gram(
-        &self,
-        trial: &KeptColumns,
-        source: &ChangeSource,
-        weights: &dyn Fn(f64) -> Vec<f64>,
-    ) -> Result<GramMatrix, RefineError> {
-        let parts = self.weighted_parts((trial.place, &[]), source, weights);
-        let (known, own) =
-            (trial.gram.products.nrows(), parts.first().map_or(0, |part| part.sizes.columns));
-        // The products of the kept columns are computed once per trial; only the rows and columns
-        // of the source are added.
-        let mut gram =
-            GramMatrix { products: DMatrix::zeros(known + own, known + own), ..trial.gram };
-        gram.products.view_mut((0, 0), (known, known)).copy_from(&trial.gram.products);
-        for (part, rows) in parts.iter().zip(&trial.rows) {
-            // Cross products with the kept columns, and products of the source's own columns.
-            let of_source = self.whiten_part(part)?.0.rows(1, own).transpose();
-            let (cross, square) = (rows * &of_source, of_source.tr_mul(&of_source));
-            gram.products.view_mut((0, known), (known, own)).add_assign(&cross);
-            gram.products.view_mut((known, 0), (own, known)).add_assign(&cross.transpose());
-            gram.products.view_mut((known, known), (own, own)).add_assign(&square);
+        let parts: Vec<WhitenedColumns> = trial.parts.iter().map(of).collect();
+        let own = parts.first().map_or(0, |part| part.column_count() - 1);
+        let mut products = SourceProducts::zeros(1 + self.kept, own);
+        for (kept, part) in trial.parts.iter().zip(&parts) {
+            let readings = 0..part.reading_count();
+            // The first column is the residual again.
+            let cross = kept.columns.products_with(part, readings.clone());
+            products.cross += cross.columns(1, own);
+            products.own += part.own_products(readings).view((1, 1), (own, own));
         }
-        Ok(gram)
+        WeightedColumns { parts, products }
     }
 
     /// Unexplained remainder of a trial with a change.
     fn remaining_with(
         &self,
-        trial: &KeptColumns,
+        trial: &KeptTrial<'_>,
         stretches: TrialSegments,
         change: &WeighedChange<'_>,
     ) -> Result<Vec<UnexplainedSegment>, RefineError> {
         let WeighedChange { source, window, .. } = change;
         let weight = |t_s: f64| vec![window.share_at(t_s, stretches.span_s)];
-        let gram = self.source_gram(trial, source, &weight)?;
-        let parameters = self.fit_with_change(&gram, &self.search.fixed, source)?;
+        let changed = self.weighted_columns(trial, source, &weight);
+        let places: Vec<usize> = (0..source.columns.len()).collect();
+        let SourceProducts { cross, own } = &changed.products;
+        let size =
+            trial.reduced.information(cross, own)?.estimate_parameters(&places, &source.priors);
+        let size = size.ok_or_else(not_positive_error)?.mean;
+        let known = trial.reduced.known_parameters(cross, &size)?;
+        // What is explained is subtracted from the residual, which is the first column.
+        let explained: Vec<f64> =
+            std::iter::once(1.0).chain(known.iter().map(|own| -own)).collect();
+        let open: Vec<f64> = std::iter::once(0.0).chain(self.open.iter().copied()).collect();
+        let by_change = |by: f64| -> Vec<f64> {
+            std::iter::once(0.0).chain(size.iter().map(|size| by * size)).collect()
+        };
         // The error of the change's own law is allowed for as well.
-        let changed = parameters.iter().skip(self.kept.len()).map(|size| source.misfit * size);
-        let open: Vec<f64> = self.open.iter().copied().chain(changed).collect();
-        let place = trial.place;
-        let parts = self.weighted_parts((place, &self.kept), source, &weight);
+        let (explained_by, open_by) = (by_change(-1.0), by_change(source.misfit));
+        let errors: Vec<PartErrors> = trial
+            .parts
+            .iter()
+            .zip(&changed.parts)
+            .map(|(kept, own)| PartErrors {
+                left: add_sums((&kept.columns, &explained), (own, &explained_by)),
+                moved: add_sums((&kept.columns, &open), (own, &open_by)),
+            })
+            .collect();
+        let parts: Vec<&LinearisedPart> = trial.parts.iter().map(|kept| kept.part).collect();
         let clean = self.search.model.uncertainty.as_ref().map(|known| &known.remainder);
-        let named = (self.workspace, self.workspace.trials[place].name.as_str());
-        unexplained_in_trial(named, &parts, &self.discrepancies, (&parameters, &open), clean)
-    }
-
-    /// Coefficients, accepted effects and the change, fitted together on the trial.
-    fn fit_with_change(
-        &self,
-        gram: &GramMatrix,
-        fixed: &CoefficientPrior,
-        source: &ChangeSource,
-    ) -> Result<Vec<f64>, RefineError> {
-        let reduced = MarginalInformation::new(gram, fixed)?;
-        let priors: Vec<NormalPrior> = self.taken.iter().chain(&source.priors).copied().collect();
-        let places: Vec<usize> = (0..priors.len()).collect();
-        let estimate =
-            reduced.estimate_parameters(&places, &priors).ok_or_else(not_positive_error)?;
-        // Coefficients follow from the estimate: they were integrated out before.
-        let shift = &reduced.shift - &reduced.answers * &estimate.mean;
-        Ok(shift.iter().chain(estimate.mean.iter()).copied().collect())
+        let name = &self.workspace.trials[trial.place].name;
+        Ok(unexplained_by_errors((self.workspace, name), &parts, &errors, clean))
     }
 
     /// Result for a change; `coarse` and `fine` are all windows of its source.
@@ -322,6 +319,16 @@ impl<'s, 'a> ChangeSearch<'s, 'a> {
             or: Vec::new(),
         }
     }
+}
+
+/// Sum at each reading of columns by their weights, and of others by theirs.
+fn add_sums(
+    (columns, weights): (&WhitenedColumns, &[f64]),
+    (others, by): (&WhitenedColumns, &[f64]),
+) -> Vec<f64> {
+    let mut sum = columns.weighted_sum(weights);
+    sum.iter_mut().zip(others.weighted_sum(by)).for_each(|(sum, other)| *sum += other);
+    sum
 }
 
 /// Evidence of a window of a source by the information of a trial.

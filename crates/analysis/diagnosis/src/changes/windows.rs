@@ -1,6 +1,7 @@
 //! Times of a change: windows of time, and the segments by which they are evaluated first.
 
 use nalgebra::DMatrix;
+use sistership_filtering::{FilterGains, LinearisedPart};
 
 use super::super::outcome::ChangeCourse;
 use super::super::thresholds::THRESHOLDS;
@@ -56,10 +57,30 @@ impl TrialSegments {
         (self.span_s[1] - self.span_s[0]) / self.count as f64
     }
 
-    /// Membership of a time: 1 for its segment, 0 for the others.
-    pub fn segment_membership(self, t_s: f64) -> Vec<f64> {
-        let own = (((t_s - self.span_s[0]) / self.width_s()) as usize).min(self.count - 1);
-        (0..self.count).map(|place| f64::from(u8::from(place == own))).collect()
+    /// Segment of a time.
+    pub fn segment_at(self, t_s: f64) -> usize {
+        (((t_s - self.span_s[0]) / self.width_s()) as usize).min(self.count - 1)
+    }
+
+    /// Places of the first input of each segment but the first among those of the filter of a part.
+    pub fn input_starts(self, part: &LinearisedPart) -> Vec<usize> {
+        let mut starts = vec![usize::MAX; self.count - 1];
+        let mut begun = 0;
+        let mut begin = |t_s: f64, place: usize| {
+            let segment = self.segment_at(t_s);
+            if segment > begun {
+                starts[begun..segment].fill(place);
+                begun = segment;
+            }
+        };
+        for (k, &t_s) in part.t_s.iter().enumerate() {
+            begin(t_s, FilterGains::input_place(k, false));
+            // Accelerations are means over an interval, so their time is that of its middle.
+            if let Some(next_s) = part.t_s.get(k + 1) {
+                begin(0.5 * (t_s + next_s), FilterGains::input_place(k, true));
+            }
+        }
+        starts
     }
 
     /// All windows that begin and end at the limits of segments.
@@ -141,8 +162,8 @@ mod tests {
         let stretches = TrialSegments::new([100.0, 500.0], 20.0, 1);
         assert_eq!((stretches.count, stretches.width_s()), (20, 20.0));
         assert_eq!(TrialSegments::new([100.0, 500.0], 20.0, 10).count, THRESHOLDS.changes.fewest);
-        let held = |t_s| stretches.segment_membership(t_s).iter().position(|share| *share == 1.0);
-        assert_eq!([held(100.0), held(121.0), held(500.0)], [Some(0), Some(1), Some(19)]);
+        let held = |t_s| stretches.segment_at(t_s);
+        assert_eq!([held(100.0), held(121.0), held(500.0)], [0, 1, 19]);
     }
 
     #[test]
