@@ -6,4 +6,5 @@ mod changes;
 mod confusion;
 mod esso_osaka;
 mod examples;
+mod sequence;
 mod systematic_errors;

@@ -5,4 +5,5 @@
 pub mod baseline;
 pub mod cases;
 pub mod confusion;
+pub mod sequence;
 pub mod truth;

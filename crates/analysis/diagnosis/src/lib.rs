@@ -8,10 +8,12 @@ mod choose;
 mod coefficient_prior;
 mod confounded;
 mod constancy;
+mod continued_history;
 mod corrected;
 mod covariance;
 mod dependence;
 mod discount;
+mod effect_history;
 mod effect_size;
 mod evidence;
 mod expected;
@@ -48,6 +50,7 @@ use std::sync::Arc;
 
 pub use as_recorded::trial_from_track;
 pub use calibrate::calibrate_model;
+pub use effect_history::{EffectHistory, FormHistory};
 pub use expected::{ExpectedInformation, TrialUnknowns, observable_forms};
 pub use outcome::{
     ChangeCourse, ConfoundedEffect, DetectionLimit, Diagnosis, DiscrepancyLevel, EffectChange,

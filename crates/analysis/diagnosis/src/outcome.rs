@@ -7,6 +7,7 @@ use sistership_model::Model;
 use sistership_model::effect::ActsOn;
 use sistership_simulation::metrics::ManoeuvreMetrics;
 
+use super::effect_history::EffectHistory;
 use super::settings::Settings;
 
 /// Verdict of a diagnosis.
@@ -34,6 +35,9 @@ pub struct Diagnosis {
     /// Patterns of the remainder where no segment stands out by itself, the most evident first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub patterns: Vec<RemainderPattern>,
+    /// Information of these and earlier trials on the effects of the ship, for its next diagnosis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub history: Option<EffectHistory>,
     /// Changes in time that explain the remainder of a trial, the most evident first: they belong
     /// to one day, and no model carries them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

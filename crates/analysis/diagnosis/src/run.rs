@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::DiagnosisInputs;
 use super::choose::{ConvergedChoice, choose_effects};
+use super::continued_history::{continue_history, history_before};
 use super::dependence::remainder_dependence;
 use super::findings::{
     collect_remarks, describe_method, found_with_confounded, pattern_remark, refitted_parameters,
@@ -19,6 +20,7 @@ use super::refit::{RefittedModel, refit_alternatives};
 use super::search::HypothesisSearch;
 use super::select::{SelectedEffects, select_effects};
 use super::series::{discrepancy_levels, residual_series};
+use super::settings::Settings;
 use super::setup::{prepare_search, with_level_below};
 use super::thresholds::THRESHOLDS;
 use sistership_filtering::NoiseLevel;
@@ -39,21 +41,43 @@ pub fn diagnose(
         .settings
         .check_values()
         .map_err(|(field, message)| RefineError::Setting { field, message })?;
+    check_inputs(request)?;
+    report_progress(progress, 0.05, "selecting the effects that these trials can show")?;
+    let mut search = with_level_below(prepare_search(request)?);
+    report_progress(progress, 0.1, "evaluating effects, alone and in combination")?;
+    let base = search.filter_with_candidates(&[], &search.levels)?;
+    search.history = history_before(&search, (&base, search.judge_base(&base)?.0))?;
+    let choice = choose_effects(&search, &base, request.settings)?;
+    report_progress(progress, 0.8, "analysing the residual")?;
+    let selected = select_effects(request, (&search, &base), choice, progress)?;
+    let best = &selected.settled.best;
+    let named: Vec<String> = best.candidates.iter().map(|one| one.effect.clone()).collect();
+    let level = best.level.min(base.levels.len() - 1);
+    let history = continue_history(&search, (&base, level), &named)?;
+    // The filtered columns are large, and are not needed any more.
+    drop(base);
+    let diagnosis = assemble_answer(request, &search, selected, progress)?;
+    Ok(Diagnosis { history: Some(history), ..diagnosis })
+}
+
+/// Checks that a diagnosis has trials, and that earlier ones are of the same model.
+fn check_inputs(request: &DiagnosisInputs<'_>) -> Result<(), RefineError> {
     if request.trials.is_empty() {
         return Err(RefineError::Data(
             "no trial is given; give one that the model was not fitted to".into(),
         ));
     }
-    report_progress(progress, 0.05, "selecting the effects that these trials can show")?;
-    let search = with_level_below(prepare_search(request)?);
-    report_progress(progress, 0.1, "evaluating effects, alone and in combination")?;
-    let base = search.filter_with_candidates(&[], &search.levels)?;
-    let choice = choose_effects(&search, &base, request.settings)?;
-    report_progress(progress, 0.8, "analysing the residual")?;
-    let selected = select_effects(request, (&search, &base), choice, progress)?;
-    // The filtered columns are large, and are not needed any more.
-    drop(base);
-    assemble_answer(request, &search, selected, progress)
+    let earlier = request.settings.earlier.as_ref();
+    match earlier.filter(|earlier| earlier.model != request.model.name) {
+        Some(earlier) => Err(RefineError::Setting {
+            field: "earlier".into(),
+            message: format!(
+                "is of the model `{}`; give the answer of a diagnosis of `{}`",
+                earlier.model, request.model.name
+            ),
+        }),
+        None => Ok(()),
+    }
 }
 
 fn report_progress(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineError> {
@@ -161,6 +185,7 @@ fn build_diagnosis(
         verdict: derive_verdict(&remaining, &named.found),
         remarks: named.remarks.into_iter().chain(patterns.first().map(pattern_remark)).collect(),
         patterns,
+        history: None,
         changes,
         depends_on: remainder_dependence(first.trials, &residuals, (&remaining, &origins)),
         origins,
@@ -181,7 +206,8 @@ fn build_diagnosis(
         residuals,
         discrepancies: discrepancy_levels(search, &base.workspace, &choice.alone, best),
         model: named.model,
-        settings: request.settings.clone(),
+        // Earlier trials are part of the history.
+        settings: Settings { earlier: None, ..request.settings.clone() },
     })
 }
 

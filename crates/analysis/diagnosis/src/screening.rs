@@ -36,14 +36,15 @@ pub(super) fn screen_effects(
     let columns =
         base.taken.iter().flat_map(|kept| showing(&kept)).chain(others.iter().flat_map(showing));
     let places: Vec<usize> = (0..search.nuisance.len()).chain(columns).collect();
+    let all: Vec<EffectCandidate> =
+        base.taken.iter().chain(others.iter().copied()).cloned().collect();
     let at_level = |level: usize| {
-        Ok((
-            level,
-            MarginalInformation::new(
-                &base.total_products(level).select_columns(&places),
-                &search.fixed,
-            )?,
-        ))
+        let total = base.total_products(level).select_columns(&places);
+        let mut reduced = MarginalInformation::new(&total, &search.fixed)?;
+        if !search.history.forms.is_empty() {
+            search.history.add_to(&mut reduced, &all);
+        }
+        Ok((level, reduced))
     };
     let reduced: Vec<(usize, MarginalInformation)> =
         (0..base.levels.len()).into_par_iter().map(at_level).collect::<Result<_, RefineError>>()?;

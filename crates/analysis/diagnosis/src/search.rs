@@ -11,6 +11,7 @@ use super::DiagnosisInputs;
 use super::calibrated_model::CalibratedModel;
 use super::coefficient_prior::CoefficientPrior;
 use super::discount::{information_discount, is_external};
+use super::effect_history::EffectHistory;
 use super::evidence::{DiscrepancyFactor, MarginalInformation, NormalPrior, not_positive_error};
 use super::filtered_base::FilteredBase;
 use super::hypothesis::{JudgedHypothesis, candidate_priors, midpoint, move_candidates};
@@ -52,6 +53,8 @@ pub(super) struct HypothesisSearch<'a> {
     /// True if odds are stated. Libraries without odds have no detection limits, so that their
     /// diagnoses stay reproducible.
     pub states_odds: bool,
+    /// Information of earlier trials on the effects.
+    pub history: EffectHistory,
 }
 
 impl<'a> HypothesisSearch<'a> {
@@ -194,7 +197,7 @@ impl<'a> HypothesisSearch<'a> {
             self.model.uncertainty.as_ref(),
             candidate,
             &self.listed,
-            self.trials.len(),
+            self.trials.len() + self.history.trial_count(candidate),
         )
     }
 
@@ -341,8 +344,12 @@ impl<'a> HypothesisSearch<'a> {
         &self,
         (base, level): (&FilteredBase<'_>, usize),
         candidates: &[EffectCandidate],
-        grams: Vec<GramMatrix>,
+        mut grams: Vec<GramMatrix>,
     ) -> Result<JudgedHypothesis, RefineError> {
+        if !self.history.forms.is_empty() {
+            // Earlier trials are one more trial.
+            grams.push(self.history.trial_products(self.nuisance.len(), candidates));
+        }
         let priors: Vec<NormalPrior> = candidates.iter().flat_map(candidate_priors).collect();
         let places: Vec<usize> = (0..priors.len()).collect();
         let width = grams.first().ok_or_else(not_positive_error)?.products.nrows();

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::effect_history::EffectHistory;
+
 /// Settings of a diagnosis; all are stored with its report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -32,6 +34,10 @@ pub struct Settings {
     /// Prior odds that trials have an effect, by its name. Default: those of the library.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub prior_odds: BTreeMap<String, f64>,
+    /// Information of earlier trials of the ship: the `history` of its last diagnosis.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(skip)]
+    pub earlier: Option<EffectHistory>,
 }
 
 impl Default for Settings {
@@ -43,6 +49,7 @@ impl Default for Settings {
             least_evidence: 5.0,
             most_effects: 3,
             prior_odds: BTreeMap::new(),
+            earlier: None,
         }
     }
 }
@@ -74,6 +81,10 @@ impl Settings {
         let wrong = |odds: &f64| !(*odds > 0.0 && odds.is_finite());
         if let Some((name, _)) = self.prior_odds.iter().find(|(_, odds)| wrong(odds)) {
             return refuse("prior_odds", &format!("of `{name}` must be above 0"));
+        }
+        let earlier = self.earlier.as_ref().map_or(Ok(()), EffectHistory::check_values);
+        if let Err(message) = earlier {
+            return refuse("earlier", &message);
         }
         Ok(())
     }

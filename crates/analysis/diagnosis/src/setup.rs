@@ -132,6 +132,7 @@ pub(super) fn prepare_search<'a>(
         least_step_s: request.settings.least_step_s,
         log_priors: log_priors(request, &listed, &freed, &changing),
         states_odds: states_odds(request),
+        history: request.settings.earlier.clone().unwrap_or_default(),
         listed,
         freed,
         changing,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use clap::Args;
 use serde::Serialize;
 use serde_json::Value;
-use sistership_diagnosis::{Diagnosis, DiagnosisInputs, Settings, diagnose};
+use sistership_diagnosis::{Diagnosis, DiagnosisInputs, EffectHistory, Settings, diagnose};
 use sistership_model::{Effect, Law, Model, Zoo};
 use sistership_report::{DiagnosisInput, render_diagnosis};
 
@@ -25,6 +25,7 @@ const EXAMPLES: &str = "\
 Examples:
   sistership diagnose --model my-model.yaml --trials new-trials.yaml --report diagnosis.html
   sistership diagnose --model my-model.yaml --trials a.csv b.csv c.csv --out with-effects.yaml --json
+  sistership diagnose --model my-model.yaml --trials tuesday.csv --after monday.json --json
   sistership diagnose --zoo my-effects --model kvlcc2 --trials trials.yaml
 
 Give several trials that the model was not fitted on, on several headings: on a single heading
@@ -62,6 +63,10 @@ pub struct DiagnoseArguments {
     /// repeatable.
     #[arg(long, value_name = "EFFECT=ODDS", value_parser = odds)]
     prior_odds: Vec<(String, f64)>,
+    /// Answer of the previous diagnosis of the model (`--json`), on other trials of the ship: what
+    /// these say on its effects counts.
+    #[arg(long, value_name = "ANSWER.json")]
+    after: Option<PathBuf>,
     /// Write the model with the effects found.
     #[arg(long, value_name = "MODEL.yaml")]
     out: Option<PathBuf>,
@@ -146,12 +151,29 @@ fn diagnosis_settings(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<Settin
         least_evidence: arguments.least_evidence.unwrap_or(default.least_evidence),
         most_effects: arguments.most_effects.unwrap_or(default.most_effects),
         prior_odds: arguments.prior_odds.iter().cloned().collect(),
+        earlier: arguments.after.as_deref().map(read_history).transpose()?,
     };
     let flag = |field: String| field.replace('_', "-");
     settings
         .check_values()
         .map_err(|(field, message)| Failure::Call(format!("--{}: {message}", flag(field))))?;
     Ok(settings)
+}
+
+/// Reads what the answer of an earlier diagnosis says on the effects of the ship.
+fn read_history(path: &Path) -> Result<EffectHistory, Failure> {
+    let refuse = |reason: String| {
+        Failure::Refused(format!(
+            "{}: {reason}; give an answer that `sistership diagnose --json` has printed",
+            path.display()
+        ))
+    };
+    let text = std::fs::read_to_string(path).map_err(|error| refuse(error.to_string()))?;
+    let mut answer: Value =
+        serde_json::from_str(&text).map_err(|error| refuse(error.to_string()))?;
+    let history = answer.get_mut("history").map(Value::take);
+    let history = history.ok_or_else(|| refuse("has no `history`".to_owned()))?;
+    serde_json::from_value(history).map_err(|error| refuse(format!("history: {error}")))
 }
 
 fn run_diagnosis(

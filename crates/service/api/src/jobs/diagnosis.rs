@@ -11,7 +11,7 @@ use super::prepared::recipe_trials;
 use super::progress::JobProgress;
 use super::progress::report_progress;
 use crate::app::App;
-use sistership_jobs::condition::trials_to_diagnose;
+use sistership_jobs::condition::{EffectSequence, trials_to_diagnose};
 use sistership_jobs::derive::run_diagnosis;
 use sistership_jobs::memory::job_bytes;
 use sistership_jobs::recipe::{DiagnosisKind, DiagnosisRecipe};
@@ -32,15 +32,20 @@ pub(super) async fn run_diagnosis_job(app: &App, job: &Job, progress: JobProgres
         .as_ref()
         .map_or(0.0, |whole| whole.len() as f64 / (whole.len() + asked.trials.len()) as f64);
     let (begin, middle, end) = (0.05, 0.9 - 0.85 * share, 0.9);
+    let sequence = EffectSequence::read(app.archive(), &version, &asked.trials).await?;
+    let in_sequence = in_sequence(&asked, &sequence);
     let new =
-        diagnose_part(app, &asked, (&version, &asked.trials), (&progress, begin, middle)).await?;
+        diagnose_part(app, &in_sequence, (&version, &asked.trials), (&progress, begin, middle))
+            .await?;
+    // Trials that were diagnosed before do not count again.
+    let new = if sequence.is_new { new } else { without_history(new) };
     let (all, of_new) = match whole {
         None => (new, None),
         Some(whole) => {
             report_progress(&progress, middle, "diagnosing together with earlier trials")?;
             let all =
                 diagnose_part(app, &asked, (&version, &whole), (&progress, middle, end)).await?;
-            (all, Some(new))
+            (without_history(all), Some(new))
         }
     };
     report_progress(&progress, 0.92, "writing the report")?;
@@ -60,6 +65,24 @@ async fn diagnose_part(
         move |fraction: f64, what: &str| step.report(begin + (end - begin) * fraction, what);
     let diagnosed = run_diagnosis(app.archive(), recipe, Arc::new(scaled)).await?;
     Ok(TrialsDiagnosis::new(diagnosed, trials))
+}
+
+/// Request of a diagnosis that starts from what earlier trials say.
+fn in_sequence(asked: &DiagnosisJob, sequence: &EffectSequence) -> DiagnosisJob {
+    let mut asked = asked.clone();
+    if asked.settings.earlier.is_none() {
+        asked.settings.earlier.clone_from(&sequence.earlier);
+    }
+    asked
+}
+
+/// A diagnosis without information for the next one.
+fn without_history(of: TrialsDiagnosis) -> TrialsDiagnosis {
+    let mut diagnosed = of.diagnosed;
+    if let Some(run) = Arc::get_mut(&mut diagnosed) {
+        run.diagnosis.history = None;
+    }
+    TrialsDiagnosis { diagnosed, ..of }
 }
 
 /// Returns the trials of a job together with earlier ones, if these are to be diagnosed as well and

@@ -2,6 +2,7 @@
 //! combined.
 
 mod description;
+mod effect_sequence;
 mod evidence;
 mod joint_trials;
 mod recent_drift;
@@ -17,6 +18,7 @@ use utoipa::ToSchema;
 use self::evidence::{ConditionEvidence, DiagnosisVerdict, EvidenceLimits};
 use crate::aliases::{CHAMPION, find_alias};
 
+pub use effect_sequence::EffectSequence;
 pub use joint_trials::{MAX_JOINT_TRIALS, fitted_samples, trials_to_diagnose};
 pub use recent_drift::{DRIFT_LIMIT, RecentDrift};
 

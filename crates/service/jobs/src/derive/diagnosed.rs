@@ -101,13 +101,14 @@ impl DiagnosisRun {
     }
 }
 
-/// Report of a diagnosis, without the model, which the version holds, and without the series, which
-/// only plots need.
+/// Report of a diagnosis, without the model, which the version holds, without the series, which only
+/// plots need, and without the history of effects, which only the next diagnosis needs.
 fn report_without_model(diagnosis: &Diagnosis) -> Result<Value, serde_json::Error> {
     let mut report = serde_json::to_value(diagnosis)?;
     if let Some(fields) = report.as_object_mut() {
         fields.remove("model");
         fields.remove("residuals");
+        fields.remove("history");
     }
     Ok(sort_keys(report))
 }

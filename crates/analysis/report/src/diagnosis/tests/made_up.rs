@@ -261,6 +261,7 @@ fn diagnosis(after: Model) -> Diagnosis {
         effects: vec![current()],
         unexplained: vec![stretch],
         patterns: Vec::new(),
+        history: None,
         changes: vec![damage()],
         origins: origins(),
         depends_on: vec![depends_on()],
