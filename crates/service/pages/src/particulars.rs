@@ -61,10 +61,14 @@ pub(crate) const PARTICULARS: [ParticularField; 16] = {
 ///
 /// # Errors
 /// Returns an error if the text is no finite number, or if a required field is empty.
-fn read_particular(form: &FormFields, field: &ParticularField) -> Result<Option<f64>> {
+fn read_particular(
+    form: &FormFields,
+    field: &ParticularField,
+    required: bool,
+) -> Result<Option<f64>> {
     let text = match form.get_text(field.name) {
         Some(text) => text,
-        None if field.needed => return Err(PageError::invalid_field(field.name, "is required")),
+        None if required => return Err(PageError::invalid_field(field.name, "is required")),
         None => return Ok(None),
     };
     let knots = text.strip_suffix("kn").filter(|_| field.name.ends_with("_m_s"));
@@ -117,7 +121,9 @@ pub fn changed_document(ship: &Ship, form: &FormFields) -> Result<Value> {
     let mut changed = Map::new();
     for field in &PARTICULARS {
         let before = vessel.particulars.get(field.name).map(|of| of.value);
-        match (read_particular(form, field)?, before) {
+        // A published ship may lack one that a new ship needs.
+        let required = field.needed && before.is_some();
+        match (read_particular(form, field, required)?, before) {
             (None, _) => {
                 if let Some(values) = document["particulars"]["values"].as_object_mut() {
                     values.remove(field.name);
@@ -163,7 +169,7 @@ pub(crate) fn new_particulars(form: &FormFields) -> Result<(Value, Value)> {
     let mut values = Map::new();
     for field in &PARTICULARS {
         // Optional particulars that are empty are left out of the document.
-        if let Some(value) = read_particular(form, field)? {
+        if let Some(value) = read_particular(form, field, field.needed)? {
             values.insert(field.name.to_owned(), json!(value));
         }
     }
@@ -225,7 +231,7 @@ mod tests {
     fn speeds_are_read_in_knots_too() {
         let read = |index: usize, text| {
             let field = &PARTICULARS[index];
-            read_particular(&fields(&[(field.name, text)]), field)
+            read_particular(&fields(&[(field.name, text)]), field, true)
         };
         let speed = read(4, "20 kn").unwrap().unwrap();
         assert!((speed - 10.2889).abs() < 1e-4, "{speed}");
