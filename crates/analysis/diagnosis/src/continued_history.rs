@@ -9,7 +9,7 @@ use super::search::HypothesisSearch;
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
 
-/// Effects that differ from day to day: they do not belong to the ship, and no earlier trial tells
+/// Effects that differ from day to day: they do not belong to the ship, and no earlier trial says
 /// of them.
 const EFFECTS_OF_A_DAY: [&str; 4] = ["current", "wind", "wave-drift", "shallow-water"];
 
@@ -24,6 +24,7 @@ pub(super) fn continue_history(
     named: &[String],
 ) -> Result<EffectHistory, RefineError> {
     let (candidates, new) = trial_information(search, base, level)?;
+    // Forms that the library has gained since have no information yet.
     let (mut before, mut right) = search.history.candidate_information(&candidates);
     let (mut forms, mut first) = (Vec::new(), 0);
     for candidate in &candidates {
@@ -94,12 +95,14 @@ fn trial_information(
     base: &FilteredBase<'_>,
     level: usize,
 ) -> Result<(Vec<EffectCandidate>, MarginalInformation), RefineError> {
+    // An effect that follows an external record is judged by the record of its own day.
     let lasts = |candidate: &&EffectCandidate| {
         !is_external(candidate) && !EFFECTS_OF_A_DAY.contains(&candidate.effect.as_str())
     };
     let candidates: Vec<EffectCandidate> = search.listed.iter().filter(lasts).cloned().collect();
     let columns = candidates.iter().flat_map(|one| base.workspace.columns().matching_columns(one));
     let places: Vec<usize> = (0..search.nuisance.len()).chain(columns).collect();
+    // Products of all columns exist already: no trial is filtered again.
     let total = base.total_products(level).select_columns(&places);
     let new = MarginalInformation::new(&total, &search.fixed)?;
     Ok((candidates, new))
@@ -112,6 +115,7 @@ fn begins_now(
     (all, new): (&MarginalInformation, &MarginalInformation),
     own: &[usize],
 ) -> bool {
+    // The prior counts once in either: the comparison is one of the trials alone.
     let priors = candidate_priors(candidate);
     let gain = |says: &MarginalInformation| {
         let says = says.select_columns(own).divide_by(search.candidate_discount(candidate));
@@ -132,6 +136,7 @@ fn continue_form(
     let trial = |trial: Option<&&sistership_model::Trial>| {
         trial.map(|trial| trial.name.clone()).unwrap_or_default()
     };
+    // A new beginning forgets the count, not when the effect was last named.
     let kept = known.filter(|_| !begins);
     FormHistory {
         parameters: candidate.at.len(),

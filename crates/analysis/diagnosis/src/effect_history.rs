@@ -51,6 +51,8 @@ impl EffectHistory {
     /// # Errors
     /// Returns the reason for which they are not.
     pub fn check_values(&self) -> Result<(), String> {
+        // An answer may have been edited or cut: numbers that do not fit the forms would be read as
+        // those of others.
         let size = self.forms.iter().map(|form| form.parameters).sum::<usize>();
         let is_complete =
             self.right.len() == size && self.information.len() == size * (size + 1) / 2;
@@ -86,6 +88,7 @@ impl EffectHistory {
         // Minus twice the logarithm of the likelihood about the values, relative to the absence.
         let slope = &information * &moved;
         let left = &right - &slope;
+        // The coefficients were integrated out when the trials were read, so that their rows stay zero.
         let mut gram = GramMatrix::zeros(1 + coefficients + size);
         gram.products[(0, 0)] = moved.dot(&slope) - 2.0 * right.dot(&moved);
         for i in 0..size {
@@ -100,6 +103,7 @@ impl EffectHistory {
 
     /// Adds the earlier trials to the information of others on the columns of candidates.
     pub fn add_to(&self, says: &mut MarginalInformation, candidates: &[EffectCandidate]) {
+        // Information adds up, since the noise of different trials is independent.
         let gram = self.trial_products(0, candidates).products;
         let size = gram.nrows() - 1;
         says.information += gram.view((1, 1), (size, size));
@@ -109,6 +113,7 @@ impl EffectHistory {
     /// Removes all information on a form: its effect is absent on all earlier trials.
     pub fn clear_form(&mut self, candidate: &EffectCandidate) {
         let key = candidate.candidate_key();
+        // Rows and columns go together: what remains must stay a positive information.
         for place in self.parameter_places(candidate).into_iter().flatten() {
             (0..self.right.len())
                 .for_each(|other| self.information[triangle_place(place, other)] = 0.0);
@@ -138,6 +143,7 @@ impl EffectHistory {
         let key = candidate.candidate_key();
         let mut first = 0;
         for form in &self.forms {
+            // A form of the same name with other parameters is of another library.
             if form.key == key && form.parameters == candidate.at.len() {
                 return (first..first + form.parameters).map(Some).collect();
             }

@@ -74,6 +74,7 @@ impl<'a> FilteredBase<'a> {
             Ok(FilteredLevel { level, discrepancies, grams, coefficients: Mutex::default() })
         };
         let levels = levels.into_iter().map(at).collect::<Result<_, RefineError>>()?;
+        // Columns of the candidates are many times as large as their products.
         // The products of the candidates suffice.
         let mut workspace = workspace;
         let present: usize = taken.iter().map(|candidate| candidate.at.len()).sum();

@@ -57,7 +57,10 @@ pub fn diagnose(
     // The filtered columns are large, and are not needed any more.
     drop(base);
     let diagnosis = assemble_answer(request, &search, selected, progress)?;
-    Ok(Diagnosis { history: Some(history), ..diagnosis })
+    // Where something is unexplained the information is not on these effects: a later trial without
+    // it would be judged by what they stood in for.
+    let is_explained = diagnosis.verdict != Verdict::Unexplained;
+    Ok(Diagnosis { history: is_explained.then_some(history), ..diagnosis })
 }
 
 /// Checks that a diagnosis has trials, and that earlier ones are of the same model.

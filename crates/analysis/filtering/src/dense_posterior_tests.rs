@@ -367,6 +367,20 @@ fn known_gains_whiten_as_the_filter_does() {
     }
 }
 
+/// Products are those of the whitened columns, also where a block of samples has no reading.
+#[test]
+fn products_by_blocks_are_those_of_the_columns() {
+    for part in [record(150, 1, &BOTH), record(150, 3, &BOTH), record(210, 100, &BOTH)] {
+        let gains = FilterGains::new(&part, &noise(), &discrepancies()).unwrap();
+        let expected = gains.whiten_columns(&part, COLUMNS).gram_matrix().products;
+        let products = gains.whitened_products(&part).products;
+        let scale = expected.amax();
+        for (own, expected) in products.iter().zip(&expected) {
+            assert_near(*own, *expected, scale, "product");
+        }
+    }
+}
+
 /// A column in segments is the column of each and its free movement after it.
 #[test]
 fn segments_and_their_free_movements_are_the_column() {

@@ -38,6 +38,7 @@ impl FilterGains {
         noise: &InstrumentNoise,
         discrepancies: &AxisDiscrepancies,
     ) -> Result<Self, RefineError> {
+        // One column suffices: covariances do not depend on the readings.
         let filter = KalmanFilter::new(vec![linear], noise, discrepancies, 1)?;
         let (states, axes) = (linear.sizes.states, linear.sizes.axes);
         let (order, intervals) = (states + axes, linear.samples.len().saturating_sub(1));

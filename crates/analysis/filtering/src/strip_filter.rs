@@ -44,6 +44,7 @@ impl StripColumns {
             _ => None,
         };
         let columns: Vec<(usize, usize)> = lanes.iter().enumerate().filter_map(column).collect();
+        // Neighbouring columns are read by one load in place of eight.
         let is_row =
             columns.len() == STRIP && columns.windows(2).all(|pair| pair[0].1 + 1 == pair[1].1);
         Self { consecutive: is_row.then(|| columns[0].1), columns }
@@ -210,6 +211,7 @@ impl<'a, const G: usize> StripGroup<'a, G> {
         while self.segment < count
             && limits.starts.get(self.segment).copied().unwrap_or(usize::MAX) <= input
         {
+            // What a segment leaves behind moves on freely in the later ones.
             limits.ends.push(self.deviations.iter().flatten().copied().collect());
             limits.readings.push(readings);
             self.restart();
@@ -242,6 +244,7 @@ impl<'a, const G: usize> StripGroup<'a, G> {
             }
             moved[row] = sum;
         }
+        // Discrepancies decay independently of the states.
         let kept = &gains.kept[k * gains.axes..][..gains.axes];
         for ((kept, from), to) in kept.iter().zip(&deviations[n..]).zip(&mut moved[n..]) {
             for (from, to) in from.iter().zip(to) {

@@ -42,6 +42,7 @@ pub(super) fn strip_products(
         dispatch_simd(ProductKernel::<false> { left, right, is_square, products: &mut products });
     }
     if is_square {
+        // Half of the tiles were computed.
         products.fill_upper_triangle_with_lower_triangle();
     }
     products

@@ -110,11 +110,14 @@ impl FilterGains {
             let count = (samples.end.div_ceil(part.every) - from.div_ceil(part.every))
                 * part.channels.len();
             rows.resize(groups.len() * GROUP * count, [0.0; STRIP]);
-            for (strips, rows) in
-                groups.iter_mut().zip(rows.chunks_exact_mut((GROUP * count).max(1)))
-            {
+            // Without a reading among these samples the strips are predicted all the same.
+            for (place, strips) in groups.iter_mut().enumerate() {
+                let rows = &mut rows[place * GROUP * count..][..GROUP * count];
                 let (samples, rates) = (samples.clone(), RateDeviations::Known(&rates));
                 dispatch_simd(StripKernel { strips, samples, rates, segments: None, rows });
+            }
+            if count == 0 {
+                continue;
             }
             // Strips beyond the last column stay out of the products.
             let strips = &rows[..lanes.len().div_ceil(STRIP) * count];
@@ -152,6 +155,7 @@ impl FilterGains {
         let units: Vec<StripLane> = (0..self.order()).map(StripLane::Unit).collect();
         let own: Vec<StripLane> = columns.iter().map(|&column| StripLane::Column(column)).collect();
         let rates = self.rate_deviations(part);
+        // Movements fill strips of their own, so that columns begin at a whole strip.
         let first = units.len().next_multiple_of(STRIP);
         let width = first + own.len();
         let mut ends = vec![DMatrix::zeros(self.order(), width); 1 + starts.len()];

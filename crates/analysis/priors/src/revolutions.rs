@@ -26,6 +26,7 @@ pub fn assume_revolutions(zoo: &Zoo, vessel: &Vessel, trials: &[&Trial]) -> Opti
         return None;
     }
     let speed_m_s = trial_approach(trials)?.speed_m_s;
+    // Without an estimate the laws without a propeller remain.
     let library = RegressionLibrary::parse_embedded().ok()?;
     let estimate = estimate_ship(&library, vessel, zoo.law(ESTIMATE_LAW)?, speed_m_s).ok()?;
     let n_rps = estimate.model.revolutions_rps?;

@@ -58,7 +58,7 @@ pub(crate) fn convert_table(
     recording
 }
 
-/// Adds the revolutions that a trial was sailed with; an error if they were recorded.
+/// Adds the revolutions that a trial held; an error if they were recorded.
 fn hold_revolutions(trial: &mut Trial, n_rps: f64, findings: &mut Findings) {
     let shafts = [Channel::N, Channel::NS, Channel::NP];
     if shafts.iter().any(|&shaft| trial.channel(shaft).is_some()) {

@@ -33,6 +33,7 @@ impl<R: Read> TextDecoder<R> {
             [0xfe, 0xff] => Some(u16::from_be_bytes),
             _ => None,
         };
+        // The two bytes belong to the text where they are no mark.
         if self.order.is_none() {
             self.text = Cursor::new(start);
         }
@@ -50,6 +51,7 @@ impl<R: Read> TextDecoder<R> {
         if read > 0 && units.last().is_some_and(|unit| (0xd800..0xdc00).contains(unit)) {
             units.pop();
         }
+        // An odd byte waits for its other half.
         self.open.drain(..2 * units.len());
         self.text = Cursor::new(String::from_utf16_lossy(&units).into_bytes());
         Ok(read > 0)

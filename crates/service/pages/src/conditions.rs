@@ -106,8 +106,10 @@ pub async fn conditions_page(
     query: &FormFields,
 ) -> Result<String> {
     let store = &archive.store;
+    // A ship that does not exist is an error, not a form without trials.
     store.ships().get(ship).await?;
     let trials = store.trials().list(ship, &PageRequest::first_page(LISTED_TRIALS)).await?.items;
+    // The page of a trial leads here with this trial chosen.
     let only = query.get_text("trial");
     let (mut choices, mut shown) = (Vec::new(), None);
     for trial in trials {
@@ -154,12 +156,14 @@ pub(crate) fn stated_text<'a>(stated: Option<&'a Value>, name: &str) -> &'a str 
 pub fn read_conditions(form: &FormFields) -> Result<Value> {
     let mut stated = Map::new();
     for field in &CONDITIONS {
+        // An empty field states nothing, so that the summary lists it as missing.
         let Some(text) = form.get_text(field.name) else { continue };
         let wrong = |message: String| Err(PageError::invalid_field(field.name, message));
         match field.kind {
             ConditionKind::Date if !is_date(text) => {
                 return wrong(format!("`{text}` is not a date; write it as 2026-11-29"));
             }
+            // Kept as typed, with its decimal comma: a statement is evidence, not a computed value.
             ConditionKind::Metres => {
                 form.number_within(field.name, (0.0, 40.0), 0.0)?;
             }

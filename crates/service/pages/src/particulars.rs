@@ -71,6 +71,7 @@ fn read_particular(
         None if required => return Err(PageError::invalid_field(field.name, "is required")),
         None => return Ok(None),
     };
+    // Speeds alone have knots; a length in knots is a mistake.
     let knots = text.strip_suffix("kn").filter(|_| field.name.ends_with("_m_s"));
     // A decimal comma is accepted; `inf` and `nan` parse as numbers.
     let number = knots.unwrap_or(text).trim().replace(',', ".").parse::<f64>().ok();
@@ -118,6 +119,7 @@ pub fn particulars_page(shell: PageShell, ship: &Ship) -> Result<String> {
 pub fn changed_document(ship: &Ship, form: &FormFields) -> Result<Value> {
     let vessel = parse_vessel(&ship.name, &ship.document)?;
     let mut document: Value = serde_json::from_str(&ship.document)?;
+    // Collected first: the source is added only if something has changed.
     let mut changed = Map::new();
     for field in &PARTICULARS {
         let before = vessel.particulars.get(field.name).map(|of| of.value);
@@ -147,6 +149,7 @@ pub fn changed_document(ship: &Ship, form: &FormFields) -> Result<Value> {
 
 /// Adds a source to a document unless it is there, and returns its key.
 fn add_source(document: &mut Value, citation: &str) -> String {
+    // An earlier source keeps its key, since other values refer to it.
     let keys = (2..).map(|number| format!("{SOURCE_KEY}-{number}"));
     for key in std::iter::once(SOURCE_KEY.to_owned()).chain(keys) {
         match document["sources"][&key]["citation"].as_str() {

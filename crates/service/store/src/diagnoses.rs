@@ -18,10 +18,10 @@ statements! {
         created_us");
     ALL = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, unexplained, \
         drift, created_us FROM diagnoses WHERE id > COALESCE($1, '') ORDER BY id LIMIT $2");
-    // '~' sorts after every id: without a cursor the list starts at the latest one.
-    // Ids are in the order of time.
+    // Ids are in the order of time, and '~' sorts after every one: without a cursor a list starts at
+    // the latest.
     NEWEST = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, \
-        unexplained, drift, created_us FROM diagnoses ORDER BY id DESC LIMIT $1");
+        unexplained, drift, created_us FROM diagnoses WHERE id < '~' ORDER BY id DESC LIMIT $1");
     BY_VERSION = same("SELECT id, version_id, made_id, report_id, verdict, effects, trials, \
         unexplained, drift, created_us FROM diagnoses WHERE (version_id = $1 OR made_id = $1) AND id < COALESCE($2, \
         '~') ORDER BY id DESC LIMIT $3");

@@ -106,7 +106,7 @@ impl IdempotencyRepository<'_> {
             _ => RequestClaim::New(new_ticket(scope, key, now)),
         };
         if let Err(error) = tx.commit().await {
-            // Nobody knows whether the key is held; nobody executes the request.
+            // Whether the key is held is not known; the request is not executed.
             if let RequestClaim::New(ticket) = begun {
                 self.abandon_in_background(ticket);
             }

@@ -82,7 +82,7 @@ impl JobRepository<'_> {
     /// died is cancelled.
     pub async fn claim_next(&self, claim: &WorkerClaim<'_>) -> Result<JobClaim> {
         loop {
-            // Read before the transaction, so that nobody waits while the queue is put in order.
+            // Read before the transaction, so that no request waits while the queue is put in order.
             let line = self.first_in_line(claim.small).await?;
             if line.is_empty() {
                 return Ok(JobClaim::Nothing);

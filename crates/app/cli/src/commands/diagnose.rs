@@ -160,6 +160,10 @@ fn diagnosis_settings(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<Settin
     Ok(settings)
 }
 
+/// Reason for the refusal of an answer without information on effects.
+const NO_HISTORY: &str =
+    "has no `history`, as where something is unexplained, or where it is no answer of a diagnosis";
+
 /// Reads what the answer of an earlier diagnosis says on the effects of the ship.
 fn read_history(path: &Path) -> Result<EffectHistory, Failure> {
     let refuse = |reason: String| {
@@ -172,7 +176,7 @@ fn read_history(path: &Path) -> Result<EffectHistory, Failure> {
     let mut answer: Value =
         serde_json::from_str(&text).map_err(|error| refuse(error.to_string()))?;
     let history = answer.get_mut("history").map(Value::take);
-    let history = history.ok_or_else(|| refuse("has no `history`".to_owned()))?;
+    let history = history.ok_or_else(|| refuse(NO_HISTORY.to_owned()))?;
     serde_json::from_value(history).map_err(|error| refuse(format!("history: {error}")))
 }
 

@@ -55,7 +55,7 @@ fn is_hidden(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'))
 }
 
-/// Returns true if the ending is that of a recording, and the name not that of a note beside it.
+/// Returns true if the ending is that of a recording, and the name not that of a note next to it.
 fn is_recording(path: &Path) -> bool {
     let text = |part: Option<&std::ffi::OsStr>| {
         part.map(|part| part.to_string_lossy().to_lowercase()).unwrap_or_default()

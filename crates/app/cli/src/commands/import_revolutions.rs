@@ -26,6 +26,7 @@ pub(super) fn state_revolutions(
                 .into(),
         );
     };
+    // Both the manifest and the trials at hand, so that laws are listed as they will be fitted.
     for (trial, &n_rps) in trials.iter_mut().zip(&held) {
         trial.channels.insert(Channel::N, vec![n_rps; trial.t_s.len()]);
         let own = listed.iter_mut().filter(|one| one.trial_label() == trial.name);

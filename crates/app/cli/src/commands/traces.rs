@@ -48,6 +48,7 @@ impl TraceExport {
         let exporter = SpanExporter::builder().with_http().with_http_client(client);
         let exporter = exporter.with_endpoint(url).with_timeout(SEND_TIMEOUT).build();
         let exporter = exporter.map_err(|error| wrong(error.to_string()))?;
+        // A caller's `traceparent` is continued, so that its trace includes ours.
         set_text_map_propagator(TraceContextPropagator::new());
         let resource = Resource::builder().with_service_name(SERVICE).build();
         let provider = SdkTracerProvider::builder().with_resource(resource);
@@ -76,6 +77,7 @@ struct CollectorClient {
 
 impl CollectorClient {
     fn new() -> Result<Self, HttpError> {
+        // The client of TLS takes the provider of the process, which may not be set yet.
         sistership_store::provide_cryptography();
         let client = reqwest::Client::builder().timeout(SEND_TIMEOUT).build()?;
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;

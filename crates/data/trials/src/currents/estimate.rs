@@ -21,7 +21,7 @@ pub(super) fn estimate_current(trial: &Trial) -> Option<(CurrentEstimate, String
     if trial.velocity == VelocityFrame::Water || duration_s(trial) > LONGEST_S {
         return None;
     }
-    // Two logs tell the current directly; a turn tells it by its drift.
+    // Two logs tell the current directly; a turn shows it by its drift.
     let usable = |one: &CurrentEstimate| one.error < LARGEST_ERROR;
     if let Some(estimate) = by_log(trial).filter(usable) {
         let why = "speeds over the ground less those through the water";

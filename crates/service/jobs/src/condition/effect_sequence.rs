@@ -32,6 +32,7 @@ impl EffectSequence {
         let all =
             read_all_pages(|page| async move { diagnoses.by_version(id, &page).await }).await?;
         let own: Vec<DiagnosisRow> = all.into_iter().filter(|row| row.version_id == id).collect();
+        // A trial counts once, in whichever diagnosis it came first.
         let known: BTreeSet<String> = own
             .iter()
             .flat_map(|row| serde_json::from_str::<Vec<String>>(&row.trials).unwrap_or_default())

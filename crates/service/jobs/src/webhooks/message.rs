@@ -25,6 +25,7 @@ impl MessageFormat {
     /// Returns the format of a receiver by its URL.
     pub fn from_url(url: &str) -> Self {
         let url = Url::parse(url).ok();
+        // The host alone counts: a path or a user name may contain any text.
         let host = url.as_ref().and_then(Url::host_str).unwrap_or_default();
         match host {
             host if SLACK_HOSTS.contains(&host) => Self::Slack,
@@ -44,6 +45,7 @@ impl MessageFormat {
 
     /// Returns the body to send; `base` is the URL of this server, for links.
     pub(super) fn render_body(self, event: &str, base: Option<&str>) -> String {
+        // Events are written by this program; an unknown one still gets its sentence.
         let parsed: Value = serde_json::from_str(event).unwrap_or_default();
         let (text, link) = (event_sentence(&parsed), event_link(&parsed, base));
         match (self, link) {
@@ -95,6 +97,7 @@ fn event_link(event: &Value, base: Option<&str>) -> Option<String> {
 }
 
 fn teams_card(text: &str, link: Option<&str>) -> Value {
+    // Without a public address of the server there is nothing to open.
     let open = link.map(|link| json!({ "type": "Action.OpenUrl", "title": "Open", "url": link }));
     let card = json!({
         "$schema": "http://adaptivecards.io/schemas/adaptive-card.json",

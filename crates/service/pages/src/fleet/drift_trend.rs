@@ -38,8 +38,10 @@ pub(super) async fn drift_trend(archive: &Archive) -> Result<Option<SvgPlot>> {
     let ratio = |drift: &str| serde_json::from_str::<RecentDrift>(drift).ok();
     let found =
         rows.iter().filter_map(|row| Some((row.created_us, ratio(row.drift.as_deref()?)?.ratio)));
+    // A median, since a single ship out of order must not hide the others.
     let weeks = weekly_medians(found, now_us);
     let known = weeks.iter().flatten().count();
+    // One bar shows no trend.
     Ok((known >= 2).then(|| draw_weeks(&weeks, now_us)))
 }
 
@@ -50,6 +52,7 @@ fn weekly_medians(
 ) -> [Option<WeekDrift>; WEEKS] {
     let mut weeks: [Vec<f64>; WEEKS] = Default::default();
     for (at_us, ratio) in ratios {
+        // Clocks of several servers differ: what lies in the future counts as of now.
         let age = usize::try_from((now_us - at_us).max(0) / WEEK_US).unwrap_or(WEEKS);
         if age < WEEKS {
             weeks[WEEKS - 1 - age].push(ratio);
@@ -63,6 +66,7 @@ fn weekly_medians(
 }
 
 fn draw_weeks(weeks: &[Option<WeekDrift>; WEEKS], now_us: i64) -> SvgPlot {
+    // The limit stays in the chart even where all ships are far below it.
     let most = weeks.iter().flatten().map(|week| week.median).fold(1.5 * DRIFT_LIMIT, f64::max);
     let (left, top, right, bottom) = MARGIN;
     let (width, height) = (SIZE.0 - left - right, SIZE.1 - top - bottom);

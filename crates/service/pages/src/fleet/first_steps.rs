@@ -25,7 +25,7 @@ impl FirstSteps {
     /// Returns an error if the store fails.
     pub async fn find(archive: &Archive, ships: &[&str]) -> Result<Option<Self>> {
         let Some(ship) = ships.first() else { return Ok(Some(Self::default())) };
-        // Whoever has a fleet knows the way.
+        // A user who has a fleet knows the way.
         if ships.len() > FEW_SHIPS {
             return Ok(None);
         }

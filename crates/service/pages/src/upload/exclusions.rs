@@ -75,7 +75,7 @@ impl RangeRequest {
             });
             return Ok(());
         }
-        // Whether anything changed is what tells a restored range from one that excluded nothing.
+        // Whether anything changed distinguishes a restored range from one that excluded nothing.
         let before = exclude.clone();
         let is_meant = |one: &Exclusion| {
             one.file == file && (self.channel.is_none() || one.channel == self.channel)

@@ -81,6 +81,7 @@ pub async fn gather_summary(
     let of = gather_inputs(archive, shell, ship, number).await?;
     let row = store.ships().get(ship).await?;
     let mut stated = Vec::new();
+    // By hash: a recipe names the bytes that were fitted, whatever the trial is called now.
     for trial in of.document.recipe.trials() {
         match store.trials().find_by_hash(ship, &trial.sha256).await {
             Ok(found) => stated.extend(store.trials().stated_conditions(&found.id).await?),
@@ -159,6 +160,7 @@ impl SummaryInputs {
 
     /// Different texts that are stated for the trials, in their order.
     fn stated_words(&self, name: &str) -> Option<String> {
+        // Trials of one day usually share their conditions, which are then printed once.
         let mut all: Vec<&str> = Vec::new();
         for stated in &self.stated {
             let text = stated_text(Some(stated), name);
@@ -186,6 +188,7 @@ impl SummaryInputs {
 
     fn trim_text(&self) -> Option<String> {
         let known = |name: &str| self.vessel.particular(name);
+        // Draughts of the ship are those of a usual loading: those of the trials count first.
         let own = || known("draught_fore_m").zip(known("draught_aft_m"));
         let (fore, aft) = self.stated_draughts().or_else(own)?;
         let end = if aft < fore { "bow" } else { "stern" };

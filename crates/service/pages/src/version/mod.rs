@@ -1,6 +1,6 @@
 //! The page of a version: its coefficients, standard manoeuvres, range of validity, and lineage.
 
-mod acceptance;
+pub mod acceptance;
 mod coefficients;
 mod figures;
 mod lineage;
@@ -26,7 +26,6 @@ use crate::error::Result;
 use crate::picture::render_svg;
 use crate::shell::PageShell;
 
-pub use self::acceptance::{SummaryInputs, gather_summary};
 pub use self::manoeuvres::ManoeuvreCache;
 
 /// Inputs of the page.

@@ -69,9 +69,9 @@ async fn fill(on: &TestStore, ships: usize) {
             'published', {of_version}, 'x', created_us, NULL, 'ann' FROM ships, ({ten} SELECT i FROM n) AS k"),
         "INSERT INTO aliases SELECT name, 'champion', 10, 1 FROM ships".into(),
         "INSERT INTO jobs SELECT name || '-a', 'refinement', name, '{}', 'succeeded', 1, '', '{}', \
-            NULL, 1, 1, NULL, NULL, 0, 0, 0, 0, 0, 'ann', 1 FROM ships".into(),
+            NULL, 1, 1, NULL, NULL, 0, 0, 0, 0, 0, 'ann', 1, NULL FROM ships".into(),
         "INSERT INTO jobs SELECT name || '-b', 'diagnosis', name, '{}', 'failed', 1, '', NULL, \
-            'x', 1, 1, NULL, NULL, 0, 0, 0, 0, 0, 'ann', 1 FROM ships".into(),
+            'x', 1, 1, NULL, NULL, 0, 0, 0, 0, 0, 'ann', 1, NULL FROM ships".into(),
         "ANALYZE".into(),
     ] {
         on.database.execute_unchecked(&sql).await;

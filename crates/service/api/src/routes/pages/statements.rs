@@ -75,7 +75,8 @@ pub(super) async fn summary_page(
     PathParams((ship, number)): PathParams<(Name, Number)>,
 ) -> Result<Response> {
     let gathered =
-        version::gather_summary(app.archive(), page_shell(&app), &ship, number.get()).await?;
+        version::acceptance::gather_summary(app.archive(), page_shell(&app), &ship, number.get())
+            .await?;
     let (known, title) = (app.known_manoeuvres(), format!("{}/{}", &*ship, number.get()));
     let beginning = page_beginning(page_shell(&app), &title, "/")?;
     let page = async move { Ok(app.run_blocking(move || gathered.render_html(&known)).await??) };

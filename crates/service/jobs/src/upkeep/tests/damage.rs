@@ -163,7 +163,7 @@ const CUT: &str = "DELETE FROM audit WHERE number = (SELECT MAX(number) FROM aud
 const FACT: &str = "INSERT INTO ship_facts VALUES ('nobody', 'particular lpp_m', 1)";
 const JOB: &str = "INSERT INTO jobs VALUES ('j', 'refinement', 'nobody', '{}', 'succeeded', 1, '', \
     '{\"model\": \"mariner\", \"version\": 1, \"sha256\": \"x\", \"report\": \"none\"}', NULL, 1, \
-    1, 5, NULL, 0, 0, NULL, 0, 0, 'ann', 0)";
+    1, 5, NULL, 0, 0, NULL, 0, 0, 'ann', 0, NULL)";
 
 /// The last entry and the head are cut, so that the chain itself is whole.
 #[tokio::test(flavor = "multi_thread")]
