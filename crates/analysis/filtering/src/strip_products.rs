@@ -21,7 +21,7 @@ pub(super) struct StripRange<'a> {
 
 impl<'a> StripRange<'a> {
     fn strip_count(self) -> usize {
-        if self.count == 0 { 0 } else { self.strips.len() / self.count }
+        self.strips.len().checked_div(self.count).unwrap_or(0)
     }
 
     #[inline(always)]

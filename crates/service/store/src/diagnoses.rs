@@ -96,7 +96,7 @@ impl DiagnosisRepository<'_> {
 
     /// Lists the newest diagnoses of all ships, the latest first.
     pub async fn list_newest(&self, limit: i64) -> Result<Vec<DiagnosisRow>> {
-        Ok(self.0.database().fetch_all(NEWEST, args![limit: limit]).await?)
+        self.0.database().fetch_all(NEWEST, args![limit: limit]).await
     }
 
     /// Lists the diagnoses that concern a version, the latest first: those of the version, and the

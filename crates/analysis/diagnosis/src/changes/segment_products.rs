@@ -124,11 +124,11 @@ impl FreeMovements {
             }
         }
         let later = self.later_products((first, count), &ends);
-        for from in 0..self.segments.len() {
+        for (from, end) in ends.iter().enumerate() {
             // Deviation that the column of a segment leaves at the start of each later one.
-            let mut moved = ends[from].clone();
-            for at in from + 1..self.segments.len() {
-                let both = moved.tr_mul(&later[at]);
+            let mut moved = end.clone();
+            for (at, later) in later.iter().enumerate().skip(from + 1) {
+                let both = moved.tr_mul(later);
                 for i in 0..count {
                     for j in 0..count {
                         to.own[(place(i, from), place(j, at))] += both[(i, j)];
