@@ -175,7 +175,9 @@ impl Write {
                     Some(alias) if alias.ok() => {
                         Self::alias(ship, &name, 1, Some(alias.header("etag")))
                     }
-                    _ => Self::alias(ship, &name, 1, None),
+                    Some(_) => Self::alias(ship, &name, 1, None),
+                    // Without an answer it is not known whether there is an alias yet.
+                    None => Self::tag(ship, &name),
                 }
             }
         })

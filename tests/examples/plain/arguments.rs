@@ -20,17 +20,25 @@ pub enum Part {
     Coverage,
     /// Ships that are foreign to the zoo, by the default call alone.
     Foreign,
+    /// Bands against the truth of such ships.
+    ForeignCoverage,
 }
 
 impl Part {
-    const ALL: [(&'static str, Self); 6] = [
+    const ALL: [(&'static str, Self); 7] = [
         ("choice", Self::Choice),
         ("by-file", Self::ByFile),
         ("learning", Self::Learning),
         ("candidates", Self::Candidates),
         ("coverage", Self::Coverage),
         ("foreign", Self::Foreign),
+        ("foreign-coverage", Self::ForeignCoverage),
     ];
+
+    /// Whether it asks for the cases of `foreign`.
+    fn is_foreign(self) -> bool {
+        matches!(self, Self::Foreign | Self::ForeignCoverage)
+    }
 }
 
 /// Cases of `foreign`.
@@ -110,7 +118,7 @@ impl Arguments {
 
     /// The parts that are run.
     pub fn parts(&self) -> Vec<Part> {
-        let plain = |part: &Part| *part != Part::Foreign;
+        let plain = |part: &Part| !part.is_foreign();
         let all = || Part::ALL.map(|(_, part)| part).into_iter().filter(plain).collect();
         self.part.map_or_else(all, |part| vec![part])
     }
@@ -123,7 +131,11 @@ impl Arguments {
     /// One line about the half of the cases that is used.
     pub fn said(&self) -> String {
         let plain = self.seed..self.seed + self.ships;
-        let seeds = if self.part == Some(Part::Foreign) { &self.foreign.seeds } else { &plain };
+        let seeds = if self.part.is_some_and(|part| part.is_foreign()) {
+            &self.foreign.seeds
+        } else {
+            &plain
+        };
         let (first, last) = (seeds.start, seeds.end.max(seeds.start + 1) - 1);
         let half = match (first < JUDGEMENT, last < JUDGEMENT) {
             (true, true) => "cases for work (seeds below 1000)",
@@ -160,7 +172,8 @@ fn part(word: &str) -> Option<Part> {
     let named = Part::ALL.iter().find(|(name, _)| *name == word).map(|(_, part)| *part);
     assert!(
         named.is_some() || word == "all",
-        "{word}: there are choice, by-file, learning, candidates, coverage, foreign, all"
+        "{word}: there are choice, by-file, learning, candidates, coverage, foreign, foreign-coverage, \
+         all"
     );
     named
 }

@@ -1,6 +1,6 @@
 //! Whether the bands of a refined model hold the truth.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 use sistership_tests::truth::manoeuvre::every_figure;
@@ -19,15 +19,15 @@ const DRAWS: usize = 200;
 /// What 95 % bands should hold.
 const AIM: std::ops::RangeInclusive<f64> = 0.90..=0.98;
 
-/// The figures that are judged, and those that are shown beside them.
+/// The figures that are judged together; others are shown apart.
 const JUDGED: [&str; 4] = ["tactical diameter", "advance", "first overshoot", "second overshoot"];
-const BESIDE: [&str; 2] = ["transfer", "period"];
 
 /// A true figure and its band.
-struct Held {
+#[derive(Debug, Clone)]
+pub struct Held {
     /// The figure, as reports name it.
     name: String,
-    /// Which of [`JUDGED`] or [`BESIDE`].
+    /// What it is a figure of, as in [`JUDGED`].
     kind: String,
     truth: f64,
     /// Absent where the model gives none.
@@ -35,6 +35,12 @@ struct Held {
 }
 
 impl Held {
+    /// A figure of its own kind with half the width of its band.
+    pub fn new(name: &str, truth: f64, middle: f64, half_width: Option<f64>) -> Self {
+        let band = half_width.map(|half| [middle - half, middle + half]);
+        Self { name: name.to_owned(), kind: name.to_owned(), truth, band }
+    }
+
     fn outside(&self) -> String {
         let place = self.band.map_or(f64::NAN, |[low, high]| {
             (self.truth - 0.5 * (low + high)) / (0.5 * (high - low))
@@ -50,6 +56,9 @@ impl Held {
     }
 }
 
+/// Figures of a ship with their bands, or why there are none.
+pub type Covered = Result<Vec<Held>, String>;
+
 /// Prints the share of true figures inside their bands.
 pub fn run(program: &Program, arguments: &Arguments) {
     let ships = yard::each(arguments, |seed, ship| {
@@ -58,11 +67,16 @@ pub fn run(program: &Program, arguments: &Arguments) {
         let answer = made.judged.and_then(|_| bands(program, folder.path()));
         answer.map(|bands| held(&every_figure(ship), &bands))
     });
+    print(&format!("{} ships, {TRIALS} trials each", ships.len()), &ships);
+}
+
+/// Prints the tables of ships under a heading.
+pub fn print(heading: &str, ships: &[Covered]) {
     let without = ships.iter().filter(|ship| ship.is_err()).count();
     let all: Vec<&Held> = ships.iter().flatten().flatten().collect();
-    let (beside, all): (Vec<&Held>, Vec<&Held>) =
-        all.into_iter().partition(|held| BESIDE.contains(&held.kind.as_str()));
-    println!("## Coverage: 95 % bands of {} ships, {TRIALS} trials each\n", ships.len());
+    let (all, beside): (Vec<&Held>, Vec<&Held>) =
+        all.into_iter().partition(|held| JUDGED.contains(&held.kind.as_str()));
+    println!("## Coverage: 95 % bands of {heading}\n");
     println!("{without} ships have no model or no bands and are left out.\n");
     if let Some(reason) = ships.iter().find_map(|ship| ship.as_ref().err()) {
         println!("The first of them: {reason}\n");
@@ -76,7 +90,8 @@ pub fn run(program: &Program, arguments: &Arguments) {
     };
     JUDGED.iter().for_each(|kind| of(kind, &all));
     row("all of these", &all);
-    BESIDE.iter().for_each(|kind| of(kind, &beside));
+    let kinds: BTreeSet<&str> = beside.iter().map(|held| held.kind.as_str()).collect();
+    kinds.into_iter().for_each(|kind| of(kind, &beside));
     println!("\nInside, were the bands wider or narrower:\n\n| times | inside |\n| --: | --: |");
     for times in [0.25, 0.5, 0.76, 1.0, 1.5, 2.0] {
         println!("| {times} | {:.1} % |", 100.0 * share_inside(&all, times));
@@ -105,7 +120,10 @@ fn row(name: &str, all: &[&Held]) {
 }
 
 /// The bands of the model in a folder.
-fn bands(program: &Program, folder: &std::path::Path) -> Result<Value, String> {
+///
+/// # Errors
+/// The program gives none; says why.
+pub fn bands(program: &Program, folder: &std::path::Path) -> Result<Value, String> {
     let model = folder.join(MODEL).display().to_string();
     let draws = DRAWS.to_string();
     let words = ["manoeuvre", "--model", &model, "--all", "--bands", &draws, "--json"];
@@ -113,7 +131,8 @@ fn bands(program: &Program, folder: &std::path::Path) -> Result<Value, String> {
     Ok(answer["bands"]["figures"].clone())
 }
 
-fn held(truth: &BTreeMap<String, f64>, bands: &Value) -> Vec<Held> {
+/// True figures with their bands among those of a document.
+pub fn held(truth: &BTreeMap<String, f64>, bands: &Value) -> Vec<Held> {
     let one = |(name, truth): (&String, &f64)| {
         let named = |band: &&Value| band["figure"] == name.as_str();
         let band = bands.as_array().and_then(|all| all.iter().find(named));

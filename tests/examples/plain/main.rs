@@ -12,6 +12,8 @@
 //! `... -- foreign [--kinds outboard,pods] [--seeds 1..3] [--trials 1,2,4,8,12] [--program FILE]`
 //! judges the default call on ships that are foreign to the zoo (`truth::foreign` has the kinds);
 //! seeds as above, the last excluded. `docs/evidence/foreign_ships.md` has the results.
+//! `foreign-coverage` with the same flags holds the bands of manoeuvres and of the response on a
+//! straight course against these ships.
 
 mod arguments;
 mod call;
@@ -44,6 +46,7 @@ fn main() {
             Part::Candidates => candidates::run(&program, &arguments),
             Part::Coverage => coverage::run(&program, &arguments),
             Part::Foreign => foreign::run(&program, &arguments.foreign),
+            Part::ForeignCoverage => foreign::coverage::run(&program, &arguments.foreign),
         });
     }
 }

@@ -79,7 +79,7 @@ pub struct Approach {
 pub(super) struct Helm {
     manoeuvre: Manoeuvre,
     length_time_s: f64,
-    reversals_s: Vec<f64>,
+    pub(super) reversals_s: Vec<f64>,
     orders: Vec<(f64, f64)>,
 }
 
@@ -152,16 +152,24 @@ pub fn figures(ship: &dyn Truth) -> BTreeMap<String, f64> {
 
 /// As [`figures`], with transfer (m) and the zigzags' periods (s).
 pub fn every_figure(ship: &dyn Truth) -> BTreeMap<String, f64> {
+    list_figures(|rudder| turning(ship, rudder), |rudder, switch| zigzag(ship, rudder, switch))
+}
+
+/// Figures of turns by their angle (deg) and of zigzags by theirs and the change of heading (deg).
+pub(super) fn list_figures(
+    turning: impl Fn(f64) -> TurningMetrics,
+    zigzag: impl Fn(f64, f64) -> ZigzagMetrics,
+) -> BTreeMap<String, f64> {
     let mut all = BTreeMap::new();
     for rudder in TURNS {
-        let metrics = turning(ship, rudder);
+        let metrics = turning(rudder);
         let of = |what: &str| format!("turn {rudder} deg: {what}");
         all.extend(metrics.advance_m.map(|value| (of("advance"), value)));
         all.extend(metrics.transfer_m.map(|value| (of("transfer"), value)));
         all.extend(metrics.tactical_diameter_m.map(|value| (of("tactical diameter"), value)));
     }
     for (rudder, switch) in ZIGZAGS {
-        let metrics = zigzag(ship, rudder, switch);
+        let metrics = zigzag(rudder, switch);
         let of = |what: &str| format!("zigzag {rudder}/{switch}: {what}");
         all.extend(metrics.first_overshoot_deg.map(|value| (of("first overshoot"), value)));
         all.extend(metrics.second_overshoot_deg.map(|value| (of("second overshoot"), value)));

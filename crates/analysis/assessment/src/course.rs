@@ -91,8 +91,10 @@ fn dimensionless(rate: &StateVector, time: f64, speed: f64) -> Vector2<f64> {
     Vector2::new(rate[at::V] * time / speed, rate[at::R] * time * time)
 }
 
-/// The figures from the derivatives, with time in units of `L/U`.
-fn response_figures(a: &Matrix2<f64>, b: &Vector2<f64>) -> [f64; 4] {
+/// Nomoto's `K'` and `T'`, the larger eigenvalue and the yaw acceleration by the rudder angle, from
+/// the derivatives of the rates of sway and yaw by themselves (`a`) and by the angle (`b`), with
+/// time in units of `L/U`.
+pub fn response_figures(a: &Matrix2<f64>, b: &Vector2<f64>) -> [f64; 4] {
     let (trace, determinant) = (a.trace(), a.determinant());
     let steady = a[(1, 0)] * b[0] - a[(0, 0)] * b[1];
     let gain = steady / determinant;

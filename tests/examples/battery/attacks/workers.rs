@@ -129,10 +129,12 @@ pub(super) async fn judge_versions(field: &Field, client: &Client, jobs: &[Value
     }
 }
 
-/// Kills a worker that holds a job which has lost none yet, if one does; gives how many.
+/// Kills a worker that holds a job, if one does and no running job has lost one yet; gives how many.
 async fn kill_one(client: &Client, workers: &mut Vec<Process>) -> usize {
-    let running = |job: &&Value| job["state"] == "running" && job["attempt"] == 1;
-    let held = all_jobs(client).await.iter().any(|job| running(&job));
+    let jobs = all_jobs(client).await;
+    let mut running = jobs.iter().filter(|job| job["state"] == "running").peekable();
+    // A job that loses its second worker is set aside, as it should be.
+    let held = running.peek().is_some() && running.all(|job| job["attempt"] == 1);
     // Which of them holds it is not told over HTTP: with all of them dead, one that does is.
     let victims = if held { workers.len() } else { 1 };
     workers.drain(..victims).for_each(Process::kill);

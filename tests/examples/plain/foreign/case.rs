@@ -33,7 +33,8 @@ pub struct CraftFiles {
     /// Tactical diameters at 35 deg to starboard and port, m.
     pub diameters_m: [f64; 2],
     seen: Vec<(String, Columns)>,
-    craft: Craft,
+    /// The craft.
+    pub craft: Craft,
     folder: tempfile::TempDir,
 }
 

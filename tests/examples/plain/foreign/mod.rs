@@ -2,6 +2,7 @@
 //! a program of another tree can be judged as well.
 
 mod case;
+pub mod coverage;
 mod documents;
 mod table;
 mod verdict;

@@ -9,6 +9,7 @@
 //! states. Seeds below [`JUDGEMENT`] are for work, the others for judgement alone.
 
 pub mod coasting;
+pub mod course;
 pub mod craft;
 pub mod devices;
 pub mod engine;

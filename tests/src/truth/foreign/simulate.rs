@@ -1,16 +1,20 @@
 //! Simulation of a craft: manoeuvres by the helm, and runs with the propeller stopped or reversed.
 
-use sistership_simulation::metrics::TurningMetrics;
+use std::collections::BTreeMap;
+
+use sistership_simulation::metrics::{TurningMetrics, ZigzagMetrics};
 use sistership_simulation::state::{StateVector, Trajectory, at};
 
 use super::craft::Craft;
 use super::motion::{Motion, Orders, SHAFTS};
-use crate::truth::manoeuvre::{Helm, Manoeuvre};
+use crate::truth::manoeuvre::{Helm, Manoeuvre, list_figures};
 
 /// Lengths covered before the first order.
 const APPROACH: f64 = 1.0;
 /// Lengths covered in the turns by which craft are judged.
 const TURN_LENGTHS: f64 = 25.0;
+/// Lengths covered in the zigzags.
+const ZIGZAG_LENGTHS: f64 = 40.0;
 
 /// States over time.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -111,6 +115,24 @@ pub fn turning(craft: &Craft, angle_deg: f64) -> TurningMetrics {
     let orders = craft.orders(1.0, angle_deg.to_radians());
     let track = simulate(craft, start(craft, 1.0), duration_s, |_, _| orders);
     TurningMetrics::from_track(&track.trajectory(craft.shafts()), angle_deg).expect("a track")
+}
+
+/// Zigzag from full speed with the angle ordered at once.
+fn zigzag(craft: &Craft, angle_deg: f64, switch_deg: f64) -> ZigzagMetrics {
+    let length_s = craft.size().length_time_s();
+    let mut helm = Helm::new(Manoeuvre::Zigzag(angle_deg, switch_deg), length_s);
+    let level = craft.orders(1.0, 0.0).n_rps[0];
+    let track = simulate(craft, start(craft, 1.0), ZIGZAG_LENGTHS * length_s, |t_s, motion| {
+        craft.orders_at(level, helm.order_deg(t_s, &motion.body).to_radians())
+    });
+    let track = track.trajectory(craft.shafts());
+    ZigzagMetrics::from_track(&track, angle_deg, switch_deg, &helm.reversals_s).expect("a track")
+}
+
+/// Figures of the standard manoeuvres by the names that `sistership manoeuvre` gives them; absent
+/// where the craft does not get so far.
+pub fn every_figure(craft: &Craft) -> BTreeMap<String, f64> {
+    list_figures(|angle| turning(craft, angle), |angle, switch| zigzag(craft, angle, switch))
 }
 
 /// Growth rate of a small yaw rate with the steering amidships, by `U/L`: negative for craft that

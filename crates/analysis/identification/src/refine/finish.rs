@@ -9,6 +9,7 @@ use super::blocks::RegressionBlocks;
 use super::candidate::{CandidateFit, CandidateSolution, best_candidate};
 use super::family::TermFamily;
 use super::manoeuvres::{measured_manoeuvres, standard_manoeuvres};
+use super::misfit::misfit_factor;
 use super::mixture;
 use super::outcome::{RefineError, Refinement, RefinementManoeuvres};
 use super::problem::RefinementProblem;
@@ -206,6 +207,9 @@ fn build_refinement(
     // The fold models' scatter widens the posterior; it never narrows it.
     let factor = fold_factor(&model, problem.law, &candidates[best].left_out);
     widen_errors(&mut model, fitted.as_mut(), factor);
+    // Nor does the scatter show what every fold has wrong.
+    let misfit = misfit_factor(problem, &model, &candidates[best].left_out);
+    widen_errors(&mut model, fitted.as_mut(), misfit);
     let propulsion = propulsion_context(problem);
     let model = with_posterior_balance(problem, &propulsion, (model, &taken.faults));
     let fault = propulsion

@@ -17,6 +17,7 @@ mod fold_variance;
 mod longer_restarts;
 mod manoeuvres;
 mod measure;
+mod misfit;
 mod mixture;
 mod mixture_position;
 mod outcome;

@@ -11,7 +11,7 @@ use sistership_assessment::uncertainty::Sampling;
 
 /// Revision of the algorithm of this program. It rises with each change after which the same
 /// settings give another model.
-pub const ALGORITHM_REVISION: u32 = 3;
+pub const ALGORITHM_REVISION: u32 = 4;
 
 /// The estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]

@@ -104,6 +104,19 @@ pub(super) fn simulate_all(
     simulate_errors(problem, (trials, how), models, model_of)
 }
 
+/// Simulations of trials from their first samples, each by its model; `None` if the models cannot be
+/// simulated or one does not run to its end.
+pub(super) fn simulate_runs(
+    problem: &RefinementProblem<'_>,
+    trials: &[&Trial],
+    models: &[Model],
+    model_of: &(dyn Fn(usize) -> usize + Sync),
+) -> Option<Vec<TrialReplay>> {
+    let how = (None, problem.replayed.step_s);
+    let runs = replay_runs(problem, (trials, how), models, model_of).ok()?.ok()?;
+    runs.iter().all(|run| run.stopped.is_none()).then_some(runs)
+}
+
 /// Trials with the restart interval and the longest step, s.
 type ReplayPlan<'a> = (&'a [&'a Trial], (Option<f64>, f64));
 
