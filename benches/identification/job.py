@@ -66,9 +66,17 @@ def memory_mb():
     return most / 1024
 
 
+def set_limits(request):
+    """Processor time and memory of this process, and of each program that it runs."""
+    seconds, most = int(request["seconds"]), int(request["memory_gb"] * 2**30)
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
+    resource.setrlimit(resource.RLIMIT_DATA, (most, most))
+
+
 if __name__ == "__main__":
     sys.modules["job"] = sys.modules["__main__"]
     request = json.loads(sys.argv[1])
+    set_limits(request)
     try:
         answer = {"rows": run(request)}
     except CannotDo as reason:

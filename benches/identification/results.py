@@ -1,13 +1,14 @@
 """Results as CSV, JSON and Markdown; docs/benchmark.md describes the columns."""
 
 import csv
+import io
 import json
 import math
 import os
 
 COLUMNS = ("data", "task", "kind", "prediction", "restart_s", "peer", "standardised_error",
            "heading_deg", "u_m_s", "v_m_s", "r_deg_s", "runs", "diverged", "parameters",
-           "seconds", "memory_mb", "ratio_to_best", "cannot", "settings")
+           "seconds", "memory_mb", "ratio_to_best", "cannot", "settings", "program")
 
 
 def with_ratios(rows):
@@ -26,20 +27,24 @@ def same_task(one, other):
 
 
 def write(folder, rows, about):
+    """Writes all three files; each replaces its predecessor at once."""
     os.makedirs(folder, exist_ok=True)
-    with open(os.path.join(folder, "results.json"), "w") as file:
-        json.dump({"about": about, "rows": rows}, file, indent=1)
-    with open(os.path.join(folder, "results.csv"), "w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, restval="")
-        writer.writeheader()
-        writer.writerows(rows)
-    with open(os.path.join(folder, "results.md"), "w") as file:
-        file.write(markdown(rows, about))
+    table = io.StringIO(newline="")
+    writer = csv.DictWriter(table, COLUMNS, restval="", extrasaction="ignore")
+    writer.writeheader()
+    writer.writerows(rows)
+    texts = {"results.json": json.dumps({"about": about, "rows": rows}, indent=1),
+             "results.csv": table.getvalue(), "results.md": markdown(rows, about)}
+    for name, text in texts.items():
+        path = os.path.join(folder, name)
+        with open(f"{path}.new", "w", newline="") as file:
+            file.write(text)
+        os.replace(f"{path}.new", path)
 
 
 def markdown(rows, about):
     peers = list(dict.fromkeys(row["peer"] for row in rows))
-    return "\n".join([*error_table(rows, peers), "", *losses(rows), "", *cost_table(rows, peers),
+    return "\n".join([*losses(rows), "", *error_table(rows, peers), "", *cost_table(rows, peers),
                       "", *refusals(rows), *machine(about), ""])
 
 
