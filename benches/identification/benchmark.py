@@ -99,6 +99,8 @@ def tasks_of(name, options):
     except Missing as reason:
         print(f"skipped: {name}: {reason}", file=sys.stderr)
         return []
+    except ValueError as reason:
+        sys.exit(f"error: {name}: {reason}")
     wanted = options.tasks.split(",") if options.tasks else QUICK_TASKS if options.quick else None
     return [task for task in data.tasks if wanted is None or task.name in wanted]
 
@@ -111,7 +113,7 @@ def read_previous(folder):
 def announced(rows):
     """The rows of a job, which it prints."""
     for row in rows:
-        outcome = row.get("cannot") or format(row["standardised_error"], ".4g")
+        outcome = row.get("cannot") or row.get("named") or f"{row['standardised_error']:.4g}"
         print(f"{row['data']} {row['task']} {row['peer']}: {row['prediction']} {outcome}",
               file=sys.stderr, flush=True)
     return rows
@@ -128,19 +130,25 @@ def identity(program):
 
 def about(program):
     """Date, machine and versions of everything that took part."""
-    pinned = [line.split("==") for path in sorted(HERE.glob("requirements*.txt"))
-              for line in path.read_text().split()]
     return {"date": datetime.date.today().isoformat(), "machine": processor(),
             "cores": os.cpu_count(), "program": program, "python": platform.python_version(),
-            "versions": {name: installed(name, version) for name, version in pinned}}
+            "versions": versions()}
 
 
-def installed(name, pinned):
-    """Version of a package of this interpreter, else that which its environment pins."""
-    try:
-        return importlib.metadata.version(name)
-    except importlib.metadata.PackageNotFoundError:
-        return pinned
+def versions():
+    """Versions of this interpreter's packages, and the pins of the families with one of their own."""
+    found = {}
+    for line in (HERE / "requirements.txt").read_text().split():
+        name = line.split("==")[0]
+        try:
+            found[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            continue
+    for path in sorted(HERE.glob("requirements-*.txt")):
+        family = path.stem.removeprefix("requirements-")
+        found |= {f"{family}_*: {name}": version for name, version in
+                  (line.split("==") for line in path.read_text().split())}
+    return found
 
 
 def processor():

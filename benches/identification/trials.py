@@ -68,6 +68,8 @@ class Ship:
     zoo: str = ""
     published: str = ""
     actuators: str = ""
+    # Whether the published model has made the data: its errors are shown, not compared.
+    made_by_published: bool = False
 
     @property
     def length(self):

@@ -3,7 +3,6 @@
 from job import CannotDo
 from peers.sistership import Model, Program
 
-NEEDS = ("numpy",)
 
 
 def fit(task):

@@ -7,9 +7,11 @@ import subprocess
 import numpy as np
 
 from job import CannotDo
-from trials import PLACE, STATES, write_canonical
+from trials import PLACE, STATES, UNITS, write_canonical
 
-NEEDS = ("numpy",)
+DIAGNOSES = True
+# Models drawn from the posterior for the bands of headings.
+DRAWS = 40
 
 
 def fit(task, *flags):
@@ -39,6 +41,13 @@ class Program:
         if errors or done.returncode == 2:
             raise CannotDo(f"`{arguments[0]}` refused: {' '.join(errors)}")
         return done.stdout
+
+    def answer(self, *arguments):
+        """The JSON document of a command; empty where it has refused."""
+        try:
+            return json.loads(self.call(*arguments))
+        except (CannotDo, json.JSONDecodeError):
+            return {}
 
     def init(self, ship):
         """Particulars as a user states them; the zoo's file where it has the ship without model."""
@@ -72,7 +81,37 @@ class Model:
         files = self.program.write([w.truth for w in windows], "window", ("psi",))
         out = os.path.join(self.program.task.scratch, "simulated")
         self.program.call("simulate", "--model", self.model, "--trials", *files, "--out", out)
-        return [read(os.path.join(out, os.path.basename(f)), w) for f, w in zip(files, windows)]
+        found = [read(os.path.join(out, os.path.basename(f)), w) for f, w in zip(files, windows)]
+        return [run and {**run, **self.band(window)} for run, window in zip(found, windows)]
+
+    def band(self, window):
+        """Band of headings of a whole run, by `predict`, which starts from a steady course ahead
+        under one rudder; empty for other runs and for models without a posterior."""
+        truth, controls = window.truth, self.program.task.controls
+        u, v, r = (truth[name][0] for name in STATES)
+        length = self.program.task.ship.length
+        if (window.start or self.parameters == 0 or controls[0] != "delta"
+                or max(abs(v), abs(r) * length) > 0.05 * u):
+            return {}
+        orders = os.path.join(self.program.task.scratch, "orders.csv")
+        names = ["delta", "n"][:len(controls)]
+        header = ",".join(["t_s", *(f"{name}_{UNITS[name]}" for name in names)])
+        np.savetxt(orders, truth.columns(["t", *names]), delimiter=",", header=header, comments="")
+        answer = self.program.answer(
+            "predict", "--model", self.model, "--orders", orders, "--speed-m-s", str(u),
+            "--heading-deg", "0", "--duration-s", str(truth["t"][-1] - truth["t"][0]), "--dt-s",
+            str(truth.dt), "--draws", str(DRAWS), "--json")
+        band = answer.get("band") or {}
+        if len(answer.get("trajectory", {}).get("t_s", ())) != len(truth) or not band:
+            return {}
+        ends = {f"psi_{end}": np.array(band[end]["psi_rad"], float) for end in ("low", "high")}
+        return {name: values for name, values in ends.items() if np.isfinite(values).all()}
+
+    def diagnose(self, trials):
+        """Effects that `diagnose` names, in its order."""
+        files = self.program.write(trials, "diagnosed")
+        answer = self.program.answer("diagnose", "--model", self.model, "--trials", *files, "--json")
+        return named_effects(answer)
 
 
 def read(path, window):
@@ -84,6 +123,12 @@ def read(path, window):
         return None
     return {name.split("_")[0]: table[name] for name in table.dtype.names
             if name.split("_")[0] in (*STATES, *PLACE)}
+
+
+def named_effects(answer):
+    """Names of the effects of a diagnosis; `unexplained` where something remains without a name."""
+    named = [found["effect"] for found in answer.get("effects", [])]
+    return named + ["unexplained"] * (answer.get("verdict") == "unexplained")
 
 
 def count(document):
