@@ -51,8 +51,9 @@ def load(name, _folder):
     hidden = []
     for effect in EFFECTS:
         craft.effect = effect
-        changed = [craft.record(run, np.random.default_rng(zlib.crc32(repr((effect, run)).encode())))
-                   for run in CHANGED]
+        seeds = [zlib.crc32(repr((effect, run)).encode()) for run in CHANGED]
+        changed = [craft.record(run, np.random.default_rng(seed))
+                   for run, seed in zip(CHANGED, seeds)]
         for trial in changed:
             trial.name = f"{effect}_{trial.name}"
         trials += changed

@@ -1,7 +1,8 @@
 """The published model of the ship in the program's zoo, as it is: nothing is fitted."""
 
 from job import CannotDo
-from peers.sistership import Model, Program
+from peers.sistership import Model
+from program import Program
 
 
 
