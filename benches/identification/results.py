@@ -129,7 +129,7 @@ def cost_table(rows, peers):
     """What each peer needs and how often it is best, over all tasks that it can do."""
     lines = ["| peer | tasks | best | geometric mean of the ratio to the best | runs diverged "
              "| error of IMO figures, % | headings in the 95 % band | parameters | seconds | MB |",
-             "| --- | " + "--: | " * 9]
+             "| --- |" + " --: |" * 9]
     for peer in peers:
         done = [r for r in rows if r["peer"] == peer and is_compared(r)]
         if not done:
@@ -139,7 +139,7 @@ def cost_table(rows, peers):
         share = sum(r["diverged"] * r["runs"] for r in done) / sum(r["runs"] for r in done)
         best = sum(r["ratio_to_best"] < 1.0000001 for r in done)
         cells = [mean(done, "imo_percent", 1), mean(done, "coverage", 100)]
-        cells += [spread(r[name] for r in done) for name in ("parameters", "seconds", "memory_mb")]
+        cells += [spread(r.get(name) for r in done) for name in ("parameters", "seconds", "memory_mb")]
         lines.append(f"| {peer} | {len(done)} | {best} | {ratio:.2f} | {share:.1%} | "
                      + " | ".join(cells) + " |")
     return lines
@@ -171,11 +171,12 @@ def refusals(rows):
 
 
 def machine(rows, about):
-    versions = ", ".join(f"{name} {version}" for name, version in about["versions"].items())
+    families = [f"{family} {', '.join(map(' '.join, packages.items()))}".strip()
+                for family, packages in about["versions"].items()]
     programs = ", ".join(sorted({row["program"] for row in rows if row.get("program")}))
     return ["", f"{about['date']}, {about['machine']}, {about['cores']} cores, one process at a "
-            f"time; {programs or 'no program'}; Python {about['python']}, {versions}; seeds: 1 for every "
-            f"peer, those in the names of made ships."]
+            f"time; {programs or 'no program'}; Python {about['python']}; {'; '.join(families)}; "
+            f"seeds: 1 for every peer, those in the names of made ships."]
 
 
 def write_page(folder, page):

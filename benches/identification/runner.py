@@ -7,8 +7,13 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 HERE = pathlib.Path(__file__).resolve().parent
+
+
+class OutOfTime(Exception):
+    """The whole run is over its time."""
 
 
 def run_job(name, task, peer, options):
@@ -40,11 +45,14 @@ def outcome_of(name, task, peer, options, scratch):
     process = subprocess.Popen([interpreter, "-B", str(HERE / "job.py"), json.dumps(request)],
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                                env=environment(), start_new_session=True)
+    left = options.deadline - time.monotonic()
     try:
-        _, errors = process.communicate(timeout=WALL * options.seconds)
-    except subprocess.TimeoutExpired:
+        _, errors = process.communicate(timeout=min(WALL * options.seconds, max(left, 0.1)))
+    except subprocess.TimeoutExpired as late:
         os.killpg(process.pid, signal.SIGKILL)
         process.communicate()
+        if left <= WALL * options.seconds:
+            raise OutOfTime from late
         return {"cannot": f"took longer than {options.seconds:g} s"}
     if process.returncode == -signal.SIGXCPU:
         return {"cannot": f"took longer than {options.seconds:g} s"}

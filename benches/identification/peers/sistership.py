@@ -86,7 +86,7 @@ def read(path, window):
 
 def named_effects(answer):
     """Names of the effects of a diagnosis; `unexplained` where something remains without a name."""
-    named = [found["effect"] for found in answer.get("effects", [])]
+    named = [found["name"] for found in answer.get("effects", [])]
     return named + ["unexplained"] * (answer.get("verdict") == "unexplained")
 
 
