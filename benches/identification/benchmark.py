@@ -5,6 +5,7 @@
 
 import argparse
 import datetime
+import hashlib
 import importlib.metadata
 import json
 import os
@@ -12,19 +13,23 @@ import pathlib
 import platform
 import subprocess
 import sys
-import tempfile
+import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
 import loaders
 import results
+from runner import OutOfTime, run_job
 from trials import Missing
 
-QUICK_DATA = ("kvlcc2-hsva", "gunnerus", "made-cargo-1", "made-outboard-1")
-QUICK_PEERS = ("nomoto", "ridge", "pysindy", "mmg_scipy", "published", "sistership")
-QUICK_TASKS = ("held-out", "small-to-large", "trials-4", "zigzags-to-turns")
-TIMEOUT_S = 1800
+# Two measured ships, two made ones and the peers that fit in seconds: within ten minutes.
+QUICK_DATA = ("gunnerus", "kvlcc2-hsva", "made-cargo-1", "made-outboard-1")
+QUICK_PEERS = ("nomoto", "ridge", "published", "sistership", "mmg_scipy", "pysindy")
+QUICK_TASKS = ("held-out", "trials-4")
+QUICK_SECONDS, SECONDS = 60, 900
+# The whole of `--quick` by the clock; what is left then is run by `--add`.
+QUICK_LIMIT_S = 570
 
 
 def main():
@@ -35,15 +40,22 @@ def main():
     if options.quick:
         names = names if options.data else QUICK_DATA
         peers = peers if options.peers else QUICK_PEERS
-    previous = read_previous(options.out) if options.add else []
-    rows = list(previous)
-    done = {(row["data"], row["task"], row["peer"]) for row in previous}
-    for name in names:
-        for task in tasks_of(name, options):
-            for peer in peers:
-                if (name, task.name, peer) not in done:
-                    rows += run_job(name, task, peer, options)
-                    results.write(options.out, results.with_ratios(rows), about(options.program))
+    options.seconds = options.seconds or (QUICK_SECONDS if options.quick else SECONDS)
+    options.deadline = time.monotonic() + QUICK_LIMIT_S if options.quick else float("inf")
+    options.identity = identity(options.program)
+    rows = read_previous(options.out) if options.add else []
+    done = {(row["data"], row["task"], row["peer"]) for row in rows}
+    jobs = [(name, task, peer) for name in names for task in tasks_of(name, options)
+            for peer in peers if (name, task.name, peer) not in done]
+    for at, job in enumerate(jobs):
+        try:
+            rows += announced(run_job(*job, options))
+        except OutOfTime:
+            print(f"stopped after {QUICK_LIMIT_S} s: {len(jobs) - at} of {len(jobs)} fits are left, "
+                  "which --add runs", file=sys.stderr)
+            break
+        # Written after each job: a run that was broken off goes on by --add.
+        results.write(options.out, results.with_ratios(rows), about(options.identity))
     if not rows:
         sys.exit("error: no task was run; see --data and --tasks")
     print(pathlib.Path(options.out, "results.md").read_text())
@@ -58,7 +70,13 @@ def arguments():
                                        "that hold trials.yaml and benchmark.yaml")
     parser.add_argument("--tasks", help="names of tasks, such as held-out,trials-4")
     parser.add_argument("--out", default="benchmark-results", help="folder of the results")
-    parser.add_argument("--add", action="store_true", help="keep the rows that --out already has")
+    parser.add_argument("--add", action="store_true",
+                        help="keep the rows that --out already has, and run the others")
+    parser.add_argument("--seconds", type=float, default=0,
+                        help=f"most processor time of one peer on one task (default {SECONDS}, "
+                             f"with --quick {QUICK_SECONDS})")
+    parser.add_argument("--memory-gb", type=float, default=8.0,
+                        help="most memory of one peer on one task (default 8)")
     parser.add_argument("--shared", default=os.environ.get("SISTERSHIP_SHARED", default_shared()),
                         help="folder of the measured data")
     parser.add_argument("--program", default=os.environ.get("SISTERSHIP_PROGRAM", ""),
@@ -89,35 +107,10 @@ def tasks_of(name, options):
     except Missing as reason:
         print(f"skipped: {name}: {reason}", file=sys.stderr)
         return []
+    except ValueError as reason:
+        sys.exit(f"error: {name}: {reason}")
     wanted = options.tasks.split(",") if options.tasks else QUICK_TASKS if options.quick else None
     return [task for task in data.tasks if wanted is None or task.name in wanted]
-
-
-def run_job(name, task, peer, options):
-    """Rows of one peer on one task; a peer that cannot do it, fails or is too slow has a reason."""
-    with tempfile.TemporaryDirectory() as scratch:
-        answer = os.path.join(scratch, "answer.json")
-        request = {"data": name, "task": task.name, "peer": peer, "shared": options.shared,
-                   "scratch": scratch, "answer": answer,
-                   "program": os.path.abspath(options.program) if options.program else ""}
-        environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
-                       "PYTHONDONTWRITEBYTECODE": "1"}
-        try:
-            subprocess.run([sys.executable, str(HERE / "job.py"), json.dumps(request)], check=True,
-                           timeout=TIMEOUT_S, capture_output=True, text=True, env=environment)
-            with open(answer) as file:
-                outcome = json.load(file)
-        except subprocess.TimeoutExpired:
-            outcome = {"cannot": f"not finished within {TIMEOUT_S} s"}
-        except subprocess.CalledProcessError as error:
-            outcome = {"cannot": f"failed: {error.stderr.strip().splitlines()[-1]}"}
-    common = {"data": name, "task": task.name, "kind": task.kind, "peer": peer}
-    rows = outcome.get("rows", [{"prediction": "-", "cannot": outcome.get("cannot")}])
-    rows = [{**common, **row} for row in rows]
-    for row in rows:
-        print(f"{name} {task.name} {peer}: {row['prediction']} "
-              f"{row.get('cannot') or format(row['standardised_error'], '.4g')}", file=sys.stderr)
-    return rows
 
 
 def read_previous(folder):
@@ -125,22 +118,46 @@ def read_previous(folder):
     return json.loads(path.read_text())["rows"] if path.exists() else []
 
 
+def announced(rows):
+    """The rows of a job, which it prints."""
+    for row in rows:
+        outcome = row.get("cannot") or row.get("named") or f"{row['standardised_error']:.4g}"
+        print(f"{row['data']} {row['task']} {row['peer']}: {row['prediction']} {outcome}",
+              file=sys.stderr, flush=True)
+    return rows
+
+
+def identity(program):
+    """Version and SHA-256 (its first eight digits) of the program: builds share a version."""
+    if not program:
+        return "no program"
+    version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True)
+    with open(program, "rb") as file:
+        return f"{version.stdout.strip()} {hashlib.file_digest(file, 'sha256').hexdigest()[:8]}"
+
+
 def about(program):
     """Date, machine and versions of everything that took part."""
-    version = "no program"
-    if program:
-        version = subprocess.run([program, "--version"], capture_output=True, text=True,
-                                 check=True).stdout.strip()
-    pinned = (HERE / "requirements.txt").read_text().split()
-    versions = {}
-    for name in (line.split("==")[0] for line in pinned):
+    return {"date": datetime.date.today().isoformat(), "machine": processor(),
+            "cores": os.cpu_count(), "program": program, "python": platform.python_version(),
+            "versions": versions()}
+
+
+def versions():
+    """Versions of this interpreter's packages, and the pins of each family of peers."""
+    found = {"": {}}
+    for name, _ in pins("requirements.txt"):
         try:
-            versions[name] = importlib.metadata.version(name)
+            found[""][name] = importlib.metadata.version(name)
         except importlib.metadata.PackageNotFoundError:
             continue
-    return {"date": datetime.date.today().isoformat(), "machine": processor(),
-            "cores": os.cpu_count(), "program": version, "python": platform.python_version(),
-            "versions": versions}
+    for path in sorted(HERE.glob("requirements-*.txt")):
+        found[path.stem.removeprefix("requirements-") + "_*"] = dict(pins(path.name))
+    return found
+
+
+def pins(name):
+    return [line.split("==") for line in (HERE / name).read_text().split()]
 
 
 def processor():

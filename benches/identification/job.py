@@ -36,8 +36,12 @@ def run(request):
                         request["program"])
     np.random.seed(1)
     peer = importlib.import_module(f"peers.{request['peer']}")
+    if task.kind == "diagnosis" and not getattr(peer, "DIAGNOSES", False):
+        raise CannotDo("names no effects")
     started = processor_seconds()
     model = peer.fit(training)
+    if task.kind == "diagnosis":
+        return [diagnosis(model, data.select(task.test), started)]
     seconds = processor_seconds() - started
     limit = limits(training.trials)
     rows = []
@@ -50,7 +54,17 @@ def run(request):
                      "settings": str(getattr(model, "settings", ""))})
     for row in rows:
         row["memory_mb"] = memory_mb()
+        row["reference"] = data.ship.made_by_published and request["peer"] == "published"
+        if row["restart_s"]:
+            row["imo_percent"] = None
     return rows
+
+
+def diagnosis(model, trials, started):
+    """The effects that a model names in trials it was not fitted on."""
+    named = ", ".join(model.diagnose(trials)) or "nothing"
+    return {"prediction": "diagnosis", "named": named, "parameters": model.parameters,
+            "seconds": processor_seconds() - started, "memory_mb": memory_mb()}
 
 
 def processor_seconds():
@@ -66,9 +80,17 @@ def memory_mb():
     return most / 1024
 
 
+def set_limits(request):
+    """Processor time and memory of this process, and of each program that it runs."""
+    seconds, most = int(request["seconds"]), int(request["memory_gb"] * 2**30)
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
+    resource.setrlimit(resource.RLIMIT_DATA, (most, most))
+
+
 if __name__ == "__main__":
     sys.modules["job"] = sys.modules["__main__"]
     request = json.loads(sys.argv[1])
+    set_limits(request)
     try:
         answer = {"rows": run(request)}
     except CannotDo as reason:

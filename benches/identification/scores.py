@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from imo import imo_error
 from trials import STATES, integrate
 
 CHANNELS = (*STATES, "psi")
@@ -47,7 +48,24 @@ def score(windows, predictions, limit):
     degrees = lambda value: None if value is None else float(np.degrees(value))
     return {"standardised_error": float(np.mean(each)), "heading_deg": degrees(rms["psi"]),
             "u_m_s": rms["u"], "v_m_s": rms["v"], "r_deg_s": degrees(rms["r"]),
-            "runs": len(windows), "diverged": diverged / len(windows)}
+            "runs": len(windows), "diverged": diverged / len(windows),
+            "imo_percent": imo_error(truths, [headed(t, p) for t, p in zip(truths, predictions)]),
+            "coverage": coverage(truths, predictions)}
+
+
+def headed(truth, prediction):
+    """A prediction with a heading, that of its yaw rate where it has none."""
+    if prediction is None:
+        return None
+    return {"psi": integrate(prediction["r"], truth.dt), **prediction}
+
+
+def coverage(truths, predictions):
+    """Share of headings within the predicted bands of 95 %; None where none were predicted."""
+    inside = [(prediction["psi_low"] <= turned(truth)) & (turned(truth) <= prediction["psi_high"])
+              for truth, prediction in zip(truths, predictions)
+              if prediction is not None and "psi_low" in prediction]
+    return float(np.concatenate(inside).mean()) if inside else None
 
 
 def has_diverged(prediction, limit):

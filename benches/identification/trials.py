@@ -68,6 +68,8 @@ class Ship:
     zoo: str = ""
     published: str = ""
     actuators: str = ""
+    # Whether the published model has made the data: its errors are shown, not compared.
+    made_by_published: bool = False
 
     @property
     def length(self):
@@ -99,11 +101,15 @@ class DataSet:
 
 
 def uniform_trial(name, channels, dt, measured=STATES + PLACE):
-    """Means over steps of `dt`, heading and positions integrated where they were not measured."""
-    t = np.asarray(channels["t"], float)
+    """Means over steps of `dt`, heading and positions integrated where they were not measured.
+
+    Rows without a time are left out (blank lines at the end of a recording)."""
+    dated = np.isfinite(np.asarray(channels["t"], float))
+    channels = {name: np.asarray(values, float)[dated] for name, values in channels.items()}
+    t = channels["t"]
     edges = np.arange(t[0], t[-1] + 1e-9, dt)
     half = max(dt, float(np.median(np.diff(t)))) / 2
-    means = {name: _means(t, np.asarray(values, float), edges, half)
+    means = {name: _means(t, values, edges, half)
              for name, values in channels.items() if name != "t"}
     means["t"] = edges - edges[0]
     if "psi" not in means:
@@ -139,8 +145,10 @@ def track(u, v, psi, dt):
 def read_columns(path, delimiter=","):
     """Columns of a CSV file by name; blank cells become NaN."""
     with open(path, newline="") as file:
-        rows = list(csv.DictReader(file, delimiter=delimiter))
-    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
+        names, *rows = csv.reader(file, delimiter=delimiter)
+    columns = zip(*(row for row in rows if row))
+    return {name: np.array([cell.strip() or "nan" for cell in column]).astype(float)
+            for name, column in zip(names, columns)}
 
 
 def write_canonical(trial, controls, path, place=PLACE):

@@ -9,7 +9,7 @@ import os
 
 import numpy as np
 
-from trials import DataSet, Missing, Ship, Task, read_columns, uniform_trial
+from trials import STATES, DataSet, Missing, Ship, Task, read_columns, uniform_trial
 
 FACTORS = {"s": 1, "ms": 1e-3, "m": 1, "rad": 1, "deg": np.pi / 180, "m/s": 1, "kn": 0.514444,
            "rad/s": 1, "deg/s": np.pi / 180, "rps": 1, "rpm": 1 / 60}
@@ -25,6 +25,10 @@ def load(path, _shared):
             judged = yaml.safe_load(file)
     except FileNotFoundError as error:
         raise Missing(f"{error.filename} is missing") from error
+    absent = {"t", *STATES, *judged["controls"]} - set(manifest["columns"])
+    if absent:
+        raise ValueError(f"{path}/trials.yaml: no column for {sorted(absent)}; each of t, u, v, r and "
+                         "the controls needs one under `columns`")
     step = float(judged["step_s"])
     trials = [read_trial(path, entry, manifest, step) for entry in manifest["trials"]]
     names = [trial.name for trial in trials]

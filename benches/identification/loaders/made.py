@@ -26,6 +26,10 @@ FITTED = [("zigzag", 20, 1.0), ("turn", 25, 1.0), ("zigzag", -10, 1.0), ("turn",
 ZIGZAGS = [("zigzag", -20, 1.0), ("zigzag", 10, 1.0)]
 JUDGED = [("turn", 35, 1.0), ("turn", -20, 1.0), ("zigzag", 15, 1.0), ("random", 20, 0.9)]
 SLOW = [("turn", 30, 0.6), ("zigzag", 20, 0.6)]
+# Trials after something has changed that the columns do not show, of ships with one angle.
+CHANGED = [("zigzag", 20, 1.0), ("turn", 25, 1.0), ("zigzag", -10, 1.0), ("turn", -30, 1.0)]
+EFFECTS = ("none", "rudder-offset", "propeller-damage", "yaw-rate-bias")
+OFFSET, THRUST_LOSS, RATE_BIAS = np.radians(2.5), 0.85, 0.02
 
 
 def load(name, _folder):
@@ -42,8 +46,19 @@ def load(name, _folder):
            for k in (1, 2, 4, 8)]
     further = [Task("zigzags-to-turns", "extrapolation", zigzags, judged[:2]),
                Task("full-to-slow", "extrapolation", full, [title(run) for run in SLOW])]
-    controls = ("n_p", "n_s") if kind == "catamaran" else ("delta", "n")
-    return DataSet(name, craft.ship(name), controls, trials, few + further)
+    if kind == "catamaran":
+        return DataSet(name, craft.ship(name), ("n_p", "n_s"), trials, few + further)
+    hidden = []
+    for effect in EFFECTS:
+        craft.effect = effect
+        seeds = [zlib.crc32(repr((effect, run)).encode()) for run in CHANGED]
+        changed = [craft.record(run, np.random.default_rng(seed))
+                   for run, seed in zip(CHANGED, seeds)]
+        for trial in changed:
+            trial.name = f"{effect}_{trial.name}"
+        trials += changed
+        hidden.append(Task(f"hidden-{effect}", "diagnosis", fitted, [t.name for t in changed]))
+    return DataSet(name, craft.ship(name), ("delta", "n"), trials, few + further + hidden)
 
 
 def title(run):
@@ -54,7 +69,7 @@ class Craft:
     """A ship drawn at random within a kind."""
 
     def __init__(self, kind, rng):
-        self.kind = kind
+        self.kind, self.effect = kind, "none"
         self.length = rng.uniform(*SIZES[kind])
         self.beam = self.length / rng.uniform(4.5, 6.5)
         self.draught = self.beam / rng.uniform(2.4, 3.4)
@@ -80,6 +95,11 @@ class Craft:
     def push(self, n, u):
         """Thrust of all propellers: quadratic in revolutions, falling with the advance."""
         k, a = n / self.revolutions, u / self.speed
+        if self.effect == "propeller-damage":
+            return THRUST_LOSS * self.sound_push(k, a)
+        return self.sound_push(k, a)
+
+    def sound_push(self, k, a):
         if self.kind == "water_jet":
             return self.thrust * k * (k - self.advance * a)
         return self.thrust * (k * abs(k) - self.advance * a * (0.8 * abs(k) + 0.2 * a))
@@ -92,6 +112,7 @@ class Craft:
             port, starboard = (self.push(n, u) / 2 for n in orders)
             return port + starboard, 0.0, (port - starboard) * 0.4 * self.beam * 2
         angle, n = orders
+        angle += OFFSET if self.effect == "rudder-offset" else 0.0
         push, inflow = self.push(n, u), v - half * r
         if self.kind == "cargo":
             wash = np.sqrt(u * u + max(push, 0) / (0.5 * RHO * np.pi * (0.35 * self.draught)**2))
@@ -160,6 +181,8 @@ class Craft:
         channels = dict(zip(names, rows))
         channels["x"], channels["y"] = track(channels["u"], channels["v"], channels["psi"], dt)
         scale = {"u": self.speed, "v": self.speed, "r": self.speed / self.length, "psi": 1.0}
+        if self.effect == "yaw-rate-bias":
+            channels["r"] = channels["r"] + RATE_BIAS * scale["r"]
         for channel, share in NOISE.items():
             channels[channel] = channels[channel] + rng.normal(0, share * scale[channel],
                                                                len(channels["t"]))

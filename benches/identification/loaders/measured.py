@@ -196,7 +196,7 @@ def sr108(folder):
     ship = Ship("sr108", "dry-cargo", {"lpp_m": 175.0, "beam_m": 25.4, "draught_m": 8.5,
                 "block_coefficient": 0.562, "displacement_m3": 21222.0, "rudder_area_m2": 33.0376,
                 "propeller_diameter_m": 6.533, "service_speed_m_s": 12.42}, zoo="sr108",
-                published="sr108")
+                published="sr108", made_by_published=True)
     return DataSet("sr108", ship, ("delta", "n"), noisy + clean, tasks)
 
 
@@ -213,5 +213,5 @@ def mariner(folder):
     ship = Ship("mariner", "dry-cargo", {"lpp_m": 160.93, "beam_m": 23.2, "draught_m": 8.23,
                 "block_coefficient": 0.59, "displacement_m3": 18541.0, "rudder_area_m2": 30.01,
                 "propeller_diameter_m": 6.706, "service_speed_m_s": 7.7175}, zoo="mariner",
-                published="mariner")
+                published="mariner", made_by_published=True)
     return DataSet("mariner", ship, ("delta",), trials, tasks)

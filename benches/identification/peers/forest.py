@@ -6,7 +6,6 @@ from sklearn.ensemble import RandomForestRegressor
 from motion import AccelerationModel, accelerations, limits
 from selection import select
 
-NEEDS = ("scikit-learn",)
 # Half width of the derivative filter and least number of rows in a leaf.
 OPTIONS = [(3, 3), (3, 15), (6, 3), (6, 15)]
 

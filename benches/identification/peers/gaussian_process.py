@@ -7,7 +7,6 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 from motion import AccelerationModel, accelerations, limits
 from selection import select
 
-NEEDS = ("scikit-learn",)
 # Half width of the derivative filter and number of rows that the process is conditioned on.
 OPTIONS = [(3, 200), (6, 200), (6, 400)]
 

@@ -12,7 +12,6 @@ from motion import AccelerationModel, limits
 from selection import select
 from trials import STATES, Window
 
-NEEDS = ("scipy",)
 # Mean of each parameter. The first three are added masses and inertia, the last six propulsion.
 PRIORS = {"mx": 0.02, "my": 0.22, "jz": 0.02, "x0": 0.022, "xvv": -0.04, "xvr": 0.0, "xrr": 0.01,
           "yv": -0.315, "yr": 0.08, "yvvv": -1.6, "yvvr": 0.38, "yvrr": -0.39, "yrrr": 0.008,

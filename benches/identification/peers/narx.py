@@ -11,7 +11,6 @@ from motion import limits
 from selection import select
 from trials import STATES
 
-NEEDS = ("sysidentpy",)
 # Degree of the polynomial and number of terms of each state.
 OPTIONS = [(1, 6), (2, 8), (2, 14), (3, 12)]
 LAGS = 2

@@ -8,7 +8,6 @@ from sklearn.neural_network import MLPRegressor
 from motion import AccelerationModel, accelerations, limits
 from selection import select
 
-NEEDS = ("scikit-learn",)
 # Half width of the derivative filter, neurons of each of two layers, l2 penalty.
 OPTIONS = [(width, neurons, penalty) for width in (3, 6) for neurons in (16, 48)
            for penalty in (1e-3, 1e-1)]

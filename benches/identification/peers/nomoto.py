@@ -5,7 +5,6 @@ import numpy as np
 from motion import AccelerationModel, accelerations, limits, orders
 from selection import select
 
-NEEDS = ("numpy",)
 
 
 def fit(task):

@@ -1,9 +1,9 @@
 """The published model of the ship in the program's zoo, as it is: nothing is fitted."""
 
 from job import CannotDo
-from peers.sistership import Model, Program
+from peers.sistership import Model
+from program import Program
 
-NEEDS = ("numpy",)
 
 
 def fit(task):

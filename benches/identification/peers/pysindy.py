@@ -8,7 +8,6 @@ import pysindy
 from motion import AccelerationModel, accelerations, limits
 from selection import select
 
-NEEDS = ("pysindy",)
 OPTIONS = [(degree, width, threshold) for degree in (2, 3) for width in (2, 5)
            for threshold in (0.003, 0.03)]
 

@@ -7,7 +7,6 @@ from sklearn.preprocessing import StandardScaler
 from motion import Abkowitz, AccelerationModel, accelerations, limits
 from selection import select
 
-NEEDS = ("scikit-learn",)
 OPTIONS = [(width, alpha) for width in (2, 4, 8) for alpha in (1e-2, 1e-1, 1.0, 10.0, 100.0)]
 
 

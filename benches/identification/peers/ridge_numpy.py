@@ -5,7 +5,6 @@ import numpy as np
 from motion import Abkowitz, AccelerationModel, accelerations, limits
 from selection import select
 
-NEEDS = ("numpy",)
 OPTIONS = [(width, strength) for width in (2, 5) for strength in (1e-5, 1e-3, 1e-1)]
 
 

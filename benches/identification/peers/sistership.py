@@ -2,14 +2,15 @@
 
 import json
 import os
-import subprocess
 
 import numpy as np
 
-from job import CannotDo
-from trials import PLACE, STATES, write_canonical
+from program import Program
+from trials import PLACE, STATES, UNITS
 
-NEEDS = ("numpy",)
+DIAGNOSES = True
+# Models drawn from the posterior for the bands of headings.
+DRAWS = 40
 
 
 def fit(task, *flags):
@@ -22,39 +23,6 @@ def fit(task, *flags):
     report = program.call("refine", "--ship", ship, "--trials", manifest, "--out", model, "--json",
                           *flags)
     return Model(program, model, report)
-
-
-class Program:
-    """Commands in the scratch folder of a task."""
-
-    def __init__(self, task):
-        self.task = task
-        if not task.program:
-            raise CannotDo("no program: name it in SISTERSHIP_PROGRAM")
-
-    def call(self, *arguments):
-        done = subprocess.run([self.task.program, *arguments], capture_output=True, text=True,
-                              cwd=self.task.scratch, env={**os.environ, "RAYON_NUM_THREADS": "1"})
-        errors = [line for line in done.stderr.splitlines() if line.startswith("error")]
-        if errors or done.returncode == 2:
-            raise CannotDo(f"`{arguments[0]}` refused: {' '.join(errors)}")
-        return done.stdout
-
-    def init(self, ship):
-        """Particulars as a user states them; the zoo's file where it has the ship without model."""
-        path = os.path.join(self.task.scratch, "ship.yaml")
-        values = [f"{name}={value}" for name, value in ship.particulars.items()]
-        self.call("init", ship.name, "--category", ship.category, *values, "--out", path)
-        if ship.actuators:
-            with open(path, "a") as file:
-                file.write(f"actuators:\n{ship.actuators}")
-        return path
-
-    def write(self, trials, prefix, place=PLACE):
-        paths = [os.path.join(self.task.scratch, f"{prefix}-{k:03}.csv") for k in range(len(trials))]
-        for trial, path in zip(trials, paths):
-            write_canonical(trial, self.task.controls, path, place)
-        return paths
 
 
 class Model:
@@ -72,7 +40,37 @@ class Model:
         files = self.program.write([w.truth for w in windows], "window", ("psi",))
         out = os.path.join(self.program.task.scratch, "simulated")
         self.program.call("simulate", "--model", self.model, "--trials", *files, "--out", out)
-        return [read(os.path.join(out, os.path.basename(f)), w) for f, w in zip(files, windows)]
+        found = [read(os.path.join(out, os.path.basename(f)), w) for f, w in zip(files, windows)]
+        return [run and {**run, **self.band(window)} for run, window in zip(found, windows)]
+
+    def band(self, window):
+        """Band of headings of a whole run, by `predict`, which starts from a steady course ahead
+        under one rudder; empty for other runs and for models without a posterior."""
+        truth, controls = window.truth, self.program.task.controls
+        u, v, r = (truth[name][0] for name in STATES)
+        length = self.program.task.ship.length
+        if (window.start or self.parameters == 0 or controls[0] != "delta"
+                or max(abs(v), abs(r) * length) > 0.05 * u):
+            return {}
+        orders = os.path.join(self.program.task.scratch, "orders.csv")
+        names = ["delta", "n"][:len(controls)]
+        header = ",".join(["t_s", *(f"{name}_{UNITS[name]}" for name in names)])
+        np.savetxt(orders, truth.columns(["t", *names]), delimiter=",", header=header, comments="")
+        answer = self.program.answer(
+            "predict", "--model", self.model, "--orders", orders, "--speed-m-s", str(u),
+            "--heading-deg", "0", "--duration-s", str(truth["t"][-1] - truth["t"][0]), "--dt-s",
+            str(truth.dt), "--draws", str(DRAWS), "--json")
+        band = answer.get("band") or {}
+        if len(answer.get("trajectory", {}).get("t_s", ())) != len(truth) or not band:
+            return {}
+        ends = {f"psi_{end}": np.array(band[end]["psi_rad"], float) for end in ("low", "high")}
+        return {name: values for name, values in ends.items() if np.isfinite(values).all()}
+
+    def diagnose(self, trials):
+        """Effects that `diagnose` names, in its order."""
+        files = self.program.write(trials, "diagnosed")
+        answer = self.program.answer("diagnose", "--model", self.model, "--trials", *files, "--json")
+        return named_effects(answer)
 
 
 def read(path, window):
@@ -84,6 +82,12 @@ def read(path, window):
         return None
     return {name.split("_")[0]: table[name] for name in table.dtype.names
             if name.split("_")[0] in (*STATES, *PLACE)}
+
+
+def named_effects(answer):
+    """Names of the effects of a diagnosis; `unexplained` where something remains without a name."""
+    named = [found["name"] for found in answer.get("effects", [])]
+    return named + ["unexplained"] * (answer.get("verdict") == "unexplained")
 
 
 def count(document):

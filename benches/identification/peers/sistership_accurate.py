@@ -2,7 +2,7 @@
 
 from peers import sistership
 
-NEEDS = ("numpy",)
+DIAGNOSES = True
 
 
 def fit(task):
