@@ -24,9 +24,9 @@ pub const TYPICAL_SOURCE: &str = "typical value of the law";
 /// Speeds within this share of the approach speed are on the approach.
 const NEAR_APPROACH: f64 = 0.1;
 
-/// Returns the approach of a set of trials: the median speed at their first samples, with the median
-/// revolutions at the first samples of the trials that begin near that speed; where trials start
-/// from rest, the typical speed and revolutions under way. `None` without velocities.
+/// Returns the approach of a set of trials: the median speed at their first samples, with the typical
+/// revolutions of the trials that begin near that speed; where trials start from rest, the typical
+/// speed and revolutions under way. `None` without velocities.
 pub fn trial_approach(trials: &[&Trial]) -> Option<TrialApproach> {
     let mut starts: Vec<f64> = trials.iter().filter_map(|trial| start_speed(trial)).collect();
     let mut speeds: Vec<f64> = trials
@@ -37,10 +37,16 @@ pub fn trial_approach(trials: &[&Trial]) -> Option<TrialApproach> {
     // Half of the speed under way separates a start from rest from a steady approach.
     let is_steady = start > 0.5 * under_way;
     let speed_m_s = if is_steady { start } else { under_way };
-    let of_start = || start_revolutions(trials, start).filter(|_| is_steady);
+    // Slower trials have fewer revolutions, which do not belong to this approach.
+    let is_near = |trial: &&&Trial| {
+        let near = |start: f64| (start / speed_m_s - 1.0).abs() <= NEAR_APPROACH;
+        !is_steady || start_speed(trial).is_some_and(near)
+    };
+    let mut revolutions: Vec<f64> =
+        trials.iter().filter(is_near).flat_map(|trial| shaft_revolutions(trial)).collect();
     (speed_m_s > 0.0).then(|| TrialApproach {
         speed_m_s,
-        n_rps: of_start().or_else(|| typical_revolutions(trials)).filter(|n| *n > 0.0),
+        n_rps: typical_value(&mut revolutions).filter(|n| *n > 0.0),
     })
 }
 
@@ -49,28 +55,10 @@ fn start_speed(trial: &Trial) -> Option<f64> {
     Some(trial.channel(Channel::U)?.first()?.hypot(*trial.channel(Channel::V)?.first()?))
 }
 
-/// Median revolutions at the first samples of trials that begin near a speed. An engine loses
-/// revolutions in turns, and slower trials have fewer: neither belongs to this approach.
-fn start_revolutions(trials: &[&Trial], speed_m_s: f64) -> Option<f64> {
-    let is_near = |trial: &&&Trial| {
-        start_speed(trial).is_some_and(|start| (start / speed_m_s - 1.0).abs() <= NEAR_APPROACH)
-    };
-    let near = trials.iter().filter(is_near);
-    let mut first: Vec<f64> = near
-        .flat_map(|trial| shaft_revolutions(trial).filter_map(|shaft| shaft.first().copied()))
-        .collect();
-    median_value(&mut first)
-}
-
-/// Typical revolutions over all samples, 1/s.
-fn typical_revolutions(trials: &[&Trial]) -> Option<f64> {
-    let all = trials.iter().flat_map(|trial| shaft_revolutions(trial).flatten().copied());
-    typical_value(&mut all.collect::<Vec<_>>())
-}
-
-/// Revolutions of every shaft over time, 1/s.
-fn shaft_revolutions(trial: &Trial) -> impl Iterator<Item = &[f64]> {
-    [Channel::N, Channel::NS, Channel::NP].into_iter().filter_map(|shaft| trial.channel(shaft))
+/// Revolutions of every shaft at every sample, 1/s.
+fn shaft_revolutions(trial: &Trial) -> impl Iterator<Item = f64> {
+    let shafts = [Channel::N, Channel::NS, Channel::NP].into_iter();
+    shafts.flat_map(|shaft| trial.channel(shaft).into_iter().flatten().copied())
 }
 
 /// Median; the root mean square where trials stop, go astern or turn on the spot, so that the median
@@ -387,19 +375,19 @@ mod tests {
     }
 
     #[test]
-    fn revolutions_are_those_of_the_speed() {
-        // Slower trials with fewer revolutions, and an engine that falls off after its first sample.
+    fn slower_trials_leave_the_revolutions_of_the_approach_as_they_are() {
         let motion = |speed: f64, n_rps: f64| {
-            let with = |values: [f64; 4]| values.to_vec();
             let channels = [
-                (Channel::U, with([speed, 0.8 * speed, 0.7 * speed, 0.7 * speed])),
-                (Channel::V, with([0.0; 4])),
-                (Channel::N, with([n_rps, 0.9 * n_rps, 0.8 * n_rps, 0.8 * n_rps])),
+                (Channel::U, vec![speed, 0.8 * speed, 0.7 * speed]),
+                (Channel::V, vec![0.0; 3]),
+                (Channel::N, vec![n_rps; 3]),
             ];
             Trial { channels: channels.into(), ..Trial::default() }
         };
-        let all = [motion(8.0, 3.0), motion(4.8, 1.8), motion(8.1, 3.1), motion(7.9, 2.9)];
+        let slow = [motion(4.8, 1.8), motion(4.7, 1.7)];
+        let all = [motion(8.0, 3.0), motion(8.1, 3.1), motion(7.9, 2.9)].into_iter().chain(slow);
+        let all: Vec<Trial> = all.collect();
         let approach = trial_approach(&all.iter().collect::<Vec<_>>());
-        assert_eq!(approach, Some(TrialApproach { speed_m_s: 8.0, n_rps: Some(3.0) }));
+        assert_eq!(approach, Some(TrialApproach { speed_m_s: 7.9, n_rps: Some(3.0) }));
     }
 }
