@@ -1,7 +1,7 @@
 //! Search for the most probable hypothesis: each effect alone, then sets of effects that improve on
 //! it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::DVector;
 use sistership_model::law::Law;
@@ -55,6 +55,8 @@ pub(super) struct HypothesisSearch<'a> {
     pub states_odds: bool,
     /// Information of earlier trials on the effects.
     pub history: EffectHistory,
+    /// Names of the effects that differ from day to day: they do not belong to the ship.
+    pub daily: BTreeSet<String>,
 }
 
 impl<'a> HypothesisSearch<'a> {
