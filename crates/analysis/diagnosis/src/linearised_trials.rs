@@ -101,7 +101,7 @@ impl<'a> LinearisedTrials<'a> {
     pub fn linearise_with<T: Send>(
         mut self,
         columns: usize,
-        derive: &(dyn Fn(&Self, &[LinearisedPart]) -> Result<T, RefineError> + Sync),
+        derive: impl Fn(&Self, &[LinearisedPart]) -> Result<T, RefineError> + Sync,
     ) -> Result<(Self, Vec<T>), RefineError> {
         let of_trial = |record| {
             let mut parts = linearise(&self.system, record, LinearisationDetail::Whole)?;
