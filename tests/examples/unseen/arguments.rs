@@ -26,6 +26,8 @@ pub struct Arguments {
     pub limits: Vec<f64>,
     /// Speeds of a steady wind with an anemometer, m/s, that are hidden instead.
     pub winds: Vec<f64>,
+    /// Clean sets of drawn manoeuvres of each of twenty ships, which are diagnosed instead.
+    pub clean_sets: u64,
     /// What begins within trials or between them is hidden instead.
     pub changes: bool,
     /// Numbers that draw ships, which take the place of those of the half.
@@ -34,6 +36,8 @@ pub struct Arguments {
     pub hull: Hull,
     /// The program that is judged; this tree's where absent.
     pub program: Option<PathBuf>,
+    /// Number of clean trials that a model is refined on.
+    pub clean_trials: usize,
     /// Where refined models are kept.
     pub models: Option<PathBuf>,
     pub jobs: usize,
@@ -68,10 +72,12 @@ impl Arguments {
             sizes: vec![1.0],
             limits: Vec::new(),
             winds: Vec::new(),
+            clean_sets: 0,
             changes: false,
             drawn: Vec::new(),
             hull: Hull::default(),
             program: None,
+            clean_trials: 12,
             models: None,
             jobs: 1,
         }
@@ -88,6 +94,7 @@ impl Arguments {
             "--sizes" => self.sizes = shares(),
             "--limits" => self.limits = shares(),
             "--winds" => self.winds = shares(),
+            "--clean-sets" => self.clean_sets = value.parse().expect("a number of sets"),
             "--changes" => self.changes = value == "true",
             "--drawn" => {
                 let number = |text: &String| text.parse().expect("a number that draws a ship");
@@ -95,6 +102,9 @@ impl Arguments {
             }
             "--hull" => self.hull = Hull::named(value).unwrap_or_else(|error| panic!("{error}")),
             "--program" => self.program = Some(value.into()),
+            "--clean-trials" => {
+                self.clean_trials = value.parse().expect("a number of trials");
+            }
             "--models" => self.models = Some(value.into()),
             "--jobs" => self.jobs = value.parse().expect("a number of jobs"),
             _ => panic!("no flag {flag}"),

@@ -7,7 +7,7 @@ use sistership_model::Trial;
 use sistership_tests::truth::causes::trials;
 use sistership_tests::truth::files::write_trials;
 
-use crate::cases::{Case, programme};
+use crate::cases::{Case, courses};
 use crate::outcome::Outcome;
 use crate::program::Program;
 use crate::ships::{Refined, TrueShip};
@@ -36,7 +36,8 @@ pub fn answer(
     model: &Refined,
     case: &Case,
 ) -> (Value, Durations, f64) {
-    let sailed = trials(&*ship.truth, &case.hidden, &programme(), &ship.instruments(), case.seed);
+    let courses = courses(case);
+    let sailed = trials(&*ship.truth, &case.hidden, &courses, &ship.instruments(), case.seed);
     let folder = tempfile::tempdir().expect("a folder");
     let files = write_trials(folder.path(), &ship.name(), &sailed.iter().collect::<Vec<&Trial>>());
     let words = [model.path.display().to_string(), files.display().to_string()];

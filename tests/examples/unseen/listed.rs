@@ -2,7 +2,7 @@
 //! with the ship's own: speeds with its speed, lengths with its length, times with `L/U`.
 
 use sistership_tests::truth::causes::{
-    Author, Current, Depth, Force, Gear, Hidden, Sensor, Waves, Wind, resistance_n,
+    Author, Current, Depth, DriftAuthor, Force, Gear, Hidden, Sensor, Waves, Wind, resistance_n,
 };
 use sistership_tests::truth::dimensions::Dimensions;
 use sistership_tests::truth::motion::Truth;
@@ -64,16 +64,18 @@ fn read(sensor: Sensor) -> Hidden {
     Hidden { sensors: vec![sensor], ..Hidden::default() }
 }
 
+fn waves(ship: &Dimensions, share: f64, author: DriftAuthor) -> Waves {
+    let amplitude_m = 0.003 * ship.lpp_m * share.sqrt();
+    Waves { amplitude_m, from_rad: WAVES_FROM_DEG.to_radians(), author }
+}
+
 fn of_weather(ship: &Dimensions, share: f64) -> Vec<Case> {
     let blowing = |by_speed: f64, author, is_recorded| {
         wind(ship, by_speed * share.sqrt(), author, is_recorded)
     };
     let flowing = |turns_deg: f64| current(ship, 0.05 * share, turns_deg);
     let size = 0.05 * share * ship.speed_m_s;
-    let waves = Waves {
-        amplitude_m: 0.003 * ship.lpp_m * share.sqrt(),
-        from_rad: WAVES_FROM_DEG.to_radians(),
-    };
+    let waves = waves(ship, share, DriftAuthor::Wall);
     vec![
         case("wind, Isherwood", &["wind"], blowing(1.1, Author::Isherwood, true), &[]),
         case("wind, Blendermann", &["wind"], blowing(1.3, Author::Blendermann, true), &[]),
@@ -151,6 +153,19 @@ fn of_instruments(ship: &Dimensions, share: f64) -> Vec<Case> {
         case("log scale", &["speed-log"], read(Sensor::Log(scale)), &[("scale", scale)]),
         case("lever arm", &["lever-arm"], read(lever), &[("forward_m", forward)]),
         case("late compass", &["time-delay"], read(Sensor::Late(delay_s)), &[("delay_s", delay_s)]),
+    ]
+}
+
+/// Single effects by a second author, of those that have one above.
+pub fn other_authors(truth: &dyn Truth, share: f64) -> Vec<Case> {
+    let ship = truth.dimensions();
+    let drift = waves(ship, share, DriftAuthor::Daidola);
+    let fouled = forced(Force::Resistance(0.15 * share, 1.8));
+    let walk = forced(Force::PropellerWalk(0.06 * share, -0.03 * share));
+    vec![
+        case("drift by angle, Daidola", &["wave-drift"], forced(Force::Waves(drift)), &[]),
+        case("fouling, power 1.8", &["extra-resistance"], fouled, &[]),
+        case("propeller by revolutions", &["propeller-asymmetry"], walk, &[]),
     ]
 }
 

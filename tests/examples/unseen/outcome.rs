@@ -30,7 +30,10 @@ pub struct Outcome {
     /// Whether the smallest size that would have been shown is above what was hidden.
     pub below_limit: bool,
     pub wall_s: f64,
-    evidence: Vec<String>,
+    /// Evidence of what is named.
+    evidence: Vec<f64>,
+    /// Accelerations with what they go with, where no segment stands out.
+    patterns: Vec<String>,
 }
 
 impl Outcome {
@@ -43,9 +46,7 @@ impl Outcome {
     ) -> Self {
         let effects = answer["effects"].as_array().cloned().unwrap_or_default();
         let name = |effect: &Value| effect["name"].as_str().unwrap_or_default().to_owned();
-        let evidence = |effect: &Value| {
-            format!("{} {:.0}", name(effect), effect["evidence"].as_f64().unwrap_or_default())
-        };
+        let evidence = |effect: &Value| effect["evidence"].as_f64().unwrap_or_default();
         let right = effects.iter().filter(|effect| case.names.contains(&name(effect).as_str()));
         Self {
             named: effects.iter().map(name).collect(),
@@ -55,6 +56,7 @@ impl Outcome {
             open: strongest(answer, durations_s),
             below_limit: limits::is_below(&answer["limits"], &case),
             evidence: effects.iter().map(evidence).collect(),
+            patterns: answer["patterns"].as_array().into_iter().flatten().map(pattern).collect(),
             ship,
             case,
             wall_s,
@@ -109,8 +111,30 @@ impl Outcome {
             Kind::AtLimit(share) => self.is_first() == (share > 1.0),
             Kind::Unlisted(..) => self.is_right_place(),
             Kind::Change(_) => self.is_right_change(),
-            Kind::Clean => self.named.is_empty() && !self.is_unexplained(),
+            Kind::Clean | Kind::CleanSet => self.is_silent(),
         }
+    }
+
+    /// Returns true if nothing is named and nothing is unexplained.
+    pub fn is_silent(&self) -> bool {
+        self.named.is_empty() && !self.is_unexplained()
+    }
+
+    /// Evidence of the most evident effect; minus infinity where none is named.
+    pub fn largest_evidence(&self) -> f64 {
+        self.evidence.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Names with their evidence, and what is unexplained.
+    pub fn description(&self) -> String {
+        let named = self.named.iter().zip(&self.evidence);
+        let named = named.map(|(name, evidence)| format!("{name} {evidence:.0}"));
+        let open = self.open.as_ref().filter(|_| self.is_unexplained());
+        let open = open.map(|(channel, ..)| match self.patterns.is_empty() {
+            true => format!("unexplained {channel}"),
+            false => format!("unexplained {}", self.patterns.join(", ")),
+        });
+        named.chain(open).collect::<Vec<_>>().join(", ")
     }
 
     pub fn line(&self) -> String {
@@ -131,13 +155,20 @@ impl Outcome {
             self.ship,
             self.case.label,
             self.verdict,
-            self.evidence.join(", "),
+            self.description(),
             open.unwrap_or_default(),
             off.join(", "),
             if self.below_limit { " below the limit" } else { "" },
             self.wall_s
         )
     }
+}
+
+/// An acceleration, what it goes with, and the evidence for it.
+fn pattern(told: &Value) -> String {
+    let text = |name: &str| told[name].as_str().unwrap_or_default().to_owned();
+    let evidence = told["evidence"].as_f64().unwrap_or_default();
+    format!("{} by {} {evidence:.0}", text("channel"), text("variable"))
 }
 
 fn estimates(effect: &Value, case: &Case) -> Vec<Estimate> {

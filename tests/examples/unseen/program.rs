@@ -12,6 +12,8 @@ use crate::arguments::Arguments;
 /// The program that is judged.
 pub struct Program {
     path: PathBuf,
+    /// Number of clean trials that a model is refined on.
+    pub clean_trials: usize,
     /// Where refined models are kept.
     pub models: Option<PathBuf>,
 }
@@ -20,7 +22,8 @@ impl Program {
     /// The named one, or that of this tree.
     pub fn new(arguments: &Arguments) -> Self {
         let path = arguments.program.clone().unwrap_or_else(|| binary::path().clone());
-        Self { path, models: arguments.models.clone() }
+        let (clean_trials, models) = (arguments.clean_trials, arguments.models.clone());
+        Self { path, clean_trials, models }
     }
 
     /// Its JSON document, and how long it took, s.

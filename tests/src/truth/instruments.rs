@@ -8,7 +8,7 @@ use rand_distr::StandardNormal;
 use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::state::{RECORDED_CHANNELS, Trajectory, at};
 
-use super::motion::{STEP_S, Truth};
+use super::motion::Truth;
 
 /// Standard deviations of the noise, and the sampling.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,7 +83,7 @@ impl Instruments {
         track: &Trajectory,
         rng: &mut ChaCha12Rng,
     ) -> Trial {
-        let kept = (self.interval_s / STEP_S).round() as usize;
+        let kept = (self.interval_s / ship.step_s()).round() as usize;
         let rolls = ship.dimensions().upright.is_some();
         let recorded = &RECORDED_CHANNELS[..if rolls { 8 } else { 6 }];
         let mut channels = BTreeMap::new();

@@ -17,6 +17,15 @@ pub trait Truth: Sync {
     /// Accelerations of surge, sway (m/s2), yaw and roll (rad/s2) at a state, whose rudder angle is
     /// the actual one.
     fn accelerations(&self, state: &StateVector, n_rps: f64) -> [f64; 4];
+    /// Accelerations at revolutions of either shaft (1/s), and the rates of change of these, 1/s2:
+    /// none for ships whose revolutions are held.
+    fn powered_accelerations(&self, state: &StateVector, n_rps: [f64; 2]) -> ([f64; 4], [f64; 2]) {
+        (self.accelerations(state, n_rps[0]), [0.0; 2])
+    }
+    /// Step of the integration, s.
+    fn step_s(&self) -> f64 {
+        STEP_S
+    }
     /// Its mass and the water's.
     fn inertia(&self) -> &Inertia;
     /// Revolutions that keep the approach speed, 1/s.
@@ -95,7 +104,7 @@ pub(super) fn rate_under(
 fn rudder_rate(ship: &dyn Truth, angle_rad: f64, order_rad: f64) -> f64 {
     let order = order_rad.clamp(-STOP_RAD, STOP_RAD);
     let limit = ship.rudder_rate_rad_s();
-    ((order - angle_rad) / STEP_S).clamp(-limit, limit)
+    ((order - angle_rad) / ship.step_s()).clamp(-limit, limit)
 }
 
 /// The state one step later.

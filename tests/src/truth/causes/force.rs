@@ -22,6 +22,8 @@ pub enum Force {
     Waves(Waves),
     /// Side force by thrust, and moment by thrust and length.
     Propeller(f64, f64),
+    /// The same at any speed.
+    PropellerWalk(f64, f64),
     /// A share of the thrust is lost from half time on.
     ThrustLost(f64),
     /// A yaw acceleration by `(U/L)^2` that oscillates with a period of so many `L/U`.
@@ -58,6 +60,10 @@ impl Force {
             Self::Waves(waves) => by_force(waves.forces(size, now.state)),
             Self::Propeller(side, moment) => {
                 let thrust_n = resistance_n(ship) * (1.0 + SLOWED * (1.0 - ahead));
+                by_force([0.0, side * thrust_n, moment * size.lpp_m * thrust_n])
+            }
+            Self::PropellerWalk(side, moment) => {
+                let thrust_n = resistance_n(ship);
                 by_force([0.0, side * thrust_n, moment * size.lpp_m * thrust_n])
             }
             Self::ThrustLost(share) => {

@@ -20,5 +20,5 @@ pub use gear::Gear;
 pub use hidden::Hidden;
 pub use sailing::{Course, trials};
 pub use sensors::Sensor;
-pub use waves::Waves;
+pub use waves::{DriftAuthor, Waves};
 pub use wind::{Author, Wind};

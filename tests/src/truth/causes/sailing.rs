@@ -5,12 +5,13 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::StandardNormal;
 use sistership_model::Trial;
 use sistership_model::trial::Channel;
-use sistership_simulation::Method;
 use sistership_simulation::state::{StateVector, Trajectory, at, straight_state};
 
+use super::super::foreign::motion::{Motion, SHAFTS};
+use super::super::foreign::simulate::mean_rps;
 use super::super::instruments::Instruments;
 use super::super::manoeuvre::{APPROACH, Helm, Manoeuvre};
-use super::super::motion::{STEP_S, Truth, rate_under};
+use super::super::motion::{Truth, rate_under};
 use super::force::Moment;
 use super::gear::Standing;
 use super::hidden::Hidden;
@@ -69,23 +70,25 @@ fn sailed(ship: &dyn Truth, hidden: &Hidden, course: &Course) -> Trajectory {
     let sea = Sea { ship, hidden, duration_s };
     let mut helm = Helm::new(course.manoeuvre, time_s);
     let mut gear: Vec<Standing> = hidden.gear.iter().map(|gear| Standing::new(*gear)).collect();
-    let mut state = sea.begun(course.heading_deg.to_radians());
+    let step_s = ship.step_s();
+    let n_rps = [ship.revolutions_rps(); SHAFTS];
+    let mut motion = Motion { body: sea.begun(course.heading_deg.to_radians()), n_rps };
     let mut track = Trajectory::default();
-    for k in 0..=(duration_s / STEP_S).round() as usize {
-        let t_s = k as f64 * STEP_S;
-        track.push(t_s, state, ship.revolutions_rps());
+    for k in 0..=(duration_s / step_s).round() as usize {
+        let (t_s, state) = (k as f64 * step_s, motion.body);
+        track.push(t_s, state, mean_rps(&motion, SHAFTS));
         let mut seen = state;
         seen[at::PSI] -= course.heading_deg.to_radians();
         let order_rad = helm.order_deg(t_s - APPROACH * time_s, &seen).to_radians();
         let follow =
-            |angle, standing: &mut Standing| standing.after(angle, t_s / duration_s, STEP_S);
+            |angle, standing: &mut Standing| standing.after(angle, t_s / duration_s, step_s);
         let is_there = t_s >= hidden.since * duration_s;
         let recorded_rad = state[at::DELTA];
         let actual_rad = match is_there {
             true => gear.iter_mut().fold(recorded_rad, follow),
             false => recorded_rad,
         };
-        state = sea.step(t_s, &state, order_rad, actual_rad - recorded_rad);
+        motion = sea.step(t_s, &motion, order_rad, actual_rad - recorded_rad);
     }
     track
 }
@@ -112,14 +115,24 @@ impl Sea<'_> {
 
     /// What the gear adds to the recorded rudder stays within a step, not where the rudder is:
     /// held for a step it would follow by half a step late in trials without any gear.
-    fn step(&self, t_s: f64, state: &StateVector, order_rad: f64, added_rad: f64) -> StateVector {
-        Method::Rk4.advance_state(state, STEP_S, |fraction, at| {
-            let accelerations = self.accelerations(t_s + fraction * STEP_S, at, added_rad);
-            rate_under(self.ship, at, order_rad, accelerations)
+    fn step(&self, t_s: f64, motion: &Motion, order_rad: f64, added_rad: f64) -> Motion {
+        let step_s = self.ship.step_s();
+        motion.runge_kutta_step(step_s, |fraction, now| {
+            let t_s = t_s + fraction * step_s;
+            let (accelerations, n_rps) = self.accelerations(t_s, now, added_rad);
+            let body = rate_under(self.ship, &now.body, order_rad, accelerations);
+            Motion { body, n_rps }
         })
     }
 
-    fn accelerations(&self, t_s: f64, state: &StateVector, added_rad: f64) -> [f64; 4] {
+    /// Accelerations of the ship, and of its shafts.
+    fn accelerations(
+        &self,
+        t_s: f64,
+        motion: &Motion,
+        added_rad: f64,
+    ) -> ([f64; 4], [f64; SHAFTS]) {
+        let state = &motion.body;
         let share = t_s / self.duration_s;
         let [along, across] =
             self.hidden.current.map_or([0.0; 2], |current| current.seen(share, state[at::PSI]));
@@ -127,7 +140,7 @@ impl Sea<'_> {
         relative[at::U] -= along;
         relative[at::V] -= across;
         relative[at::DELTA] += added_rad;
-        let mut all = self.ship.accelerations(&relative, self.ship.revolutions_rps());
+        let (mut all, shafts) = self.ship.powered_accelerations(&relative, motion.n_rps);
         let mut add = |more: &[f64]| all.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
         if let Some(current) = self.hidden.current {
             add(&current.rates([along, across], state[at::R], self.duration_s));
@@ -139,6 +152,6 @@ impl Sea<'_> {
         let now = Moment { t_s, share, state, through_water };
         let forces = self.hidden.forces.iter().filter(|_| share >= self.hidden.since);
         forces.for_each(|force| add(&force.accelerations(self.ship, &now)));
-        all
+        (all, shafts)
     }
 }

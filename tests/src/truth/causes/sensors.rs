@@ -2,8 +2,6 @@
 
 use sistership_simulation::state::{StateVector, Trajectory, at};
 
-use super::super::motion::STEP_S;
-
 /// One of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sensor {
@@ -38,7 +36,10 @@ impl Sensor {
                 state[at::U] -= state[at::R] * starboard;
                 state[at::V] += state[at::R] * forward;
             }),
-            Self::Late(delay_s) => late(track, (delay_s / STEP_S).round() as usize),
+            Self::Late(delay_s) => {
+                let step_s = track.t_s[1] - track.t_s[0];
+                late(track, (delay_s / step_s).round() as usize);
+            }
         }
     }
 }

@@ -11,7 +11,8 @@ use super::motion::{Motion, Orders, SHAFTS};
 use super::resistance::Windage;
 use super::roll::{Heeling, Roll};
 use super::size::Size;
-use crate::truth::motion::Inertia;
+use crate::truth::dimensions::{Dimensions, Upright};
+use crate::truth::motion::{Inertia, Truth};
 
 /// Added mass in surge by mass, chosen among 0.03 to 0.07 of ship forms.
 const SURGE_ADDED: f64 = 0.05;
@@ -55,6 +56,7 @@ pub struct Parts {
 /// The craft.
 pub struct Craft {
     parts: Parts,
+    dimensions: Dimensions,
     inertia: Inertia,
     rating: Rating,
     shafts: usize,
@@ -65,7 +67,9 @@ impl Craft {
     pub fn new(parts: Parts) -> Self {
         let shafts = 1 + parts.units.iter().map(|unit| unit.shaft).max().unwrap_or_default();
         let inertia = inertia(&parts.size, &parts.hulls);
-        let mut craft = Self { parts, inertia, rating: Rating::default(), shafts };
+        let dimensions = dimensions(&parts);
+        let rating = Rating::default();
+        let mut craft = Self { parts, dimensions, inertia, rating, shafts };
         let speed = craft.size().speed_m_s;
         let n_rps = craft.balanced_rps(speed);
         let loads = craft.loads([speed, 0.0, 0.0], 0.0, [n_rps; SHAFTS]);
@@ -147,21 +151,29 @@ impl Craft {
 
     /// Rate of change of the state.
     pub fn rate(&self, motion: &Motion, orders: &Orders) -> Motion {
+        let mut body = kinematics(&motion.body);
+        let (accelerations, n_rps) = self.response(motion, orders.n_rps);
+        [body[at::U], body[at::V], body[at::R], body[at::P]] = accelerations;
+        body[at::DELTA] = self.gear_rate(motion.body[at::DELTA], orders.angle_rad);
+        Motion { body, n_rps }
+    }
+
+    /// Accelerations of surge, sway, yaw and roll, and of the shafts under ordered revolutions.
+    fn response(&self, motion: &Motion, orders_rps: [f64; SHAFTS]) -> ([f64; 4], [f64; SHAFTS]) {
         let velocities = motion.velocities();
         let loads = self.loads(velocities, motion.body[at::DELTA], motion.n_rps);
         let forces = self.forces(velocities, motion.body[at::PHI], &loads);
-        let mut body = kinematics(&motion.body);
-        let answer = self.inertia.accelerations(forces.total, velocities);
-        [body[at::U], body[at::V], body[at::R]] = answer;
-        body[at::P] = self.roll_acceleration(&motion.body, &forces);
-        body[at::DELTA] = self.gear_rate(motion.body[at::DELTA], orders.angle_rad);
+        let [surge, sway, yaw] = self.inertia.accelerations(forces.total, velocities);
+        let roll = self.roll_acceleration(&motion.body, &forces);
         let torques = self.torques(&loads);
         let engine = &self.parts.engine;
         let spin = |shaft: usize| {
-            let order = orders.n_rps[shaft];
+            let order = orders_rps[shaft];
             engine.acceleration(self.rating, motion.n_rps[shaft], order, torques[shaft])
         };
-        Motion { body, n_rps: std::array::from_fn(|k| if k < self.shafts { spin(k) } else { 0.0 }) }
+        // A single shaft stands in both places, so that their mean is its own.
+        let shafts = std::array::from_fn(|k| spin(k.min(self.shafts - 1)));
+        ([surge, sway, yaw, roll], shafts)
     }
 
     fn loads(&self, velocities: [f64; 3], angle_rad: f64, n_rps: [f64; SHAFTS]) -> Vec<Load> {
@@ -202,6 +214,41 @@ impl Craft {
     }
 }
 
+/// The craft at the full order of its engine, for what may be hidden in its trials.
+impl Truth for Craft {
+    fn dimensions(&self) -> &Dimensions {
+        &self.dimensions
+    }
+
+    fn accelerations(&self, state: &StateVector, n_rps: f64) -> [f64; 4] {
+        self.powered_accelerations(state, [n_rps; SHAFTS]).0
+    }
+
+    fn powered_accelerations(
+        &self,
+        state: &StateVector,
+        n_rps: [f64; SHAFTS],
+    ) -> ([f64; 4], [f64; SHAFTS]) {
+        self.response(&Motion { body: *state, n_rps }, self.orders(1.0, 0.0).n_rps)
+    }
+
+    fn step_s(&self) -> f64 {
+        Craft::step_s(self)
+    }
+
+    fn inertia(&self) -> &Inertia {
+        &self.inertia
+    }
+
+    fn revolutions_rps(&self) -> f64 {
+        self.rated_rps()
+    }
+
+    fn rudder_rate_rad_s(&self) -> f64 {
+        self.parts.steering.rate_rad_s
+    }
+}
+
 /// Surge, sway (N) and yaw (N m), and what of the sway hull and devices make.
 struct Forces {
     total: [f64; 3],
@@ -221,6 +268,32 @@ fn kinematics(body: &StateVector) -> StateVector {
     rate[at::X] = u * cos - across * sin;
     rate[at::Y] = u * sin + across * cos;
     rate
+}
+
+/// Dimensions by which hidden effects are sized; without a rudder its area is zero.
+fn dimensions(parts: &Parts) -> Dimensions {
+    let size = &parts.size;
+    let further = |name: &str| {
+        size.further.iter().find(|(known, _)| *known == name).map_or(0.0, |(_, value)| *value)
+    };
+    // The height of the centre of gravity is not used by any effect.
+    let upright = |roll: &Roll| Upright { gm_m: roll.gm_m, kg_m: size.draught_m };
+    Dimensions {
+        name: size.name.clone(),
+        category: size.category,
+        lpp_m: size.lpp_m,
+        beam_m: size.beam_m,
+        draught_m: size.draught_m,
+        block_coefficient: size.volume_m3 / (size.lpp_m * size.beam_m * size.draught_m),
+        x_g_m: size.x_g_m,
+        yaw_gyradius_ratio: size.yaw_gyradius_ratio,
+        rudder_area_m2: further("rudder_area_m2"),
+        rudder_height_m: further("rudder_height_m"),
+        propeller_diameter_m: further("propeller_diameter_m"),
+        speed_m_s: size.speed_m_s,
+        density_kg_m3: size.density_kg_m3,
+        upright: parts.roll.as_ref().map(upright),
+    }
 }
 
 fn inertia(size: &Size, hulls: &[Hull]) -> Inertia {

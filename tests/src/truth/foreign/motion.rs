@@ -42,8 +42,18 @@ impl Motion {
         Self { body: self.body + rate.body * time_s, n_rps }
     }
 
+    /// The state a step (s) later by the Runge-Kutta method of fourth order; `rate` is that of a
+    /// state at a fraction of the step.
+    pub fn runge_kutta_step(&self, step_s: f64, mut rate: impl FnMut(f64, &Self) -> Self) -> Self {
+        let first = rate(0.0, self);
+        let second = rate(0.5, &self.advance(&first, 0.5 * step_s));
+        let third = rate(0.5, &self.advance(&second, 0.5 * step_s));
+        let fourth = rate(1.0, &self.advance(&third, step_s));
+        self.advance(&Self::runge_kutta_mean(&[first, second, third, fourth]), step_s)
+    }
+
     /// The mean of four rates with the weights of the Runge-Kutta method.
-    pub fn runge_kutta_mean(rates: &[Self; 4]) -> Self {
+    fn runge_kutta_mean(rates: &[Self; 4]) -> Self {
         let [a, b, c, d] = rates;
         let body = (a.body + (b.body + c.body) * 2.0 + d.body) / 6.0;
         let mean = |k: usize| (a.n_rps[k] + 2.0 * (b.n_rps[k] + c.n_rps[k]) + d.n_rps[k]) / 6.0;

@@ -13,6 +13,7 @@ use super::craft::Craft;
 use super::motion::Motion;
 use super::simulate::{Track, mean_rps};
 use super::size::Size;
+use crate::truth::instruments::Instruments as Recorder;
 
 /// Standard deviations of the noise, and the sampling.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,6 +97,19 @@ impl Instruments {
         let turns = kept.iter().map(|motion| mean_rps(motion, craft.shafts()));
         columns.push((Channel::N.column_name(), noisy(turns, scatter, rng)));
         columns
+    }
+
+    /// The same for trials in which something may be hidden.
+    pub fn recorder(&self) -> Recorder {
+        Recorder {
+            interval_s: self.interval_s,
+            position_m: self.position_m,
+            velocity_m_s: self.velocity_m_s,
+            rate_rad_s: self.rate_rad_s,
+            angle_rad: self.angle_rad,
+            rudder_rad: self.steering_rad,
+            revolutions: self.revolutions,
+        }
     }
 
     fn deviation(&self, channel: Channel) -> f64 {

@@ -102,11 +102,7 @@ pub fn simulate(
 
 /// The state a step (s) later, by the Runge-Kutta method of fourth order.
 pub fn advance(craft: &Craft, motion: &Motion, orders: &Orders, step: f64) -> Motion {
-    let first = craft.rate(motion, orders);
-    let second = craft.rate(&motion.advance(&first, 0.5 * step), orders);
-    let third = craft.rate(&motion.advance(&second, 0.5 * step), orders);
-    let fourth = craft.rate(&motion.advance(&third, step), orders);
-    motion.advance(&Motion::runge_kutta_mean(&[first, second, third, fourth]), step)
+    motion.runge_kutta_step(step, |_, now| craft.rate(now, orders))
 }
 
 /// Turning circle from full speed with the angle ordered at once.
