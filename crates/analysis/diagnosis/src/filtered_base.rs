@@ -73,7 +73,7 @@ impl<'a> FilteredBase<'a> {
             levels.iter().map(at).collect::<Result<Vec<GramMatrix>, RefineError>>()
         };
         // Columns of the candidates are many times as large as their products, which suffice.
-        let (workspace, grams) = workspace.linearise_with(coefficients + present, &products)?;
+        let (workspace, grams) = workspace.linearise_with(coefficients + present, products)?;
         let mut each = grams.into_iter().map(Vec::into_iter).collect::<Vec<_>>();
         let at = |(level, discrepancies)| {
             let grams = each.iter_mut().filter_map(Iterator::next).collect();
