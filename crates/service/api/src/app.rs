@@ -18,6 +18,7 @@ use sistership_jobs::budget::{MemoryBudget, RequestMemory};
 use sistership_jobs::catalogue::{KnownLaw, MAX_COMPARED_SHIPS, ZooCache};
 use sistership_jobs::predictions::session::SessionTable;
 use sistership_listener::{KeyThrottle, StopSignal, TrustedProxies};
+use sistership_pages::Language;
 use sistership_pages::ship::SIMILAR;
 use sistership_pages::version::ManoeuvreCache;
 use sistership_web_support::acting::current_actor;
@@ -261,7 +262,9 @@ impl App {
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T> {
-        self.0.numerics.run(&caller_name(), work).await
+        // A page that is rendered on the other thread keeps its language.
+        let language = Language::current();
+        self.0.numerics.run(&caller_name(), move || language.run_blocking(work)).await
     }
 
     /// Waits for the turn to read a file of a size. Small files wait for no large one.
@@ -276,7 +279,8 @@ impl App {
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T> {
-        self.0.files.run(&caller_name(), work).await
+        let language = Language::current();
+        self.0.files.run(&caller_name(), move || language.run_blocking(work)).await
     }
 }
 

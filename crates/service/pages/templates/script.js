@@ -6,14 +6,15 @@ for (const job of document.querySelectorAll("[data-job]")) {
     const now = JSON.parse(event.data);
     const bar = job.querySelector("progress"), words = job.querySelector("[data-words]");
     if (bar && now.state === "running") bar.value = now.progress;
-    if (words) words.textContent = now.state + ", " + Math.round(100 * now.progress) + " %" + (now.message ? ": " + now.message : "");
+    if (words) words.textContent = (job.dataset[now.state] ?? now.state) + ", " + Math.round(100 * now.progress) + " %" + (now.message ? ": " + now.message : "");
     if (!["queued", "running"].includes(now.state)) { events.close(); location.reload(); }
   });
 }
 // Sliders say their value; a form marked live is answered while it is changed.
 const said = (slider) => {
   const output = document.querySelector("output[for='" + slider.id + "']");
-  if (output) output.textContent = slider.value;
+  const mark = document.documentElement.lang === "en" ? "." : ",";
+  if (output) output.textContent = slider.value.replace(".", mark);
 };
 for (const slider of document.querySelectorAll("input[type=range]")) {
   slider.addEventListener("input", () => said(slider));

@@ -64,11 +64,12 @@ pub(crate) const HEALTH_ROUTES: [(&str, &str); 3] =
     [("GET", "/healthz"), ("GET", "/readyz"), ("GET", "/openapi.json")];
 
 /// Routes of signing in.
-pub(crate) const OPEN_ROUTES: [(&str, &str); 4] = [
+pub(crate) const OPEN_ROUTES: [(&str, &str); 5] = [
     ("GET", "/sign-in"),
     ("POST", "/sign-in"),
     ("GET", "/sign-in/oidc"),
     ("GET", "/sign-in/oidc/callback"),
+    ("POST", "/language"),
 ];
 
 /// Routes for any identified caller.

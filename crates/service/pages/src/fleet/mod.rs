@@ -12,7 +12,6 @@ use sistership_jobs::search::urgency::{
     ERROR_FACT, FLEET_FACT, RESIDUAL_FACT_PREFIX, ShipCollection, UrgencyClass,
 };
 use sistership_jobs::search::{self, SearchCriteria, VectorCache};
-use sistership_report::numbers::{format_significant, format_stated};
 use sistership_store::{FactRange, FoundShip, ListPage, PageRequest, ShipKey, ShipOverview};
 
 use self::drift_trend::drift_trend;
@@ -22,6 +21,8 @@ use self::recent::{RecentShip, recent_ships};
 use crate::cursor::encode_cursor;
 use crate::error::Result;
 use crate::form::FormFields;
+use crate::language::{say, say_word};
+use crate::numbers::{format_significant, format_stated};
 use crate::picture::render_svg;
 use crate::shell::PageShell;
 use crate::sparkline::sparkline;
@@ -75,7 +76,7 @@ struct ShipRow {
     title: String,
     category: String,
     class: &'static str,
-    says: &'static str,
+    says: String,
     why: String,
     champion: Option<i64>,
     error: String,
@@ -150,7 +151,7 @@ impl FleetDashboard {
 impl WorstShip {
     fn from_row(row: &ShipRow) -> Self {
         let why = match row.why.as_str() {
-            "" => "something unexplained".to_owned(),
+            "" => say("board-unexplained").into(),
             why => why.to_owned(),
         };
         Self { name: row.name.clone(), why }
@@ -211,19 +212,16 @@ fn ship_row(
 fn condition_reason(condition: &Condition) -> String {
     match condition.verdict.as_deref() {
         Some("drift") => match &condition.drift {
-            Some(drift) => format!("drift, {} times", format_significant(drift.ratio, 2)),
-            None => "drift".to_owned(),
+            Some(drift) => say("condition-drift-times")
+                .with("ratio", format_significant(drift.ratio, 2))
+                .into(),
+            None => say("condition-drift").into(),
         },
         _ => condition.effects.join(", "),
     }
 }
 
 /// Returns a class of condition in words.
-pub(crate) fn class_label(class: UrgencyClass) -> &'static str {
-    match class {
-        UrgencyClass::DoesNotHold => "does not hold",
-        UrgencyClass::Unknown => "not diagnosed",
-        UrgencyClass::NoModel => "no model",
-        UrgencyClass::Holds => "holds",
-    }
+pub(crate) fn class_label(class: UrgencyClass) -> String {
+    say_word("condition-class", class.name())
 }

@@ -23,6 +23,8 @@ pub use templates::TemplatePlace;
 use self::proposed::{DERIVED, TARGETS};
 use self::templates::TemplateOffer;
 use crate::error::Result;
+use crate::language::say;
+use crate::numbers::format_fixed;
 use crate::shell::PageShell;
 
 /// Units offered by the form.
@@ -126,6 +128,12 @@ impl MappingPage<'_> {
     }
 }
 
+/// Returns the reason of a reading: that of the form in the language of the page, those of the
+/// identification of columns as manifests have them.
+pub(crate) fn reading_reason(why: &str) -> String {
+    if why == corrected::GIVEN { say("mapping-given").into() } else { why.to_owned() }
+}
+
 /// Returns the guesses whose columns the manifest maps. A sentence of NMEA 0183 needs no mapping.
 fn column_rows(of: &UploadProposal) -> Vec<ColumnRow<'_>> {
     let files = of.mapped_files();
@@ -146,8 +154,8 @@ fn column_rows(of: &UploadProposal) -> Vec<ColumnRow<'_>> {
 /// Formats a posterior probability, which is never certainty.
 fn format_confidence(probability: f64) -> String {
     match probability {
-        sure if sure >= 0.995 => "over 99 %".into(),
-        other => format!("{:.0} %", 100.0 * other),
+        sure if sure >= 0.995 => say("mapping-over-99").into(),
+        other => format!("{} %", format_fixed(100.0 * other, 0)),
     }
 }
 

@@ -4,6 +4,7 @@ mod answer;
 mod draft;
 mod example;
 mod form_actions;
+mod language;
 mod new_ship;
 mod openid;
 mod people;
@@ -81,6 +82,7 @@ pub(super) fn page_routes(limits: &Limits) -> Router<App> {
         .route("/webhooks/address", post(people::set_address))
         .route("/webhooks/{id}/end", post(people::end_webhook))
         .route("/audit", get(people::audit_page))
+        .route("/language", post(language::choose_language))
         .layer(DefaultBodyLimit::max(FORM_BYTES));
     // Uploads have a limit of their own.
     let upload = Router::new()

@@ -5,7 +5,7 @@ use axum::extract::State;
 use axum::response::Response;
 use sistership_model::Vessel;
 use sistership_model::vessel::VesselFile;
-use sistership_pages::{FormFields, conditions, page_beginning, particulars, version};
+use sistership_pages::{FormFields, conditions, page_beginning, particulars, say, version};
 use sistership_store::Actor;
 
 use super::super::aliases::check_second_person;
@@ -57,7 +57,7 @@ pub(super) async fn state_conditions(
 ) -> Result<Response> {
     let trials: Vec<String> = form.get_texts("trial").map(str::to_owned).collect();
     if trials.is_empty() {
-        return Err(Problem::invalid("trial", "choose the trials with these conditions"));
+        return Err(Problem::invalid("trial", say("conditions-choose-trials")));
     }
     let stated = conditions::read_conditions(&form)?;
     app.store().trials().state_conditions(&ship, &trials, &stated).await?;
@@ -104,9 +104,7 @@ async fn check_approver(app: &App, ship: &str, number: i64) -> Result<()> {
     let required = app.store().settings().requires_second_person().await?;
     let author = app.store().versions().get_head(ship, number).await?.author;
     match required && author == Actor::current().name {
-        true => {
-            Err(Problem::invalid("role", "another person approves a version that you have made"))
-        }
+        true => Err(Problem::invalid("role", say("acceptance-another-person"))),
         false => Ok(()),
     }
 }

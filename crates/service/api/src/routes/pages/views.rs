@@ -6,7 +6,7 @@ use sistership_auth::Role;
 use sistership_jobs::budget;
 use sistership_jobs::memory::trial_bytes;
 use sistership_pages as pages;
-use sistership_pages::FormFields;
+use sistership_pages::{FormFields, say};
 
 use super::answer::{page_response, stream_page};
 use crate::app::App;
@@ -72,7 +72,8 @@ pub(super) async fn compare_page(
 ) -> Result<Response> {
     let query = FormFields::from(query);
     let gathered = pages::compare::gather_inputs(app.archive(), page_shell(&app), &query).await?;
-    let beginning = pages::page_beginning(page_shell(&app), "Compare", "/compare")?;
+    let beginning =
+        pages::page_beginning(page_shell(&app), &say("place-compare").to_string(), "/compare")?;
     Ok(stream_page(beginning, async move {
         Ok(app.run_blocking(move || gathered.render_html()).await??)
     }))
@@ -85,7 +86,11 @@ pub(super) async fn playground_page(
     let query = FormFields::from(query);
     let gathered = pages::playground::gather_inputs(app.archive(), page_shell(&app), query).await?;
     let most = app.limits().prediction_samples;
-    let beginning = pages::page_beginning(page_shell(&app), "Playground", "/playground")?;
+    let beginning = pages::page_beginning(
+        page_shell(&app),
+        &say("place-playground").to_string(),
+        "/playground",
+    )?;
     Ok(stream_page(beginning, async move {
         Ok(app.run_blocking(move || gathered.render_html(most)).await??)
     }))
