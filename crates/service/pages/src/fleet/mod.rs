@@ -1,7 +1,9 @@
 //! The fleet: a list of the ships, the one that most needs attention first.
 
+mod class_label;
 mod drift_trend;
 mod first_steps;
+mod map;
 mod query;
 mod recent;
 
@@ -15,8 +17,10 @@ use sistership_jobs::search::{self, SearchCriteria, VectorCache};
 use sistership_report::numbers::{format_significant, format_stated};
 use sistership_store::{FactRange, FoundShip, ListPage, PageRequest, ShipKey, ShipOverview};
 
+pub(crate) use self::class_label::class_label;
 use self::drift_trend::drift_trend;
 use self::first_steps::FirstSteps;
+use self::map::FleetMap;
 use self::query::{FleetQuery, SortOrder};
 use self::recent::{RecentShip, recent_ships};
 use crate::cursor::encode_cursor;
@@ -56,6 +60,7 @@ struct FleetDashboard {
     recent: Vec<RecentShip>,
     /// Chart of the drift over the last weeks, SVG.
     drift: Option<String>,
+    map: Option<FleetMap>,
 }
 
 /// Ship that needs attention, and why.
@@ -143,6 +148,7 @@ impl FleetDashboard {
             worst: if ships.len() > WORST_SHIPS { worst } else { Vec::new() },
             recent: recent_ships(archive).await?,
             drift: drift_trend(archive).await?.as_ref().map(render_svg).transpose()?,
+            map: FleetMap::read(archive).await?,
         })
     }
 }
@@ -215,15 +221,5 @@ fn condition_reason(condition: &Condition) -> String {
             None => "drift".to_owned(),
         },
         _ => condition.effects.join(", "),
-    }
-}
-
-/// Returns a class of condition in words.
-pub(crate) fn class_label(class: UrgencyClass) -> &'static str {
-    match class {
-        UrgencyClass::DoesNotHold => "does not hold",
-        UrgencyClass::Unknown => "not diagnosed",
-        UrgencyClass::NoModel => "no model",
-        UrgencyClass::Holds => "holds",
     }
 }

@@ -7,6 +7,7 @@ mod preview;
 mod proposed;
 mod stored;
 mod templates;
+mod trial_fields;
 
 use askama::Template;
 use sistership_model::manifest::{MissingValues, RudderSign, VelocityFrame};
@@ -22,6 +23,7 @@ pub use templates::TemplatePlace;
 
 use self::proposed::{DERIVED, TARGETS};
 use self::templates::TemplateOffer;
+use self::trial_fields::{TrialFields, trial_fields};
 use crate::error::Result;
 use crate::shell::PageShell;
 
@@ -54,6 +56,7 @@ struct MappingPage<'a> {
     targets: [&'static str; 28],
     units: [&'static str; 17],
     columns: Vec<ColumnRow<'a>>,
+    trials: Vec<TrialFields>,
     previews: &'a [FilePreview],
     accepted: bool,
     port: bool,
@@ -102,6 +105,7 @@ pub fn mapping_page(
         targets: TARGETS,
         units: UNITS,
         columns: column_rows(of),
+        trials: trial_fields(&of.manifest),
         previews,
         // Only an upload without errors may be stored.
         accepted: previews.iter().all(FilePreview::is_accepted),
