@@ -2,20 +2,19 @@
 //! records.
 
 use askama::Template;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use sistership_jobs::Archive;
+use sistership_request_types::{CalendarDate, ConditionText, Draught};
 use sistership_store::{PageRequest, Trial};
 
 use crate::date::format_stored_day;
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
-use crate::language::{Message, say, say_word};
+use crate::language::say_word;
 use crate::shell::PageShell;
 
 /// Number of trials that the form lists.
 const LISTED_TRIALS: i64 = 200;
-/// Maximum length of a condition, characters.
-const MAX_CHARS: usize = 300;
 
 /// A condition in the form.
 pub(crate) struct ConditionField {
@@ -165,39 +164,24 @@ pub fn read_conditions(form: &FormFields) -> Result<Value> {
     for field in &CONDITIONS {
         // An empty field states nothing, so that the summary lists it as missing.
         let Some(text) = form.get_text(field.name) else { continue };
-        let wrong = |message: Message| Err(PageError::invalid_field(field.name, message));
         match field.kind {
-            ConditionKind::Date if !is_date(text) => {
-                return wrong(say("conditions-not-a-date").with("text", text));
-            }
+            ConditionKind::Date => text.parse::<CalendarDate>().map(drop),
             // Kept as typed, with its decimal comma: a statement is evidence, not a computed value.
-            ConditionKind::Metres => {
-                form.number_within(field.name, (0.0, 40.0), 0.0)?;
-            }
-            _ if text.chars().count() > MAX_CHARS => {
-                return wrong(say("conditions-too-long").with("most", MAX_CHARS));
-            }
-            _ => {}
+            ConditionKind::Metres => match form.optional_number(field.name)? {
+                Some(metres) => check_draught(metres),
+                None => Ok(()),
+            },
+            ConditionKind::Words => text.parse::<ConditionText>().map(drop),
         }
+        .map_err(|message| PageError::invalid_field(field.name, message))?;
         stated.insert(field.name.to_owned(), Value::from(text));
     }
     Ok(Value::Object(stated))
 }
 
-/// Returns true for a date as `2026-11-29`.
-fn is_date(text: &str) -> bool {
-    let parts: Vec<&str> = text.split('-').collect();
-    let number = |part: &str, digits: usize| {
-        (part.len() == digits).then(|| part.parse::<u32>().ok()).flatten()
-    };
-    match parts.as_slice() {
-        [year, month, day] => {
-            number(year, 4).is_some()
-                && number(month, 2).is_some_and(|month| (1..=12).contains(&month))
-                && number(day, 2).is_some_and(|day| (1..=31).contains(&day))
-        }
-        _ => false,
-    }
+/// Checks a draught by the rule of the REST interface.
+fn check_draught(metres: f64) -> std::result::Result<(), String> {
+    serde_json::from_value::<Draught>(json!(metres)).map(drop).map_err(|why| why.to_string())
 }
 
 #[cfg(test)]

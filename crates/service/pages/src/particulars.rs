@@ -1,9 +1,12 @@
 //! Particulars of a ship in forms: the fields, how a number is read, and the form by which they are
 //! changed later.
 
+use std::collections::BTreeMap;
+
 use askama::Template;
 use serde_json::{Map, Value, json};
 use sistership_jobs::archive::parse_vessel;
+use sistership_jobs::particulars_change::{ParticularsChange, STATED_SOURCE};
 use sistership_store::Ship;
 
 use crate::error::{PageError, Result};
@@ -12,8 +15,6 @@ use crate::language::{say, say_word};
 use crate::shell::PageShell;
 use crate::terms::particular_words;
 
-/// Key of the source of figures that are typed into a form.
-const SOURCE_KEY: &str = "typed-in";
 /// Metres per second in a knot.
 const KNOT_M_S: f64 = 1852.0 / 3600.0;
 
@@ -127,50 +128,19 @@ pub fn particulars_page(shell: PageShell, ship: &Ship) -> Result<String> {
 /// Returns an error that names a field which is missing or no number.
 pub fn changed_document(ship: &Ship, form: &FormFields) -> Result<Value> {
     let vessel = parse_vessel(&ship.name, &ship.document)?;
-    let mut document: Value = serde_json::from_str(&ship.document)?;
-    // Collected first: the source is added only if something has changed.
-    let mut changed = Map::new();
+    let mut values = BTreeMap::new();
     for field in &PARTICULARS {
-        let before = vessel.particulars.get(field.name).map(|of| of.value);
         // A published ship may lack one that a new ship needs.
-        let required = field.needed && before.is_some();
-        match (read_particular(form, field, required)?, before) {
-            (None, _) => {
-                if let Some(values) = document["particulars"]["values"].as_object_mut() {
-                    values.remove(field.name);
-                }
-            }
-            // An untouched field has the text of its value, which parses to the same number.
-            (Some(value), Some(before)) if value == before => {}
-            (Some(value), _) => {
-                changed.insert(field.name.to_owned(), json!(value));
-            }
-        }
+        let required = field.needed && vessel.particulars.contains_key(field.name);
+        // An untouched field has the text of its value, which parses to the same number.
+        values.insert(field.name.to_owned(), read_particular(form, field, required)?);
     }
-    if !changed.is_empty() {
-        let key = add_source(&mut document, form.required_text("citation")?);
-        for (name, value) in changed {
-            document["particulars"]["values"][name] = json!({ "value": value, "source": key });
-        }
-    }
-    Ok(document)
-}
-
-/// Adds a source to a document unless it is there, and returns its key.
-fn add_source(document: &mut Value, citation: &str) -> String {
-    // An earlier source keeps its key, since other values refer to it.
-    let keys = (2..).map(|number| format!("{SOURCE_KEY}-{number}"));
-    for key in std::iter::once(SOURCE_KEY.to_owned()).chain(keys) {
-        match document["sources"][&key]["citation"].as_str() {
-            Some(known) if known != citation => {}
-            Some(_) => return key,
-            None => {
-                document["sources"][&key] = json!({ "citation": citation });
-                return key;
-            }
-        }
-    }
-    SOURCE_KEY.to_owned()
+    let change = ParticularsChange::new(ship, values)?;
+    let citation = match change.needs_source() {
+        true => form.required_text("citation")?,
+        false => "",
+    };
+    Ok(change.into_document(citation))
 }
 
 /// Returns sources and particulars of a new ship.
@@ -185,8 +155,8 @@ pub(crate) fn new_particulars(form: &FormFields) -> Result<(Value, Value)> {
             values.insert(field.name.to_owned(), json!(value));
         }
     }
-    let sources = json!({ SOURCE_KEY: { "citation": form.required_text("citation")? } });
-    Ok((sources, json!({ "source": SOURCE_KEY, "values": values })))
+    let sources = json!({ STATED_SOURCE: { "citation": form.required_text("citation")? } });
+    Ok((sources, json!({ "source": STATED_SOURCE, "values": values })))
 }
 
 #[cfg(test)]

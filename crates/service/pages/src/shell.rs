@@ -91,12 +91,12 @@ impl PageShell {
 }
 
 /// Content Security Policy of pages: their own styles and scripts by their hashes (Content Security
-/// Policy Level 3, W3C), requests and forms to this server, images made by the page itself for download,
-/// and nothing else.
+/// Policy Level 3, W3C), requests and forms to this server, its images and those made by the page itself
+/// for download, and nothing else.
 pub fn security_policy() -> &'static str {
     static POLICY: LazyLock<String> = LazyLock::new(|| {
         format!(
-            "default-src 'none'; style-src {}; script-src {}; img-src blob:; \
+            "default-src 'none'; style-src {}; script-src {}; img-src 'self' blob:; \
              connect-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'",
             allowed_hashes(&[STYLE, CHART_STYLE]),
             allowed_hashes(&[SCRIPT, CHART_SCRIPT])

@@ -35,4 +35,3 @@ acceptance-i-checked = Ich habe sie geprüft
 acceptance-i-approve = Ich gebe sie frei
 acceptance-name-hint = Wie er unter der Übersicht stehen soll. Das Protokoll hält auch das Konto fest.
 acceptance-sign = Unterschreiben
-acceptance-another-person = eine selbst erstellte Version gibt eine andere Person frei

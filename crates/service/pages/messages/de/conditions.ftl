@@ -7,8 +7,6 @@ conditions-stated-for = angegeben für { $date }
 conditions-legend = Bedingungen
 conditions-save = Bedingungen speichern
 conditions-choose-trials = bitte die Versuche mit diesen Bedingungen wählen
-conditions-not-a-date = „{ $text }“ ist kein Datum; Schreibweise 2026-11-29
-conditions-too-long = hat mehr als { $most } Zeichen; bitte kürzen
 
 ## Felder
 

@@ -106,3 +106,19 @@ columns-unknown-name = Nicht diagnostiziert
 columns-unknown = die aktive Version wurde noch nicht diagnostiziert
 columns-error = mittlerer quadratischer Fehler simulierter, zurückgehaltener Manöver, geteilt durch die Varianz der Messung: 0 ist perfekt, 1 nicht besser als der Mittelwert
 columns-force = unerklärte Kraft in jedem der neuesten 24 Versuche, der älteste zuerst; jede Linie hat ihren eigenen Maßstab
+
+## Karte
+
+map-heading = Wo die Schiffe sind
+map-explained = Letzte bekannte Positionen: die der neuesten Versuche mit Breite und Länge. <span class="state does-not-hold">Kreuz: gilt nicht</span> · Dreieck: nicht diagnostiziert · Quadrat: kein Modell · <span class="good">Kreis: gilt</span>.
+map-most-urgent = Gezeigt sind die { $shown } dringendsten von { $placed } Schiffen.
+map-source = Küstenlinien: Natural Earth.
+map-table = Positionen als Tabelle
+map-positions = Positionen
+map-position = Position
+map-label = Karte der Schiffe; die Tabelle unten hat denselben Inhalt
+map-mark = { $ship }: { $condition }
+map-direction-N = N
+map-direction-S = S
+map-direction-E = O
+map-direction-W = W

@@ -82,7 +82,7 @@ approval-turn-on = Freigabe verlangen
 ## Webhooks
 
 webhooks-heading = Webhooks
-webhooks-explained = Nachrichten an einen Chatraum oder ein Programm, wenn sich das Modell eines Schiffes ändert oder zweifelhaft ist. Kanäle von Slack und Microsoft Teams, erkannt an ihrer Adresse, erhalten einen Satz mit Verweis; andere Empfänger erhalten JSON mit Signatur.
+webhooks-explained = Nachrichten an ein Postfach, einen Chatraum oder ein Programm, wenn sich das Modell eines Schiffes ändert oder zweifelhaft ist. Kanäle von Slack und Microsoft Teams, erkannt an ihrer Adresse, und Postfächer erhalten einen Satz mit Verweis; andere Empfänger erhalten JSON mit Signatur.
 webhooks-format = Format
 webhooks-sent-when = Gesendet, wenn
 webhooks-last = Letzte Nachricht
@@ -101,7 +101,6 @@ webhooks-event-other = ein anderes Ereignis eintritt
 webhooks-new = Neuer Webhook
 webhooks-purpose-hint = Zum Beispiel Kanal der Flotte
 webhooks-address = Adresse
-webhooks-address-hint = Wie von Slack, Teams oder dem Programm angegeben; sie beginnt mit https://
 webhooks-send-when = Nachricht senden, wenn
 webhooks-ship = Schiff (optional)
 webhooks-ship-hint = Kurzname; sonst alle Schiffe
@@ -112,7 +111,6 @@ webhooks-links = Verweise in Nachrichten
 webhooks-server = Adresse dieses Servers
 webhooks-server-hint = Wie sie im Browser geöffnet wird, zum Beispiel https://ships.example.com; ohne sie haben Nachrichten keinen Verweis
 webhooks-save = Speichern
-webhooks-url-wrong = muss mit https:// oder http:// beginnen
 webhooks-new-heading = Neuer Webhook: { $title }
 webhooks-secret = Ein Programm, das die Signatur prüft, braucht dieses Geheimnis. Bitte jetzt kopieren: Es wird nicht noch einmal gezeigt. Ein Chatraum braucht keines.
 webhooks-signature = Jede Lieferung hat die Kopfzeile <code>Sistership-Signature: t=SECONDS,v1=HEX</code>, den HMAC-SHA256 von <code>SECONDS.BODY</code> mit dem Geheimnis.
@@ -123,3 +121,5 @@ sign-in-other-site = bitte auf der Seite dieses Servers anmelden; die Anfrage ko
 account-wrong-password = ist nicht das bisherige Passwort
 account-sign-in-first = bitte zuerst anmelden; ein Schlüssel oder dieser Rechner hat kein Passwort
 account-sign-in-to-link = bitte zuerst anmelden, damit es ein Konto zum Verknüpfen gibt
+webhooks-mail-hint = Wie von Slack, Teams oder dem Programm angegeben, beginnend mit https://; oder mailto: und ein Postfach, zum Beispiel mailto:master@example.com
+webhooks-no-mail-hint = Wie von Slack, Teams oder dem Programm angegeben, beginnend mit https://. E-Mail braucht einen Server, der sie sendet: SISTERSHIP_SMTP_URL und --mail-from

@@ -35,4 +35,3 @@ acceptance-i-checked = I have checked it
 acceptance-i-approve = I approve it
 acceptance-name-hint = As it is to stand under the summary. The audit records your account as well.
 acceptance-sign = Sign
-acceptance-another-person = another person approves a version that you have made

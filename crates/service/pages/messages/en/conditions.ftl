@@ -7,8 +7,6 @@ conditions-stated-for = stated for { $date }
 conditions-legend = Conditions
 conditions-save = Save the conditions
 conditions-choose-trials = choose the trials with these conditions
-conditions-not-a-date = `{ $text }` is not a date; write it as 2026-11-29
-conditions-too-long = has more than { $most } characters; shorten it
 
 ## Fields
 

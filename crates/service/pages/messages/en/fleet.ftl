@@ -106,3 +106,19 @@ columns-unknown-name = Not diagnosed
 columns-unknown = no diagnosis has been made of the champion
 columns-error = mean squared error of simulated held-out manoeuvres, divided by the variance of the measurement: 0 is perfect, 1 no better than the mean
 columns-force = unexplained force in each of the newest 24 trials, the oldest first; each line has its own scale
+
+## Map
+
+map-heading = Where the ships are
+map-explained = Last known positions: those of the newest trials that have latitude and longitude. <span class="state does-not-hold">cross: does not hold</span> · triangle: not diagnosed · square: no model · <span class="good">circle: holds</span>.
+map-most-urgent = The { $shown } most urgent of { $placed } ships are shown.
+map-source = Coast lines: Natural Earth.
+map-table = Positions as a table
+map-positions = Positions
+map-position = Position
+map-label = Map of the ships; the table below has the same content
+map-mark = { $ship }: { $condition }
+map-direction-N = N
+map-direction-S = S
+map-direction-E = E
+map-direction-W = W

@@ -82,7 +82,7 @@ approval-turn-on = Require approval
 ## Webhooks
 
 webhooks-heading = Webhooks
-webhooks-explained = Messages to a chat room or a program when a ship's model changes or is in doubt. Channels of Slack and Microsoft Teams, recognised by their address, get a sentence with a link; other receivers get JSON with a signature.
+webhooks-explained = Messages to a mail box, a chat room or a program when a ship's model changes or is in doubt. Channels of Slack and Microsoft Teams, recognised by their address, and mail boxes get a sentence with a link; other receivers get JSON with a signature.
 webhooks-format = Format
 webhooks-sent-when = Sent when
 webhooks-last = Last message
@@ -101,7 +101,6 @@ webhooks-event-other = another event
 webhooks-new = New webhook
 webhooks-purpose-hint = For example channel of the fleet
 webhooks-address = Address
-webhooks-address-hint = As Slack, Teams or the program gives it; it begins with https://
 webhooks-send-when = Send a message when
 webhooks-ship = Ship (optional)
 webhooks-ship-hint = Short name; by default all ships
@@ -112,7 +111,6 @@ webhooks-links = Links in messages
 webhooks-server = Address of this server
 webhooks-server-hint = As people open it in the browser, for example https://ships.example.com; without it messages have no link
 webhooks-save = Save
-webhooks-url-wrong = must begin with https:// or http://
 webhooks-new-heading = New webhook: { $title }
 webhooks-secret = A program that checks the signature needs this secret. Copy it now: it is not shown again. A chat room needs none.
 webhooks-signature = Every delivery has the header <code>Sistership-Signature: t=SECONDS,v1=HEX</code>, the HMAC-SHA256 of <code>SECONDS.BODY</code> under the secret.
@@ -123,3 +121,5 @@ sign-in-other-site = sign in on the page of this server; the request comes from 
 account-wrong-password = is not your present password
 account-sign-in-first = sign in first; a key or this machine has no password
 account-sign-in-to-link = sign in first, so that there is an account to link
+webhooks-mail-hint = As Slack, Teams or the program gives it, beginning with https://; or mailto: and a mail box, for example mailto:master@example.com
+webhooks-no-mail-hint = As Slack, Teams or the program gives it, beginning with https://. Mail needs a server that sends it: SISTERSHIP_SMTP_URL and --mail-from

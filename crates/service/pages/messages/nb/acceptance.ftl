@@ -35,4 +35,3 @@ acceptance-i-checked = Jeg har kontrollert det
 acceptance-i-approve = Jeg godkjenner det
 acceptance-name-hint = Slik det skal stå under sammendraget. Endringsloggen registrerer også kontoen.
 acceptance-sign = Skriv under
-acceptance-another-person = en annen person godkjenner en versjon du selv har laget

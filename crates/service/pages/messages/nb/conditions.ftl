@@ -7,8 +7,6 @@ conditions-stated-for = oppgitt for { $date }
 conditions-legend = Forhold
 conditions-save = Lagre forholdene
 conditions-choose-trials = velg prøvene med disse forholdene
-conditions-not-a-date = «{ $text }» er ikke en dato; skriv den som 2026-11-29
-conditions-too-long = har mer enn { $most } tegn; gjør den kortere
 
 ## Felt
 

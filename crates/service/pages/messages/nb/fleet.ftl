@@ -106,3 +106,19 @@ columns-unknown-name = Ikke diagnostisert
 columns-unknown = den aktive versjonen er ikke diagnostisert
 columns-error = midlere kvadratiske feil for simulerte, tilbakeholdte manøvrer, delt på variansen av målingen: 0 er perfekt, 1 ikke bedre enn middelverdien
 columns-force = uforklart kraft i hver av de nyeste 24 prøvene, den eldste først; hver linje har sin egen skala
+
+## Kart
+
+map-heading = Hvor skipene er
+map-explained = Sist kjente posisjoner: de fra de nyeste prøvene med bredde og lengde. <span class="state does-not-hold">kryss: gjelder ikke</span> · trekant: ikke diagnostisert · kvadrat: ingen modell · <span class="good">sirkel: gjelder</span>.
+map-most-urgent = De { $shown } mest presserende av { $placed } skip vises.
+map-source = Kystlinjer: Natural Earth.
+map-table = Posisjoner som tabell
+map-positions = Posisjoner
+map-position = Posisjon
+map-label = Kart over skipene; tabellen nedenfor har samme innhold
+map-mark = { $ship }: { $condition }
+map-direction-N = N
+map-direction-S = S
+map-direction-E = Ø
+map-direction-W = V

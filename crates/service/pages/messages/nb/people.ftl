@@ -82,7 +82,7 @@ approval-turn-on = Krev godkjenning
 ## Webhooks
 
 webhooks-heading = Webhooks
-webhooks-explained = Meldinger til et chatterom eller et program når modellen av et skip endres eller er i tvil. Kanaler i Slack og Microsoft Teams, som kjennes igjen på adressen, får en setning med lenke; andre mottakere får JSON med signatur.
+webhooks-explained = Meldinger til en postkasse, et chatterom eller et program når modellen av et skip endres eller er i tvil. Kanaler i Slack og Microsoft Teams, som kjennes igjen på adressen, og postkasser får en setning med lenke; andre mottakere får JSON med signatur.
 webhooks-format = Format
 webhooks-sent-when = Sendes når
 webhooks-last = Siste melding
@@ -101,7 +101,6 @@ webhooks-event-other = en annen hendelse inntreffer
 webhooks-new = Ny webhook
 webhooks-purpose-hint = For eksempel kanalen til flåten
 webhooks-address = Adresse
-webhooks-address-hint = Slik Slack, Teams eller programmet oppgir den; den begynner med https://
 webhooks-send-when = Send en melding når
 webhooks-ship = Skip (valgfritt)
 webhooks-ship-hint = Kortnavn; ellers alle skip
@@ -112,7 +111,6 @@ webhooks-links = Lenker i meldinger
 webhooks-server = Adressen til denne serveren
 webhooks-server-hint = Slik den åpnes i nettleseren, for eksempel https://ships.example.com; uten den har meldinger ingen lenke
 webhooks-save = Lagre
-webhooks-url-wrong = må begynne med https:// eller http://
 webhooks-new-heading = Ny webhook: { $title }
 webhooks-secret = Et program som kontrollerer signaturen, trenger denne hemmeligheten. Kopier den nå: den vises ikke igjen. Et chatterom trenger ingen.
 webhooks-signature = Hver leveranse har hodefeltet <code>Sistership-Signature: t=SECONDS,v1=HEX</code>, HMAC-SHA256 av <code>SECONDS.BODY</code> med hemmeligheten.
@@ -123,3 +121,5 @@ sign-in-other-site = logg inn på siden til denne serveren; forespørselen komme
 account-wrong-password = er ikke det nåværende passordet
 account-sign-in-first = logg inn først; en nøkkel eller denne maskinen har ikke noe passord
 account-sign-in-to-link = logg inn først, slik at det finnes en konto å koble til
+webhooks-mail-hint = Slik Slack, Teams eller programmet oppgir den, med https:// først; eller mailto: og en postkasse, for eksempel mailto:master@example.com
+webhooks-no-mail-hint = Slik Slack, Teams eller programmet oppgir den, med https:// først. E-post trenger en server som sender den: SISTERSHIP_SMTP_URL og --mail-from

@@ -1,7 +1,9 @@
 //! The fleet: a list of the ships, the one that most needs attention first.
 
+mod class_label;
 mod drift_trend;
 mod first_steps;
+mod map;
 mod query;
 mod recent;
 
@@ -14,14 +16,16 @@ use sistership_jobs::search::urgency::{
 use sistership_jobs::search::{self, SearchCriteria, VectorCache};
 use sistership_store::{FactRange, FoundShip, ListPage, PageRequest, ShipKey, ShipOverview};
 
+pub(crate) use self::class_label::class_label;
 use self::drift_trend::drift_trend;
 use self::first_steps::FirstSteps;
+use self::map::FleetMap;
 use self::query::{FleetQuery, SortOrder};
 use self::recent::{RecentShip, recent_ships};
 use crate::cursor::encode_cursor;
 use crate::error::Result;
 use crate::form::FormFields;
-use crate::language::{say, say_word};
+use crate::language::say;
 use crate::numbers::{format_significant, format_stated};
 use crate::picture::render_svg;
 use crate::shell::PageShell;
@@ -57,6 +61,7 @@ struct FleetDashboard {
     recent: Vec<RecentShip>,
     /// Chart of the drift over the last weeks, SVG.
     drift: Option<String>,
+    map: Option<FleetMap>,
 }
 
 /// Ship that needs attention, and why.
@@ -144,6 +149,7 @@ impl FleetDashboard {
             worst: if ships.len() > WORST_SHIPS { worst } else { Vec::new() },
             recent: recent_ships(archive).await?,
             drift: drift_trend(archive).await?.as_ref().map(render_svg).transpose()?,
+            map: FleetMap::read(archive).await?,
         })
     }
 }
@@ -219,9 +225,4 @@ fn condition_reason(condition: &Condition) -> String {
         },
         _ => condition.effects.join(", "),
     }
-}
-
-/// Returns a class of condition in words.
-pub(crate) fn class_label(class: UrgencyClass) -> String {
-    say_word("condition-class", class.name())
 }

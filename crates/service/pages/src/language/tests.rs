@@ -14,10 +14,11 @@ use super::{Language, say, say_html, say_word};
 const UNTRANSLATED: [&str; 6] = ["Sistership", "REST", "API", "SHA", "doi", "yard"];
 
 /// Literals of more than one word in the code of pages that people do not read, by their beginning.
-const CODE_LITERALS: [(&str, &str); 17] = [
+const CODE_LITERALS: [(&str, &str); 18] = [
     ("<", "markup"),
     ("default-src", "security policy"),
     ("; HttpOnly", "attributes of a cookie"),
+    ("private, max-age", "a header for caches"),
     (" m/s ( kn)", "units"),
     ("the page cannot be written", "an error of the program, for its log"),
     ("the request has no user or key", "an error of the program, for its log"),

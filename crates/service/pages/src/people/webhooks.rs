@@ -24,6 +24,8 @@ struct WebhooksPage {
     /// Name and words of each event.
     events: Vec<(&'static str, Message)>,
     public_url: String,
+    /// True if the server sends mail.
+    has_mail: bool,
 }
 
 struct WebhookRow {
@@ -42,7 +44,7 @@ struct WebhookRow {
 ///
 /// # Errors
 /// Returns an error if the store fails.
-pub async fn webhooks_page(archive: &Archive, shell: PageShell) -> Result<String> {
+pub async fn webhooks_page(archive: &Archive, shell: PageShell, has_mail: bool) -> Result<String> {
     let store = &archive.store;
     let mut webhooks = Vec::new();
     for webhook in store.webhooks().list(&PageRequest::first_page(LISTED_WEBHOOKS)).await?.items {
@@ -56,6 +58,7 @@ pub async fn webhooks_page(archive: &Archive, shell: PageShell) -> Result<String
         webhooks,
         events: EVENTS.iter().map(|event| (*event, event_words(event))).collect(),
         public_url: store.settings().public_url().await?.unwrap_or_default(),
+        has_mail,
     };
     Ok(page.render()?)
 }

@@ -4,13 +4,11 @@ use indexmap::IndexMap;
 use sistership_model::manifest::{ColumnMapping, MissingValues, RudderSign, VelocityFrame};
 use sistership_trials::{ColumnGuess, ManifestFile};
 
-use super::proposed::{DERIVED, TARGETS, UploadProposal};
+use super::proposed::{DERIVED, GIVEN, TARGETS, UploadProposal};
+use super::trial_fields::apply_trial_fields;
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
 use crate::language::say;
-
-/// Reason of a reading that the form gives, as manifests have it.
-pub(super) const GIVEN: &str = "given on this page";
 
 /// Returns the proposal with the form's columns, signs, manoeuvres, depths and exclusions.
 ///
@@ -174,20 +172,6 @@ fn apply_conventions(manifest: &mut ManifestFile, fields: &FormFields) -> Result
     Ok(())
 }
 
-fn apply_trial_fields(manifest: &mut ManifestFile, fields: &FormFields) -> Result<()> {
-    for (place, trial) in manifest.manifest.trials.iter_mut().enumerate() {
-        trial.manoeuvre = fields.get_text(&format!("manoeuvre.{place}")).map(str::to_owned);
-        let field = format!("depth.{place}");
-        trial.depth_m = match fields.optional_number(&field)? {
-            Some(depth) if depth <= 0.0 => {
-                return Err(PageError::invalid_field(&field, say("upload-depth")));
-            }
-            depth => depth,
-        };
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
@@ -208,6 +192,7 @@ mod tests {
             manifest,
             diagnose: true,
             template: None,
+            notes: Vec::new(),
         };
         (folder, of)
     }

@@ -7,6 +7,7 @@ mod preview;
 mod proposed;
 mod stored;
 mod templates;
+mod trial_fields;
 
 use askama::Template;
 use sistership_model::manifest::{MissingValues, RudderSign, VelocityFrame};
@@ -22,6 +23,7 @@ pub use templates::TemplatePlace;
 
 use self::proposed::{DERIVED, TARGETS};
 use self::templates::TemplateOffer;
+use self::trial_fields::{TrialFields, trial_fields};
 use crate::error::Result;
 use crate::language::say;
 use crate::numbers::format_fixed;
@@ -56,6 +58,7 @@ struct MappingPage<'a> {
     targets: [&'static str; 28],
     units: [&'static str; 17],
     columns: Vec<ColumnRow<'a>>,
+    trials: Vec<TrialFields>,
     previews: &'a [FilePreview],
     accepted: bool,
     port: bool,
@@ -104,6 +107,7 @@ pub fn mapping_page(
         targets: TARGETS,
         units: UNITS,
         columns: column_rows(of),
+        trials: trial_fields(&of.manifest),
         previews,
         // Only an upload without errors may be stored.
         accepted: previews.iter().all(FilePreview::is_accepted),
@@ -131,7 +135,7 @@ impl MappingPage<'_> {
 /// Returns the reason of a reading: that of the form in the language of the page, those of the
 /// identification of columns as manifests have them.
 pub(crate) fn reading_reason(why: &str) -> String {
-    if why == corrected::GIVEN { say("mapping-given").into() } else { why.to_owned() }
+    if why == proposed::GIVEN { say("mapping-given").into() } else { why.to_owned() }
 }
 
 /// Returns the guesses whose columns the manifest maps. A sentence of NMEA 0183 needs no mapping.

@@ -5,6 +5,7 @@ mod coefficients;
 pub(crate) mod figures;
 mod lineage;
 mod manoeuvres;
+pub mod turn;
 
 use std::sync::Arc;
 

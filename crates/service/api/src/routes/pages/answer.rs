@@ -44,6 +44,16 @@ pub(super) fn page_response(html: impl Into<Body>) -> Response {
     (head, html.into()).into_response()
 }
 
+/// Returns an SVG picture with the value of its `Cache-Control`.
+pub(super) fn picture_response(svg: &str, cached: &'static str) -> Response {
+    let head = [
+        (header::CONTENT_TYPE, "image/svg+xml"),
+        (header::CONTENT_SECURITY_POLICY, "default-src 'none'"),
+        (header::CACHE_CONTROL, cached),
+    ];
+    (head, svg.to_owned()).into_response()
+}
+
 /// Redirects to a page after an action (RFC 9110, 15.4.4).
 pub(super) fn redirect_to(place: &str) -> Response {
     Redirect::to(place).into_response()

@@ -2,6 +2,7 @@
 
 mod answer;
 mod draft;
+mod draft_estimates;
 mod example;
 mod form_actions;
 mod language;
@@ -28,6 +29,8 @@ pub(super) fn page_routes(limits: &Limits) -> Router<App> {
         .route("/ships", post(new_ship::create_ship))
         .route("/example", post(example::load_example))
         .route("/ships/{ship}", get(views::ship_page))
+        .route("/ships/{ship}/turn.svg", get(views::champion_turn))
+        .route("/ships/{ship}/versions/{number}/turn.svg", get(views::version_turn))
         .route("/ships/{ship}/refine", post(form_actions::refine_ship))
         .route("/ships/{ship}/diagnose", post(form_actions::diagnose_ship))
         .route("/ships/{ship}/champion", post(form_actions::promote_version))

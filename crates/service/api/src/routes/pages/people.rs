@@ -7,6 +7,7 @@ use axum::extract::{FromRequest as _, Request, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::Response;
 use sistership_auth::Grant;
+use sistership_jobs::webhooks::MessageFormat;
 use sistership_pages::people::{LinkedIdentities, ProviderLink};
 use sistership_pages::{FormFields, audit, people, say};
 use sistership_store::{KeyRow, User};
@@ -16,7 +17,7 @@ use super::answer::{local_path, page_response, redirect_to, with_cookie};
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::rights::{AuthenticationKind, RequestActor, current_actor};
-use crate::web::field::{KeyPrefix, UserName};
+use crate::web::field::{KeyPrefix, UserName, WebAddress};
 use crate::web::form::{PageForm, page_shell};
 use crate::web::guard::origin_of;
 use crate::web::{Id, PathParams, QueryParams};
@@ -256,7 +257,9 @@ pub(super) async fn audit_page(
 }
 
 pub(super) async fn webhooks_page(State(app): State<App>) -> Result<Response> {
-    Ok(page_response(people::webhooks_page(app.archive(), page_shell(&app)).await?))
+    Ok(page_response(
+        people::webhooks_page(app.archive(), page_shell(&app), app.mail().is_some()).await?,
+    ))
 }
 
 /// Creates a webhook, and shows its secret: no other page ever does.
@@ -266,6 +269,10 @@ pub(super) async fn make_webhook(
 ) -> Result<Response> {
     let (secret, webhook) =
         webhooks::create_from_page(&app, people::webhook_request(&form)?).await?;
+    // A mail box checks no signature.
+    if MessageFormat::from_url(&webhook.url) == MessageFormat::Mail {
+        return Ok(redirect_to("/webhooks"));
+    }
     let mut page =
         page_response(people::new_webhook_page(page_shell(&app), &webhook.title, &secret)?);
     page.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
@@ -287,8 +294,8 @@ pub(super) async fn set_address(
     PageForm(form): PageForm,
 ) -> Result<Response> {
     let url = form.get_text("public_url").unwrap_or_default();
-    if !url.is_empty() && !url.starts_with("https://") && !url.starts_with("http://") {
-        return Err(Problem::invalid("public_url", say("webhooks-url-wrong")));
+    if !url.is_empty() {
+        url.parse::<WebAddress>().map_err(|message| Problem::invalid("public_url", message))?;
     }
     app.store().settings().set_public_url(url).await?;
     Ok(redirect_to("/webhooks"))

@@ -6,9 +6,10 @@ use sistership_auth::Role;
 use sistership_jobs::budget;
 use sistership_jobs::memory::trial_bytes;
 use sistership_pages as pages;
+use sistership_pages::version::turn::TurnInputs;
 use sistership_pages::{FormFields, say};
 
-use super::answer::{page_response, stream_page};
+use super::answer::{page_response, picture_response, stream_page};
 use crate::app::App;
 use crate::problem::Result;
 use crate::rights::filter_visible;
@@ -54,6 +55,37 @@ pub(super) async fn version_page(
     let beginning = pages::page_beginning(page_shell(&app), &title, "/")?;
     let page = async move { Ok(app.run_blocking(move || gathered.render_html(&known)).await??) };
     Ok(stream_page(beginning, page))
+}
+
+/// Picture of the turning circle of a version, which never changes.
+pub(super) async fn version_turn(
+    State(app): State<App>,
+    PathParams((ship, number)): PathParams<(Name, Number)>,
+) -> Result<Response> {
+    turn_picture(&app, &ship, Some(number.get()), "private, max-age=604800, immutable").await
+}
+
+/// The same of the champion, which may move.
+pub(super) async fn champion_turn(
+    State(app): State<App>,
+    PathParams(ship): PathParams<Name>,
+) -> Result<Response> {
+    turn_picture(&app, &ship, None, "private, max-age=300").await
+}
+
+async fn turn_picture(
+    app: &App,
+    ship: &str,
+    number: Option<i64>,
+    cached: &'static str,
+) -> Result<Response> {
+    let known = app.turn_pictures();
+    let gathered = pages::version::turn::gather_turn(app.archive(), &known, ship, number).await?;
+    let picture = match gathered {
+        TurnInputs::Known(picture) => picture,
+        open => app.run_blocking(move || open.render_svg(&known)).await?,
+    };
+    Ok(picture_response(&picture, cached))
 }
 
 pub(super) async fn trial_page(
