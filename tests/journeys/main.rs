@@ -18,6 +18,7 @@ mod fleet;
 mod full_disk;
 mod import;
 mod lacking;
+mod languages;
 mod matrix;
 mod memory;
 mod operation;

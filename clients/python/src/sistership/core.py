@@ -34,6 +34,8 @@ ComparedFigure = TypedDict('ComparedFigure', {'name': 'str', 'unit': 'str', 'val
 ComparedTrial = TypedDict('ComparedTrial', {'duration_s': 'float', 'errors': 'List[TrialError]', 'samples': 'int', 'trial': 'str'}, total=True)
 Comparison = TypedDict('Comparison', {'coefficients': 'List[ComparedCoefficient]', 'figures': 'List[ComparedFigure]', 'models': 'List[Column]', 'trials': 'List[ComparedTrial]'}, total=True)
 Condition = TypedDict('Condition', {'against': 'List[str]', 'diagnoses': 'List[WeighedDiagnosis]', 'drift': 'Union[RecentDrift, None]', 'effects': 'List[str]', 'found_by': 'Union[DiagnosisReference, None]', 'model': 'ModelValidity', 'sentence': 'str', 'since': 'Union[SinceTrial, None]', 'trials': 'List[str]', 'verdict': 'Union[str, None]', 'version': 'Union[int, None]', 'with_effects': 'Union[VersionWithEffects, None]'}, total=False)
+ConditionsRequest = TypedDict('ConditionsRequest', {'date': 'Union[str, None]', 'depth': 'Union[str, None]', 'displacement': 'Union[str, None]', 'draught_aft_m': 'Union[float, None]', 'draught_fore_m': 'Union[float, None]', 'instruments': 'Union[str, None]', 'place': 'Union[str, None]', 'remarks': 'Union[str, None]', 'sea': 'Union[str, None]', 'wind': 'Union[str, None]'}, total=False)
+ConditionsView = TypedDict('ConditionsView', {'conditions': 'Dict[str, Any]'}, total=True)
 Constraints = TypedDict('Constraints', {'bounds': 'Dict[str, Bound]', 'dissipative': 'bool', 'physical_signs': 'bool', 'straight_line': 'Union[StraightLine, None]', 'trust_sd': 'Union[float, None]'}, total=False)
 CorrectionDocument = TypedDict('CorrectionDocument', {'domain': 'Region', 'fade': 'float', 'mode': 'CorrectionMode', 'outputs': 'List[CorrectionOutput]', 'recipe': 'CorrectionRecipe', 'weights_sha256': 'str'}, total=True)
 CorrectionInput = TypedDict('CorrectionInput', {'centre': 'float', 'scale': 'float', 'signal': 'Signal'}, total=True)
@@ -114,6 +116,7 @@ NoteView = TypedDict('NoteView', {'actor': 'str', 'at_us': 'int', 'number': 'int
 NumberOrExpression = Any  # 
 OrdersRequest = TypedDict('OrdersRequest', {'delta_rad': 'Union[float, None]', 'inputs': 'Dict[str, float]', 'n_rps': 'Union[float, None]'}, total=False)
 OutcomeView = TypedDict('OutcomeView', {'comparison': 'Dict[str, Any]', 'outcome': 'str', 'ship': 'str', 'version': 'Union[int, None]', 'worst_change': 'Union[float, None]'}, total=False)
+ParticularsRequest = TypedDict('ParticularsRequest', {'citation': 'str', 'values': 'Dict[str, Union[float, None]]'}, total=True)
 PasswordRequest = TypedDict('PasswordRequest', {'password': 'str'}, total=True)
 Posterior = TypedDict('Posterior', {'deviations': 'List[float]', 'names': 'List[str]', 'root_correlation': 'List[str]', 'values': 'List[float]'}, total=True)
 PredictionRequest = TypedDict('PredictionRequest', {'depth_m': 'Union[float, None]', 'horizon': 'Union[HorizonRequest, None]', 'inputs': 'Union[InputsRequest, None]', 'manoeuvre': 'Union[ManoeuvreRequest, None]', 'model': 'str'}, total=False)
@@ -145,10 +148,16 @@ Rule = TypedDict('Rule', {'no_worse_than': 'Union[float, None]'}, total=False)
 Sampling = TypedDict('Sampling', {'samples': 'int', 'seed': 'int'}, total=False)
 Section = TypedDict('Section', {'source': 'Union[str, None]', 'values': 'Dict[str, ValueEntry]'}, total=False)
 SessionRequest = TypedDict('SessionRequest', {'current': 'Union[CurrentRequest, None]', 'delta_rad': 'float', 'depth_m': 'Union[float, None]', 'draws': 'Union[int, None]', 'model': 'str', 'seed': 'Union[int, None]', 'start': 'Union[InitialState, None]', 'wind': 'Union[WindRequest, None]'}, total=False)
-Settings = TypedDict('Settings', {'second_person': 'bool'}, total=True)
+Settings = TypedDict('Settings', {'public_url': 'Union[str, None]', 'second_person': 'bool'}, total=False)
+SettingsRequest = TypedDict('SettingsRequest', {'public_url': 'Union[str, None]', 'second_person': 'bool'}, total=False)
 ShipDetail = TypedDict('ShipDetail', {'category': 'str', 'condition': 'Condition', 'created_us': 'int', 'document': 'Dict[str, Any]', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int'}, total=True)
 ShipHead = TypedDict('ShipHead', {'category': 'str', 'created_us': 'int', 'name': 'str', 'revision': 'int', 'title': 'str', 'updated_us': 'int', 'value': 'Union[float, None]'}, total=False)
 Signal = Any  # Signals that may be inputs of a learned correction.
+SignatureList = TypedDict('SignatureList', {'author': 'str', 'created_us': 'int', 'signatures': 'List[SignatureView]'}, total=True)
+SignatureReceipt = TypedDict('SignatureReceipt', {'model': 'str', 'number': 'int', 'person': 'str', 'role': 'str'}, total=True)
+SignatureRequest = TypedDict('SignatureRequest', {'person': 'str', 'role': 'SignatureRole'}, total=True)
+SignatureRole = Any  # Role in which a person signs.
+SignatureView = TypedDict('SignatureView', {'actor': 'str', 'at_us': 'int', 'person': 'str', 'role': 'str'}, total=True)
 SinceTrial = TypedDict('SinceTrial', {'at_us': 'int', 'name': 'str', 'trial': 'str'}, total=True)
 Source = TypedDict('Source', {'citation': 'str', 'doi': 'Union[str, None]', 'note': 'Union[str, None]'}, total=False)
 Start = Any  # Starting model of a member.
@@ -396,6 +405,14 @@ class Core:
         """Export a version as a file for another tool."""
         return self.http.bytes('GET', f'/v1/models/{model}/versions/{number}/export', query={'format': format})
 
+    def get_models_model_versions_number_signatures(self, model: str, number: int) -> SignatureList:
+        """Get the signatures under a version."""
+        return self.http.json('GET', f'/v1/models/{model}/versions/{number}/signatures')
+
+    def post_models_model_versions_number_signatures(self, model: str, number: int, body: SignatureRequest, *, idempotency_key: Optional[str] = None) -> SignatureReceipt:
+        """Sign a version as checked or approved."""
+        return self.http.json('POST', f'/v1/models/{model}/versions/{number}/signatures', headers={'Idempotency-Key': idempotency_key}, json=body)
+
     def get_models_model_versions_number_validation(self, model: str, number: int, *, format: Optional[Literal['json', 'html']] = None) -> Validation:
         """Validate a version after ITTC 7.5-02-06-03."""
         return self.http.json('GET', f'/v1/models/{model}/versions/{number}/validation', query={'format': format})
@@ -448,7 +465,7 @@ class Core:
         """Get the settings that apply to every process on the store."""
         return self.http.json('GET', '/v1/settings')
 
-    def put_settings(self, body: Settings) -> Settings:
+    def put_settings(self, body: SettingsRequest) -> Settings:
         """Change the settings."""
         return self.http.json('PUT', '/v1/settings', json=body)
 
@@ -488,6 +505,10 @@ class Core:
         """Add a note about a ship; notes are part of the audit and cannot be removed."""
         return self.http.json('POST', f'/v1/ships/{ship}/notes', headers={'Idempotency-Key': idempotency_key}, json=body)
 
+    def put_ships_ship_particulars(self, ship: str, body: ParticularsRequest, *, if_match: Optional[str] = None) -> ShipDetail:
+        """Change particulars of a ship, if it is as you last read it."""
+        return self.http.json('PUT', f'/v1/ships/{ship}/particulars', headers={'If-Match': if_match}, json=body)
+
     def get_ships_ship_similar(self, ship: str, *, vector: Optional[Literal['mei-2019', 'kanazawa-2023']] = None, trials: Optional[bool] = None) -> Dict[str, Any]:
         """Rank the zoo by similarity to a ship, with the eligible source models."""
         return self.http.json('GET', f'/v1/ships/{ship}/similar', query={'vector': vector, 'trials': trials})
@@ -512,13 +533,13 @@ class Core:
         """List the trials of a ship, in the order of their upload."""
         return self.http.json('GET', '/v1/trials', query={'ship': ship, 'limit': limit, 'after': after})
 
-    def post_trials(self, body: bytes, media: str, *, ship: Optional[str] = None, name: Optional[str] = None, manoeuvre: Optional[str] = None, depth_m: Optional[float] = None, diagnose: Optional[bool] = None, idempotency_key: Optional[str] = None) -> UploadResult:
+    def post_trials(self, body: bytes, media: str, *, ship: Optional[str] = None, name: Optional[str] = None, manoeuvre: Optional[str] = None, depth_m: Optional[float] = None, n_rps: Optional[float] = None, current_north_m_s: Optional[float] = None, current_east_m_s: Optional[float] = None, diagnose: Optional[bool] = None, idempotency_key: Optional[str] = None) -> UploadResult:
         """Upload trials, all together or none."""
-        return self.http.json('POST', '/v1/trials', query={'ship': ship, 'name': name, 'manoeuvre': manoeuvre, 'depth_m': depth_m, 'diagnose': diagnose}, headers={'Idempotency-Key': idempotency_key}, body=body, media=media)
+        return self.http.json('POST', '/v1/trials', query={'ship': ship, 'name': name, 'manoeuvre': manoeuvre, 'depth_m': depth_m, 'n_rps': n_rps, 'current_north_m_s': current_north_m_s, 'current_east_m_s': current_east_m_s, 'diagnose': diagnose}, headers={'Idempotency-Key': idempotency_key}, body=body, media=media)
 
-    def post_trials_check(self, body: bytes, media: str, *, ship: Optional[str] = None, name: Optional[str] = None, manoeuvre: Optional[str] = None, depth_m: Optional[float] = None, diagnose: Optional[bool] = None) -> Dict[str, Any]:
+    def post_trials_check(self, body: bytes, media: str, *, ship: Optional[str] = None, name: Optional[str] = None, manoeuvre: Optional[str] = None, depth_m: Optional[float] = None, n_rps: Optional[float] = None, current_north_m_s: Optional[float] = None, current_east_m_s: Optional[float] = None, diagnose: Optional[bool] = None) -> Dict[str, Any]:
         """Check trials without storing them."""
-        return self.http.json('POST', '/v1/trials/check', query={'ship': ship, 'name': name, 'manoeuvre': manoeuvre, 'depth_m': depth_m, 'diagnose': diagnose}, body=body, media=media)
+        return self.http.json('POST', '/v1/trials/check', query={'ship': ship, 'name': name, 'manoeuvre': manoeuvre, 'depth_m': depth_m, 'n_rps': n_rps, 'current_north_m_s': current_north_m_s, 'current_east_m_s': current_east_m_s, 'diagnose': diagnose}, body=body, media=media)
 
     def delete_trials_id(self, id: str) -> None:
         """Delete a trial; versions that were made with it stay, and `undelete` restores it."""
@@ -527,6 +548,14 @@ class Core:
     def get_trials_id(self, id: str) -> TrialView:
         """Get a trial."""
         return self.http.json('GET', f'/v1/trials/{id}')
+
+    def get_trials_id_conditions(self, id: str) -> ConditionsView:
+        """Get the conditions of a trial as they were last stated."""
+        return self.http.json('GET', f'/v1/trials/{id}/conditions')
+
+    def put_trials_id_conditions(self, id: str, body: ConditionsRequest) -> ConditionsView:
+        """State the conditions of a trial; they replace what was stated before."""
+        return self.http.json('PUT', f'/v1/trials/{id}/conditions', json=body)
 
     def get_trials_id_samples(self, id: str) -> bytes:
         """Get the samples of a trial, as CSV or as Parquet, under canonical names."""

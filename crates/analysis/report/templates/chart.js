@@ -8,6 +8,12 @@ const OUTLINE = [...HALF, ...HALF.slice(1).reverse().map(([x, y]) => [x, -y])];
 const STYLES = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-opacity",
   "stroke-linecap", "stroke-linejoin", "font-family", "font-size", "font-weight", "text-anchor", "paint-order", "display", "vector-effect"];
 
+// Words in the language of the page, where it has any; a report has the English ones.
+const WORDS = JSON.parse(document.getElementById("chart-words")?.textContent ?? "{}");
+const say = (text) => WORDS[text] ?? text;
+const MARK = ["de", "nb"].includes(document.documentElement.lang) ? "," : ".";
+const local = (number) => number.replace(".", MARK);
+
 const draw = (name, attributes, parent) => {
   const node = document.createElementNS(parent.namespaceURI, name);
   for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
@@ -42,7 +48,7 @@ const ticks = (low, high, about) => {
   const least = (high - low) / about, power = 10 ** Math.floor(Math.log10(least));
   const step = [1, 2, 5, 10].find((k) => k * power >= least * .999) * power;
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9)), all = [];
-  for (let k = Math.ceil(low / step); k * step <= high; k++) all.push([k * step, (k * step).toFixed(decimals)]);
+  for (let k = Math.ceil(low / step); k * step <= high; k++) all.push([k * step, local((k * step).toFixed(decimals))]);
   return all;
 };
 
@@ -124,7 +130,7 @@ class Chart {
       entry.tabIndex = 0;
       entry.setAttribute("role", "button");
       entry.setAttribute("aria-pressed", "true");
-      entry.title = "Show or hide";
+      entry.title = say("Show or hide");
       const toggle = () => {
         if (!this.hidden.delete(name)) this.hidden.add(name);
         entry.setAttribute("aria-pressed", String(!this.hidden.has(name)));
@@ -140,14 +146,14 @@ class Chart {
   }
   tools() {
     const bar = make("div", { className: "chart-tools" }, this.root);
-    const button = (name, title, action) => make("button", { type: "button", textContent: name, title, onclick: action }, bar);
+    const button = (name, title, action) => make("button", { type: "button", textContent: say(name), title: say(title), onclick: action }, bar);
     this.player = button("Play", "Move the ship along its track", () => this.play());
     this.slider = make("input", { type: "range", min: this.from, max: this.to, step: (this.to - this.from) / 1000 || 1 }, bar);
-    this.slider.setAttribute("aria-label", "Time");
+    this.slider.setAttribute("aria-label", say("Time"));
     this.slider.addEventListener("input", (event) => { event.stopPropagation(); this.setTime(Number(this.slider.value)); });
     this.clock = make("output", {}, bar);
-    button("+", "Zoom in around the cursor; or drag in a panel", () => this.zoomBy(.5)).setAttribute("aria-label", "Zoom in");
-    button("−", "Zoom out", () => this.zoomBy(2)).setAttribute("aria-label", "Zoom out");
+    button("+", "Zoom in around the cursor; or drag in a panel", () => this.zoomBy(.5)).setAttribute("aria-label", say("Zoom in"));
+    button("−", "Zoom out", () => this.zoomBy(2)).setAttribute("aria-label", say("Zoom out"));
     button("Reset", "Show everything; or double-click in a panel", () => this.reset());
     if (this.root.requestFullscreen) button("Full screen", "Full screen; Escape leaves it", () => document.fullscreenElement ? document.exitFullscreen() : this.root.requestFullscreen());
     button("CSV", "Download the values of the drawn lines", () => save(this.csv(), "text/csv", this.name() + ".csv"));
@@ -156,8 +162,8 @@ class Chart {
   }
   name() { return (this.plots[0].getAttribute("aria-label") || "chart").replace(/[^\w.-]+/g, "-").toLowerCase(); }
   play() {
-    if (this.playing) { clearInterval(this.playing); this.playing = null; this.player.textContent = "Play"; return; }
-    this.player.textContent = "Pause";
+    if (this.playing) { clearInterval(this.playing); this.playing = null; this.player.textContent = say("Play"); return; }
+    this.player.textContent = say("Pause");
     if (this.time >= this.to) this.setTime(this.from);
     const step = (this.to - this.from) / 300;
     this.playing = setInterval(() => { this.setTime(this.time + step); if (this.time >= this.to) this.play(); }, 40);
@@ -167,12 +173,12 @@ class Chart {
     const shown = this.panels.filter((panel) => !panel.isGround);
     this.columns = shown.map((panel) => ({ quantity: panel.quantity, title: `${panel.title} [${panel.unit}]` }));
     if (this.panels.some((panel) => panel.isGround))
-      this.columns.unshift({ quantity: "x", title: "x north [m]" }, { quantity: "y", title: "y east [m]" });
+      this.columns.unshift({ quantity: "x", title: say("x north [m]") }, { quantity: "y", title: say("y east [m]") });
     const box = make("div", { className: "chart-values", tabIndex: 0 }, this.root), table = make("table", {}, box);
     box.setAttribute("role", "region");
-    box.setAttribute("aria-label", "Values at the cursor");
+    box.setAttribute("aria-label", say("Values at the cursor"));
     const head = make("tr", {}, make("thead", {}, table));
-    make("th", { textContent: "At the cursor", scope: "col" }, head);
+    make("th", { textContent: say("At the cursor"), scope: "col" }, head);
     for (const column of this.columns) make("th", { className: "num", textContent: column.title, scope: "col" }, head);
     this.body = make("tbody", {}, table);
     this.rows = this.classes.map((name) => {
@@ -191,7 +197,7 @@ class Chart {
     this.time = Math.min(this.to, Math.max(this.from, time));
     this.slider.value = this.time;
     const decimals = this.to - this.from < 20 ? 2 : 1;
-    this.clock.textContent = `t = ${this.time.toFixed(decimals)} s`;
+    this.clock.textContent = `t = ${local(this.time.toFixed(decimals))} s`;
     this.slider.setAttribute("aria-valuetext", this.clock.textContent);
     this.follow();
     for (const panel of this.panels) this.mark(panel);
@@ -200,7 +206,7 @@ class Chart {
       cells.forEach((cell, column) => {
         const quantity = this.columns[column].quantity;
         const line = this.lines.find((line) => line.class === name && line.values[quantity]);
-        cell.textContent = line ? text(line.values[quantity], nearest(line.values.t.list, this.time)) : "";
+        cell.textContent = line ? local(text(line.values[quantity], nearest(line.values.t.list, this.time))) : "";
       });
     }
   }

@@ -24,6 +24,8 @@ pub struct Declarations {
     pub maximum: BTreeMap<String, Maximum>,
     /// Position of the antenna on board.
     pub antenna: Option<Antenna>,
+    /// Geographic position of the origin of `x` and `y`; by default the first fix.
+    pub origin: Option<GeographicPosition>,
     /// Channels to be derived from position and heading where they were not measured: `u`, `v`,
     /// `r`.
     pub derive: Vec<Derivable>,
@@ -62,6 +64,23 @@ pub struct Antenna {
     pub x_m: f64,
     /// Distance to starboard of the centre line, m.
     pub y_m: f64,
+}
+
+/// Position on the ellipsoid WGS 84.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GeographicPosition {
+    /// Latitude, deg, positive to the north.
+    pub latitude_deg: f64,
+    /// Longitude, deg, positive to the east, from -180 to 180.
+    pub longitude_deg: f64,
+}
+
+impl GeographicPosition {
+    /// Returns true if latitude and longitude are within their ranges.
+    pub fn is_valid(&self) -> bool {
+        self.latitude_deg.abs() <= 90.0 && self.longitude_deg.abs() <= 180.0
+    }
 }
 
 /// Channel that can be derived from others.

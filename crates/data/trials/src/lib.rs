@@ -89,7 +89,9 @@ mod workbook;
 mod written_time;
 
 pub use currents::{TrialCurrent, estimate_currents};
-pub use declarations::{Antenna, Declarations, Derivable, Maximum, North, SensorFile};
+pub use declarations::{
+    Antenna, Declarations, Derivable, GeographicPosition, Maximum, North, SensorFile,
+};
 pub use demand::{MemoryDemand, demand_of_trial, measuring_bytes};
 pub use derived_channel::DerivedChannel;
 pub use exclusion::{Exclusion, RowRanges};

@@ -214,6 +214,11 @@ fn declaration_problems(declared: &Declarations) -> impl Iterator<Item = Manifes
         .is_none_or(|antenna| antenna.x_m.abs() < 1000.0 && antenna.y_m.abs() < 1000.0);
     let antenna = (!is_aboard)
         .then(|| problem("antenna", "must be a position on the ship, in m from midship".into()));
+    let origin = declared.origin.is_some_and(|origin| !origin.is_valid()).then(|| {
+        let message =
+            "must have a latitude_deg from -90 to 90 and a longitude_deg from -180 to 180";
+        problem("origin", message.into())
+    });
     let maximum = declared.maximum.iter().filter_map(move |(name, maximum)| {
         let message = match ColumnTarget::from_name(name) {
             None => format!("`{name}` is not a channel; channels are {}", channel_names()),
@@ -224,7 +229,7 @@ fn declaration_problems(declared: &Declarations) -> impl Iterator<Item = Manifes
         };
         Some(problem(&format!("maximum.{name}"), message))
     });
-    [heading, angle, antenna].into_iter().flatten().chain(maximum)
+    [heading, angle, antenna, origin].into_iter().flatten().chain(maximum)
 }
 
 /// Returns true if a path stays inside the folder on any system: a backslash or colon has a further
@@ -343,7 +348,7 @@ trials:
     fn declarations_are_checked_and_written_back() {
         let text = format!(
             "{GOOD}heading: magnetic\nvariation_deg: -3.5\nantenna: {{ x_m: -20, y_m: 1 }}\n\
-             maximum:\n  n: {{ value: 120, unit: rpm }}\nignore: [note]\nderive: [u, v]\n"
+             origin: {{ latitude_deg: 57.9, longitude_deg: 9.8 }}\nmaximum:\n  n: {{ value: 120, unit: rpm }}\nignore: [note]\nderive: [u, v]\n"
         );
         let text = text.replace("unit: rad }", "unit: '%' }");
         let refused = |from: &str, to: &str| {
@@ -361,6 +366,7 @@ trials:
         assert!(refused("heading: magnetic\n", "").contains("add `heading: magnetic`"));
         assert!(refused("-3.5", ".inf").contains("between"));
         assert!(refused("-20", ".nan").contains("antenna"));
+        assert!(refused("57.9", "97.9").contains("origin"));
         assert!(refused("value: 120", "value: 0").contains("positive"));
     }
 

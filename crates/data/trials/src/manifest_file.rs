@@ -10,7 +10,9 @@ use sistership_model::manifest::{
 };
 
 use crate::currents::TrialCurrent;
-use crate::declarations::{Antenna, Declarations, Derivable, Maximum, North, SensorFile};
+use crate::declarations::{
+    Antenna, Declarations, Derivable, GeographicPosition, Maximum, North, SensorFile,
+};
 use crate::exclusion::Exclusion;
 use crate::mapping::Mapping;
 
@@ -51,6 +53,10 @@ pub(crate) struct Written {
     /// Position of the antenna on board.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     antenna: Option<Antenna>,
+    /// Geographic position of the origin of `x` and `y`; by default the first fix. It places trials
+    /// on the map, and changes no sample.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    origin: Option<GeographicPosition>,
     /// Channels to be derived from position and heading where they were not measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     derive: Vec<Derivable>,
@@ -196,6 +202,7 @@ impl From<Written> for ManifestFile {
             variation_deg: written.variation_deg,
             maximum: written.maximum,
             antenna: written.antenna,
+            origin: written.origin,
             derive: written.derive,
             exclude: written.exclude,
             currents: written.currents,
@@ -221,6 +228,7 @@ impl From<ManifestFile> for Written {
             variation_deg: declarations.variation_deg,
             maximum: declarations.maximum,
             antenna: declarations.antenna,
+            origin: declarations.origin,
             derive: declarations.derive,
             sheet: declarations.sheet,
             columns: manifest.columns,

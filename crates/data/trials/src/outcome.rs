@@ -5,6 +5,7 @@ use std::fmt;
 use serde::{Serialize, Serializer};
 use sistership_model::trial::{Finding, Trial};
 
+use crate::declarations::GeographicPosition;
 use crate::derived_channel::DerivedChannel;
 
 /// Refusal of a trial, with every error found.
@@ -42,6 +43,8 @@ pub struct TrialReading {
     pub start: Option<String>,
     /// Derived channels with their variances.
     pub derived: Vec<DerivedChannel>,
+    /// Geographic position of the origin of `x` and `y`: the first fix, or as declared.
+    pub origin: Option<GeographicPosition>,
 }
 
 /// Outcome of checking one file; serialised as the `check` command prints it.

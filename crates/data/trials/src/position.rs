@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use geographiclib_rs::{Geodesic, InverseGeodesic};
 use sistership_model::trial::Channel;
 
-use crate::declarations::Antenna;
+use crate::declarations::{Antenna, GeographicPosition};
 use crate::findings::{Findings, Severity};
 use crate::recording::Recording;
 use crate::table::RawQuantity;
@@ -64,6 +64,11 @@ fn project_fixes(
     let (x, y) = latitude.iter().zip(longitude).map(place).unzip();
     recording.trial.channels.insert(Channel::X, x);
     recording.trial.channels.insert(Channel::Y, y);
+    // Longitudes that count to 360 degrees are those to the west above 180. To a centimetre: the
+    // conversion from radians leaves digits that no instrument has read.
+    let round = |degrees: f64| (1e7 * degrees).round() / 1e7;
+    let longitude_deg = round((east + 180.0).rem_euclid(360.0) - 180.0);
+    recording.origin = Some(GeographicPosition { latitude_deg: round(north), longitude_deg });
     let message = format!(
         "x and y are m north and east of the first fix, {north:.6} deg north and {east:.6} deg east"
     );
@@ -123,6 +128,8 @@ mod tests {
         assert!((y[2] - 157.69).abs() < 0.01 && x[2].abs() < 0.01, "{y:?}");
         assert_eq!((x[0], y[0]), (0.0, 0.0));
         assert!(text.contains("45.000000 deg north"), "{text}");
+        let origin = ship.origin.map(|origin| (origin.latitude_deg, origin.longitude_deg));
+        assert!(origin.is_some_and(|(north, east)| north == 45.0 && (east - 179.999).abs() < 1e-9));
     }
 
     #[test]

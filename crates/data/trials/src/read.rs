@@ -77,11 +77,12 @@ impl CheckedRecording {
         if !self.errors.is_empty() {
             return Err(Refusal { file, findings: self.errors });
         }
-        let Recording { trial, start, derived, .. } = self.recording;
+        let Recording { trial, start, derived, origin, .. } = self.recording;
         Ok(TrialReading {
             trial: Trial { warnings: self.warnings, ..trial },
             start: start.map(|start| start.text),
             derived,
+            origin,
         })
     }
 
@@ -236,6 +237,7 @@ fn build_recording(
     }
     let mut recording = convert_table(name, table, mapping, findings);
     recording.faults = faults;
+    recording.origin = mapping.declared.origin;
     derive_channels(&mut recording, mapping, findings);
     if let Some(current) = &mapping.current {
         subtract_current(&mut recording, current, findings);

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use sistership_model::trial::{Channel, Trial};
 
+use crate::declarations::GeographicPosition;
 use crate::derived_channel::DerivedChannel;
 use crate::exclusion::Exclusion;
 use crate::findings::FaultySamples;
@@ -29,6 +30,8 @@ pub(crate) struct Recording {
     pub derived: Vec<DerivedChannel>,
     /// Calendar time of time zero, if the file contains it.
     pub start: Option<TimeOrigin>,
+    /// Geographic position of the origin of `x` and `y`.
+    pub origin: Option<GeographicPosition>,
     /// Faults of the values of the file, if they were searched.
     pub faults: Vec<Exclusion>,
     /// Median time between samples, s; zero until time is known to increase.

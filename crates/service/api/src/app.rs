@@ -12,14 +12,18 @@ use crate::compute_pool::{ComputePool, ComputeTurn};
 use crate::config::{Config, LeaseSettings, Limits};
 use crate::metrics::ServerMetrics;
 use crate::problem::{Problem, Result};
+use crate::start_error::StartError;
 use sistership_auth::openid::OpenIdProvider;
 use sistership_jobs::archive::Archive;
 use sistership_jobs::budget::{MemoryBudget, RequestMemory};
 use sistership_jobs::catalogue::{KnownLaw, MAX_COMPARED_SHIPS, ZooCache};
 use sistership_jobs::predictions::session::SessionTable;
+use sistership_jobs::webhooks::MailSender;
 use sistership_listener::{KeyThrottle, StopSignal, TrustedProxies};
+use sistership_pages::Language;
 use sistership_pages::ship::SIMILAR;
 use sistership_pages::version::ManoeuvreCache;
+use sistership_pages::version::turn::TurnCache;
 use sistership_web_support::acting::current_actor;
 use sistership_web_support::answers::AnswerCache;
 use sistership_web_support::api_key::FormToken;
@@ -38,6 +42,7 @@ pub(crate) struct App(Arc<SharedState>, Arc<Archive>);
 
 struct SharedState {
     catalogue: ZooCache,
+    mail: Option<MailSender>,
     credentials: Credentials,
     form_token: FormToken,
     drafts: DraftTable,
@@ -55,6 +60,7 @@ struct SharedState {
     metrics: ServerMetrics,
     answers: AnswerCache,
     manoeuvres: Arc<ManoeuvreCache>,
+    turn_pictures: Arc<TurnCache>,
     stopping: StopSignal,
     requests: MemoryBudget,
     jobs: MemoryBudget,
@@ -80,13 +86,15 @@ impl App {
         archive: Archive,
         catalogue: ZooCache,
         stopping: StopSignal,
-    ) -> sistership_auth::openid::Result<Self> {
+    ) -> std::result::Result<Self, StartError> {
         let cores = std::thread::available_parallelism().map_or(2, std::num::NonZero::get);
         let provider = config.openid.clone().map(OpenIdProvider::new).transpose()?;
         let (key, people) = (config.api_key.as_deref(), config.accounts);
         let credentials = Credentials::new(key, people, provider);
+        let mail = config.mail.as_ref().map(MailSender::new).transpose();
         let inner = SharedState {
             catalogue,
+            mail: mail.map_err(StartError::Mail)?,
             form_token: FormToken::from_key(credentials.server_key()),
             drafts: DraftTable::default(),
             sessions: SessionTable::new(config.limits.sessions),
@@ -105,6 +113,7 @@ impl App {
             metrics: ServerMetrics::default(),
             answers: AnswerCache::default(),
             manoeuvres: Arc::default(),
+            turn_pictures: Arc::default(),
             stopping,
             requests: MemoryBudget::new(config.limits.request_memory, "--request-memory-mb"),
             jobs: MemoryBudget::new(config.limits.job_memory, "--job-memory-mb"),
@@ -168,6 +177,11 @@ impl App {
     /// Proxies whose statement of a client's address is trusted.
     pub(crate) fn proxies(&self) -> &TrustedProxies {
         &self.0.proxies
+    }
+
+    /// Sender of mail, if the server has one.
+    pub(crate) fn mail(&self) -> Option<&MailSender> {
+        self.0.mail.as_ref()
     }
 
     pub(crate) fn limits(&self) -> &Limits {
@@ -239,6 +253,11 @@ impl App {
         Arc::clone(&self.0.manoeuvres)
     }
 
+    /// Cache of small pictures of turning circles.
+    pub(crate) fn turn_pictures(&self) -> Arc<TurnCache> {
+        Arc::clone(&self.0.turn_pictures)
+    }
+
     /// Returns a law of the database.
     ///
     /// # Errors
@@ -261,7 +280,9 @@ impl App {
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T> {
-        self.0.numerics.run(&caller_name(), work).await
+        // A page that is rendered on the other thread keeps its language.
+        let language = Language::current();
+        self.0.numerics.run(&caller_name(), move || language.run_blocking(work)).await
     }
 
     /// Waits for the turn to read a file of a size. Small files wait for no large one.
@@ -276,7 +297,8 @@ impl App {
         &self,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T> {
-        self.0.files.run(&caller_name(), work).await
+        let language = Language::current();
+        self.0.files.run(&caller_name(), move || language.run_blocking(work)).await
     }
 }
 

@@ -8,6 +8,7 @@ use std::time::Duration;
 use sistership_auth::openid::ProviderSettings as OpenIdSettings;
 pub use sistership_jobs::leases::LeaseSettings;
 use sistership_jobs::predictions::session::SessionLimits;
+pub use sistership_jobs::webhooks::MailSettings;
 use sistership_listener::TrustedProxies;
 use sistership_store::ObjectsPlace;
 
@@ -38,6 +39,8 @@ pub struct Config {
     pub accounts: bool,
     /// OpenID provider at which people may sign in as well.
     pub openid: Option<OpenIdSettings>,
+    /// SMTP server by which events are mailed.
+    pub mail: Option<MailSettings>,
     /// Proxies whose statement of a client's address is trusted.
     pub proxies: TrustedProxies,
     /// Limits on requests and on resources.
@@ -113,6 +116,7 @@ impl Config {
             api_key: None,
             accounts: false,
             openid: None,
+            mail: None,
             proxies: TrustedProxies::default(),
             limits: Limits::default(),
             leases: LeaseSettings::default(),

@@ -23,7 +23,7 @@ mod upload;
 mod web;
 mod workers;
 
-pub use config::{Config, DEFAULT_LISTEN, LeaseSettings, Limits, sqlite_url};
+pub use config::{Config, DEFAULT_LISTEN, LeaseSettings, Limits, MailSettings, sqlite_url};
 pub use routes::openapi;
 pub use server::{RunningServer, Server};
 pub use sistership_auth::openid::ProviderSettings as OpenIdSettings;

@@ -77,11 +77,14 @@ impl Process {
 
 /// Delivers events to webhooks until the server stops.
 async fn deliver_webhooks(app: App) {
-    let telling =
-        DeliverySettings { private: app.limits().webhooks_private, poll: app.leases().poll };
+    let settings = DeliverySettings {
+        private: app.limits().webhooks_private,
+        poll: app.leases().poll,
+        mail: app.mail().cloned(),
+    };
     let mut stopping = app.stop_signal();
     tokio::select! {
-        () = sistership_jobs::webhooks::run_deliveries(app.store().clone(), telling) => {}
+        () = sistership_jobs::webhooks::run_deliveries(app.store().clone(), settings) => {}
         () = stopping.wait() => {}
     }
 }

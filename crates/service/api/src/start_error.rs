@@ -48,6 +48,9 @@ pub enum StartError {
     /// The client of the OpenID provider cannot be set up.
     #[error("oidc: {0}")]
     OpenId(#[from] sistership_auth::openid::SignInFailure),
+    /// Mail cannot be sent with these settings.
+    #[error("{0}")]
+    Mail(String),
     /// The zoo that is embedded in the program cannot be parsed.
     #[error("the zoo is damaged: {0}")]
     Zoo(#[from] sistership_model::FileError),

@@ -19,6 +19,7 @@ pub mod inputs;
 pub mod leases;
 pub mod library;
 pub mod memory;
+pub mod particulars_change;
 pub mod predictions;
 pub mod promotion;
 pub mod publish;
@@ -31,6 +32,7 @@ pub mod seed;
 mod ship_trials;
 pub mod sorted_json;
 pub mod start;
+pub mod stated_revolutions;
 #[cfg(test)]
 mod test_rows;
 #[cfg(test)]

@@ -9,6 +9,7 @@ use crate::cursor::{decode_cursor, encode_cursor};
 use crate::date::format_date;
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
+use crate::language::{has_word, say, say_word};
 use crate::shell::PageShell;
 
 /// Number of entries on one page.
@@ -49,7 +50,7 @@ pub async fn audit_page(archive: &Archive, shell: PageShell, query: &FormFields)
     // The store filters by one of the two only.
     let filter = match (actor, subject) {
         (Some(_), Some(_)) => {
-            return Err(PageError::invalid_field("subject", "give only one of the two"));
+            return Err(PageError::invalid_field("subject", say("audit-only-one")));
         }
         (Some(actor), None) => AuditFilter::Actor(actor),
         (None, Some(subject)) => AuditFilter::Subject(subject),
@@ -68,42 +69,20 @@ pub async fn audit_page(archive: &Archive, shell: PageShell, query: &FormFields)
     Ok(page.render()?)
 }
 
-/// Verbs of the audit in the past tense; others are shown as they are.
-const VERBS: [(&str, &str); 20] = [
-    ("create", "created"),
-    ("update", "changed"),
-    ("delete", "deleted"),
-    ("undelete", "restored"),
-    ("move", "moved"),
-    ("tag", "tagged"),
-    ("untag", "removed a tag from"),
-    ("note", "added a note to"),
-    ("cancel", "cancelled"),
-    ("retry", "repeated"),
-    ("enable", "enabled"),
-    ("disable", "disabled"),
-    ("revoke", "revoked"),
-    ("begin", "began"),
-    ("end", "ended"),
-    ("add", "added a member to"),
-    ("set", "set"),
-    ("save", "saved"),
-    ("sign", "signed"),
-    ("conditions", "stated the conditions of"),
-];
-
 /// Returns an entry in words: `created the ship kcs` of `ship.create` and `ship:kcs`. A subject
 /// whose name is an id has the name of its state.
 fn action_words(action: &str, subject: &str, state: &Value) -> String {
     let (kind, id) = subject.split_once(':').unwrap_or(("", subject));
     let name = subject_name(id, state);
     let (noun, verb) = action.split_once('.').unwrap_or(("", action));
-    let known = VERBS.iter().find(|(word, _)| *word == verb);
-    match known {
-        Some((_, past)) if kind == noun || kind.is_empty() => format!("{past} the {noun} {name}"),
-        Some((_, past)) => format!("{past} the {noun} of {kind} {name}"),
-        None => format!("{verb} of the {noun}, {kind} {name}"),
-    }
+    let sentence = match has_word("audit-verb", verb) {
+        true if kind == noun || kind.is_empty() => say("audit-of-subject"),
+        true => say("audit-of-other"),
+        false => say("audit-unknown-verb"),
+    };
+    let (verb, noun) = (say_word("audit-verb", verb), say_word("audit-noun", noun));
+    let kind = say_word("audit-subject", kind);
+    sentence.with("verb", verb).with("noun", noun).with("kind", kind).with("name", name).into()
 }
 
 /// Name of a subject for people: where it is an id, its name, title or kind, and its ship.
@@ -112,9 +91,11 @@ fn subject_name(id: &str, state: &Value) -> String {
     let text = |name: &str| state[name].as_str();
     let own = ["name", "title", "kind", "verdict"].into_iter().find_map(text);
     match (is_id, own, text("ship")) {
-        (true, Some(own), Some(ship)) => format!("{own} of {ship}"),
+        (true, Some(own), Some(ship)) => {
+            say("audit-name-of-ship").with("own", own).with("ship", ship).into()
+        }
         (true, Some(own), None) => own.to_owned(),
-        (true, None, Some(ship)) => format!("of {ship}"),
+        (true, None, Some(ship)) => say("audit-of-ship").with("ship", ship).into(),
         _ => id.to_owned(),
     }
 }

@@ -43,7 +43,14 @@ mod tests {
     #[test]
     fn both_parts_are_a_page() {
         let begins = page_beginning(PageShell::default(), "Not found", "").unwrap();
-        let page = crate::problem_page("Not found", "nothing of that name", &[], "").unwrap();
+        let page = crate::problem_page(crate::PageProblem {
+            kind: "",
+            title: "Not found",
+            detail: "nothing of that name",
+            faults: &[],
+            instance: "",
+        })
+        .unwrap();
         assert!(page.starts_with(&begins), "{begins}");
         assert_eq!(format!("{begins}{}", from_content(&page)), page);
     }

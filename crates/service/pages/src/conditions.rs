@@ -2,27 +2,26 @@
 //! records.
 
 use askama::Template;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use sistership_jobs::Archive;
+use sistership_request_types::{CalendarDate, ConditionText, Draught};
 use sistership_store::{PageRequest, Trial};
 
+use crate::date::format_stored_day;
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
+use crate::language::say_word;
 use crate::shell::PageShell;
 
 /// Number of trials that the form lists.
 const LISTED_TRIALS: i64 = 200;
-/// Maximum length of a condition, characters.
-const MAX_CHARS: usize = 300;
 
 /// A condition in the form.
 pub(crate) struct ConditionField {
     /// Name in stored statements.
     pub name: &'static str,
-    /// Label.
-    pub label: &'static str,
-    /// Example under the label.
-    pub hint: &'static str,
+    /// True if an example is under the label.
+    pub has_hint: bool,
     /// Type of the input.
     pub kind: ConditionKind,
 }
@@ -40,28 +39,35 @@ pub(crate) enum ConditionKind {
 
 /// The conditions, in the order of the summary.
 pub(crate) const CONDITIONS: [ConditionField; 10] = {
-    const fn field(
-        name: &'static str,
-        label: &'static str,
-        hint: &'static str,
-        kind: ConditionKind,
-    ) -> ConditionField {
-        ConditionField { name, label, hint, kind }
+    const fn field(name: &'static str, has_hint: bool, kind: ConditionKind) -> ConditionField {
+        ConditionField { name, has_hint, kind }
     }
     use ConditionKind::{Date, Metres, Words};
     [
-        field("date", "Date of the trials", "", Date),
-        field("place", "Place", "For example Skagerrak, 57.9 N 9.8 E", Words),
-        field("wind", "Wind", "For example 6 m/s from south-west, Beaufort 4", Words),
-        field("sea", "Sea and swell", "For example significant height 0.5 m, sea state 2", Words),
-        field("depth", "Water depth", "For example 180 m, or deep", Words),
-        field("draught_fore_m", "Draught fore, m", "", Metres),
-        field("draught_aft_m", "Draught aft, m", "", Metres),
-        field("displacement", "Displacement during the trials", "For example 21 800 t", Words),
-        field("instruments", "Instruments", "For example DGPS, gyro compass, Doppler log", Words),
-        field("remarks", "Remarks", "For example ballast condition, hull cleaned in May", Words),
+        field("date", false, Date),
+        field("place", true, Words),
+        field("wind", true, Words),
+        field("sea", true, Words),
+        field("depth", true, Words),
+        field("draught_fore_m", false, Metres),
+        field("draught_aft_m", false, Metres),
+        field("displacement", true, Words),
+        field("instruments", true, Words),
+        field("remarks", true, Words),
     ]
 };
+
+impl ConditionField {
+    /// Label.
+    pub fn label(&self) -> String {
+        say_word("stated", self.name)
+    }
+
+    /// Example under the label.
+    pub fn hint(&self) -> String {
+        say_word("stated", &format!("{}-hint", self.name))
+    }
+}
 
 #[derive(Template)]
 #[template(path = "conditions.html")]
@@ -139,7 +145,7 @@ pub async fn conditions_page(
 impl TrialChoice {
     fn new(trial: Trial, stated: Option<&Value>, chosen: bool) -> Self {
         let manoeuvre = trial.manoeuvre.unwrap_or_default();
-        let date = stated_text(stated, "date").to_owned();
+        let date = format_stored_day(stated_text(stated, "date"));
         Self { id: trial.id, name: trial.name, manoeuvre, chosen, date }
     }
 }
@@ -158,39 +164,24 @@ pub fn read_conditions(form: &FormFields) -> Result<Value> {
     for field in &CONDITIONS {
         // An empty field states nothing, so that the summary lists it as missing.
         let Some(text) = form.get_text(field.name) else { continue };
-        let wrong = |message: String| Err(PageError::invalid_field(field.name, message));
         match field.kind {
-            ConditionKind::Date if !is_date(text) => {
-                return wrong(format!("`{text}` is not a date; write it as 2026-11-29"));
-            }
+            ConditionKind::Date => text.parse::<CalendarDate>().map(drop),
             // Kept as typed, with its decimal comma: a statement is evidence, not a computed value.
-            ConditionKind::Metres => {
-                form.number_within(field.name, (0.0, 40.0), 0.0)?;
-            }
-            _ if text.chars().count() > MAX_CHARS => {
-                return wrong(format!("has more than {MAX_CHARS} characters; shorten it"));
-            }
-            _ => {}
+            ConditionKind::Metres => match form.optional_number(field.name)? {
+                Some(metres) => check_draught(metres),
+                None => Ok(()),
+            },
+            ConditionKind::Words => text.parse::<ConditionText>().map(drop),
         }
+        .map_err(|message| PageError::invalid_field(field.name, message))?;
         stated.insert(field.name.to_owned(), Value::from(text));
     }
     Ok(Value::Object(stated))
 }
 
-/// Returns true for a date as `2026-11-29`.
-fn is_date(text: &str) -> bool {
-    let parts: Vec<&str> = text.split('-').collect();
-    let number = |part: &str, digits: usize| {
-        (part.len() == digits).then(|| part.parse::<u32>().ok()).flatten()
-    };
-    match parts.as_slice() {
-        [year, month, day] => {
-            number(year, 4).is_some()
-                && number(month, 2).is_some_and(|month| (1..=12).contains(&month))
-                && number(day, 2).is_some_and(|day| (1..=31).contains(&day))
-        }
-        _ => false,
-    }
+/// Checks a draught by the rule of the REST interface.
+fn check_draught(metres: f64) -> std::result::Result<(), String> {
+    serde_json::from_value::<Draught>(json!(metres)).map(drop).map_err(|why| why.to_string())
 }
 
 #[cfg(test)]

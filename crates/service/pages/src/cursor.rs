@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::{PageError, Result};
+use crate::language::say;
 
 /// Returns a key as text: JSON in URL-safe Base64.
 pub(crate) fn encode_cursor<K: Serialize>(key: Option<&K>) -> Option<String> {
@@ -19,12 +20,9 @@ pub(crate) fn encode_cursor<K: Serialize>(key: Option<&K>) -> Option<String> {
 pub(crate) fn decode_cursor<K: DeserializeOwned>(after: Option<&str>) -> Result<Option<K>> {
     let read = |text: &str| {
         let bytes = BASE64_URL_SAFE_NO_PAD.decode(text).ok();
-        bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok()).ok_or_else(|| {
-            PageError::invalid_field(
-                "after",
-                "is not a page of this list; start again from the first page",
-            )
-        })
+        bytes
+            .and_then(|bytes| serde_json::from_slice(&bytes).ok())
+            .ok_or_else(|| PageError::invalid_field("after", say("form-cursor")))
     };
     after.map(read).transpose()
 }

@@ -28,8 +28,8 @@ pub type Result<T, E = PageError> = std::result::Result<T, E>;
 
 impl PageError {
     /// Returns the error of a wrong field.
-    pub fn invalid_field(field: &str, message: impl Into<String>) -> Self {
-        Self::Invalid { field: field.to_owned(), message: message.into() }
+    pub fn invalid_field(field: &str, message: impl ToString) -> Self {
+        Self::Invalid { field: field.to_owned(), message: message.to_string() }
     }
 }
 

@@ -10,10 +10,13 @@ use crate::cursor::{decode_cursor, encode_cursor};
 use crate::date::format_date;
 use crate::error::Result;
 use crate::form::FormFields;
+use crate::language::say;
+use crate::numbers::format_fixed;
 use crate::pickers;
 use crate::picture::render_svg;
 use crate::shell::PageShell;
 use crate::sparkline::sparkline;
+use crate::terms::condition_sentence;
 
 /// Number of families on one page.
 const FAMILIES_PER_PAGE: i64 = 50;
@@ -119,15 +122,16 @@ impl MemberRow {
     fn from_member(member: &MemberDrift) -> Result<Self> {
         let all = trial_residuals(member);
         let newest = all.last().map(|(worst, fitted, at_us)| {
-            let fitted = if *fitted { " (fitted)" } else { "" };
-            format!("{}: {:.0} %{fitted}", format_date(*at_us), 100.0 * worst)
+            let text = if *fitted { say("family-newest-fitted") } else { say("family-newest") };
+            let share = format_fixed(100.0 * worst, 0);
+            text.with("at", format_date(*at_us)).with("share", share).to_string()
         });
         let worst = member.drift.as_ref().and_then(|drift| drift.worst);
         Ok(Self {
             ship: member.ship.clone(),
-            sentence: member.condition.sentence.clone(),
+            sentence: condition_sentence(&member.condition),
             effects: member.condition.effects.join(", "),
-            worst: worst.map_or_else(|| "-".to_owned(), |worst| format!("{worst:.2}")),
+            worst: worst.map_or_else(|| "-".to_owned(), |worst| format_fixed(worst, 2)),
             newest: newest.unwrap_or_default(),
             // Trials that were not fitted have a dot: only they test the model.
             trend: sparkline(all.iter().map(|(worst, fitted, _)| (*worst, !fitted)))

@@ -1,6 +1,8 @@
 //! Fields of a form or a query.
 
 use crate::error::{PageError, Result};
+use crate::language::say;
+use crate::numbers::format_plain;
 
 /// Fields in the order in which they came; a field may occur several times. An empty field counts
 /// as absent.
@@ -36,7 +38,7 @@ impl FormFields {
     /// # Errors
     /// Returns an error if the field is absent.
     pub fn required_text(&self, name: &str) -> Result<&str> {
-        self.get_text(name).ok_or_else(|| PageError::invalid_field(name, "is empty; enter a value"))
+        self.get_text(name).ok_or_else(|| PageError::invalid_field(name, say("form-empty")))
     }
 
     /// Returns a number, `None` if the field is absent; a decimal comma is accepted.
@@ -48,10 +50,7 @@ impl FormFields {
             // `inf` and `nan` parse as numbers.
             let number = text.replace(',', ".").parse().ok();
             number.filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-                PageError::invalid_field(
-                    name,
-                    format!("`{text}` is not a number; write one such as 12.5"),
-                )
+                PageError::invalid_field(name, say("form-not-a-number").with("text", text))
             })
         };
         self.get_text(name).map(read).transpose()
@@ -65,10 +64,11 @@ impl FormFields {
         let number = self.optional_number(name)?.unwrap_or(default);
         match (range.0..=range.1).contains(&number) {
             true => Ok(number),
-            false => Err(PageError::invalid_field(
-                name,
-                format!("must be from {} to {}, not {number}", range.0, range.1),
-            )),
+            false => {
+                let outside = say("form-outside").with("low", format_plain(range.0));
+                let outside = outside.with("high", format_plain(range.1));
+                Err(PageError::invalid_field(name, outside.with("number", format_plain(number))))
+            }
         }
     }
 
@@ -78,8 +78,8 @@ impl FormFields {
     /// Returns an error if the field is absent or no whole number.
     pub fn whole_number(&self, name: &str) -> Result<i64> {
         let text = self.required_text(name)?;
-        text.parse()
-            .map_err(|_| PageError::invalid_field(name, format!("`{text}` is not a whole number")))
+        let wrong = || PageError::invalid_field(name, say("form-not-whole").with("text", text));
+        text.parse().map_err(|_| wrong())
     }
 }
 

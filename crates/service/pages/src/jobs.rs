@@ -9,6 +9,7 @@ use crate::cursor::{decode_cursor, encode_cursor};
 use crate::date::format_date;
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
+use crate::language::{Message, say};
 use crate::rows::JobRow;
 use crate::shell::PageShell;
 
@@ -56,7 +57,7 @@ pub async fn jobs_page(archive: &Archive, shell: PageShell, query: &FormFields) 
 
 fn parse_state(name: &str) -> Result<JobState> {
     let known = STATES.into_iter().find(|state| state.as_str() == name);
-    known.ok_or_else(|| PageError::invalid_field("state", format!("there is no state `{name}`")))
+    known.ok_or_else(|| PageError::invalid_field("state", say("job-no-state").with("name", name)))
 }
 
 #[derive(Template)]
@@ -69,7 +70,7 @@ struct JobPage {
     may_retry: bool,
     cancelling: bool,
     error: Option<String>,
-    times: Vec<(&'static str, String)>,
+    times: Vec<(Message, String)>,
     attempt: i64,
     version: Option<i64>,
     report: Option<String>,
@@ -86,6 +87,16 @@ pub async fn job_page(archive: &Archive, shell: PageShell, id: &str) -> Result<S
 }
 
 impl JobPage {
+    /// Kind of the job, and its ship.
+    fn title(&self) -> String {
+        match self.row.ship.as_str() {
+            "" => self.row.kind_words(),
+            ship => {
+                say("job-of-ship").with("kind", self.row.kind_words()).with("ship", ship).into()
+            }
+        }
+    }
+
     fn from_job(shell: PageShell, job: Job) -> Self {
         let result: Value = job
             .result
@@ -94,9 +105,9 @@ impl JobPage {
             .unwrap_or_default();
         // Times that have not been reached have no row.
         let times = [
-            ("Requested", Some(job.created_us)),
-            ("Begun", job.started_us),
-            ("Ended", job.finished_us),
+            (say("jobs-requested"), Some(job.created_us)),
+            (say("jobs-begun"), job.started_us),
+            (say("jobs-ended"), job.finished_us),
         ];
         Self {
             shell: shell.at_place("/jobs"),

@@ -15,8 +15,10 @@ pub mod families;
 pub mod fleet;
 mod form;
 pub mod jobs;
+mod language;
 mod named;
 pub mod new_ship;
+mod numbers;
 pub mod particulars;
 pub mod people;
 mod pickers;
@@ -28,6 +30,7 @@ mod rows;
 mod shell;
 pub mod ship;
 mod sparkline;
+mod terms;
 pub mod trial;
 pub mod upload;
 pub mod version;
@@ -36,5 +39,8 @@ pub mod zoo;
 pub use beginning::{from_content, page_beginning};
 pub use error::{PageError, Result};
 pub use form::FormFields;
-pub use problem::problem_page;
+pub use language::{
+    ArgumentValue, Language, MarkupMessage, Message, MessageArgument, say, say_html, say_word,
+};
+pub use problem::{PageProblem, problem_page};
 pub use shell::{PageShell, PageUser, TOKEN_FIELD, report_policy, security_policy};

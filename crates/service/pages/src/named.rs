@@ -8,6 +8,7 @@ use sistership_model::Law;
 use sistership_store::{StoreError, Version, VersionHead};
 
 use crate::error::{PageError, Result};
+use crate::language::say;
 
 /// A version with its document and law, ready to be simulated.
 pub(crate) struct NamedVersion {
@@ -36,10 +37,7 @@ impl NamedVersion {
 }
 
 async fn find_version(archive: &Archive, field: &str, name: &str) -> Result<Version> {
-    let nothing = || {
-        let forms = "write a ship (its champion), ship/number or ship/alias";
-        PageError::invalid_field(field, format!("there is no model `{name}`; {forms}"))
-    };
+    let nothing = || PageError::invalid_field(field, say("form-no-model").with("name", name));
     let (ship, rest) = name.split_once('/').unwrap_or((name, CHAMPION));
     let number = match rest.parse() {
         Ok(number) => number,

@@ -1,17 +1,20 @@
 //! Particulars of a ship in forms: the fields, how a number is read, and the form by which they are
 //! changed later.
 
+use std::collections::BTreeMap;
+
 use askama::Template;
 use serde_json::{Map, Value, json};
 use sistership_jobs::archive::parse_vessel;
+use sistership_jobs::particulars_change::{ParticularsChange, STATED_SOURCE};
 use sistership_store::Ship;
 
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
+use crate::language::{say, say_word};
 use crate::shell::PageShell;
+use crate::terms::particular_words;
 
-/// Key of the source of figures that are typed into a form.
-const SOURCE_KEY: &str = "typed-in";
 /// Metres per second in a knot.
 const KNOT_M_S: f64 = 1852.0 / 3600.0;
 
@@ -19,43 +22,51 @@ const KNOT_M_S: f64 = 1852.0 / 3600.0;
 pub(crate) struct ParticularField {
     /// Name in documents.
     pub name: &'static str,
-    /// Label, with the unit.
-    pub label: &'static str,
-    /// Explanation under the label; empty if there is none.
-    pub hint: &'static str,
+    /// True if an explanation is under the label.
+    pub has_hint: bool,
     /// True if similarity and transfer need it.
     pub needed: bool,
 }
 
 /// Particulars in forms; the needed ones come first.
 pub(crate) const PARTICULARS: [ParticularField; 16] = {
-    const fn field(
-        name: &'static str,
-        label: &'static str,
-        hint: &'static str,
-        needed: bool,
-    ) -> ParticularField {
-        ParticularField { name, label, hint, needed }
+    const fn field(name: &'static str, has_hint: bool, needed: bool) -> ParticularField {
+        ParticularField { name, has_hint, needed }
     }
     [
-        field("lpp_m", "Length between perpendiculars, m", "", true),
-        field("beam_m", "Beam, m", "", true),
-        field("draught_m", "Draught, m", "At midship, in the trials", true),
-        field("displacement_m3", "Displacement, m³", "Volume", true),
-        field("service_speed_m_s", "Service speed, m/s", "Or in knots, as 20 kn", true),
-        field("draught_fore_m", "Draught fore, m", "", false),
-        field("draught_aft_m", "Draught aft, m", "", false),
-        field("block_coefficient", "Block coefficient", "", false),
-        field("x_g_m", "Centre of gravity, m", "Forward of midship", false),
-        field("yaw_gyradius_ratio", "Yaw radius of gyration", "Divided by the length", false),
-        field("rudder_area_m2", "Rudder area, m²", "", false),
-        field("rudder_height_m", "Rudder height, m", "", false),
-        field("propeller_diameter_m", "Propeller diameter, m", "", false),
-        field("gm_m", "Metacentric height GM, m", "", false),
-        field("frontal_area_m2", "Frontal area above water, m²", "", false),
-        field("lateral_area_m2", "Lateral area above water, m²", "", false),
+        field("lpp_m", false, true),
+        field("beam_m", false, true),
+        field("draught_m", true, true),
+        field("displacement_m3", true, true),
+        field("service_speed_m_s", true, true),
+        field("draught_fore_m", false, false),
+        field("draught_aft_m", false, false),
+        field("block_coefficient", false, false),
+        field("x_g_m", false, false),
+        field("yaw_gyradius_ratio", true, false),
+        field("rudder_area_m2", false, false),
+        field("rudder_height_m", false, false),
+        field("propeller_diameter_m", false, false),
+        field("gm_m", false, false),
+        field("frontal_area_m2", false, false),
+        field("lateral_area_m2", false, false),
     ]
 };
+
+impl ParticularField {
+    /// Label, with the unit.
+    pub fn label(&self) -> String {
+        match particular_words(self.name) {
+            (words, "") => words,
+            (words, unit) => format!("{words}, {unit}"),
+        }
+    }
+
+    /// Explanation under the label.
+    pub fn hint(&self) -> String {
+        say_word("particular", &format!("{}-hint", self.name))
+    }
+}
 
 /// Reads a particular that is given; speeds also in knots.
 ///
@@ -68,7 +79,7 @@ fn read_particular(
 ) -> Result<Option<f64>> {
     let text = match form.get_text(field.name) {
         Some(text) => text,
-        None if required => return Err(PageError::invalid_field(field.name, "is required")),
+        None if required => return Err(PageError::invalid_field(field.name, say("form-required"))),
         None => return Ok(None),
     };
     // Speeds alone have knots; a length in knots is a mistake.
@@ -76,8 +87,7 @@ fn read_particular(
     // A decimal comma is accepted; `inf` and `nan` parse as numbers.
     let number = knots.unwrap_or(text).trim().replace(',', ".").parse::<f64>().ok();
     let number = number.filter(|number| number.is_finite()).ok_or_else(|| {
-        let message = format!("`{text}` is not a number; write one such as 12.5");
-        PageError::invalid_field(field.name, message)
+        PageError::invalid_field(field.name, say("form-not-a-number").with("text", text))
     })?;
     // Rounded, so that the form shows a short number again.
     Ok(Some(if knots.is_some() { (1e4 * number * KNOT_M_S).round() / 1e4 } else { number }))
@@ -118,50 +128,19 @@ pub fn particulars_page(shell: PageShell, ship: &Ship) -> Result<String> {
 /// Returns an error that names a field which is missing or no number.
 pub fn changed_document(ship: &Ship, form: &FormFields) -> Result<Value> {
     let vessel = parse_vessel(&ship.name, &ship.document)?;
-    let mut document: Value = serde_json::from_str(&ship.document)?;
-    // Collected first: the source is added only if something has changed.
-    let mut changed = Map::new();
+    let mut values = BTreeMap::new();
     for field in &PARTICULARS {
-        let before = vessel.particulars.get(field.name).map(|of| of.value);
         // A published ship may lack one that a new ship needs.
-        let required = field.needed && before.is_some();
-        match (read_particular(form, field, required)?, before) {
-            (None, _) => {
-                if let Some(values) = document["particulars"]["values"].as_object_mut() {
-                    values.remove(field.name);
-                }
-            }
-            // An untouched field has the text of its value, which parses to the same number.
-            (Some(value), Some(before)) if value == before => {}
-            (Some(value), _) => {
-                changed.insert(field.name.to_owned(), json!(value));
-            }
-        }
+        let required = field.needed && vessel.particulars.contains_key(field.name);
+        // An untouched field has the text of its value, which parses to the same number.
+        values.insert(field.name.to_owned(), read_particular(form, field, required)?);
     }
-    if !changed.is_empty() {
-        let key = add_source(&mut document, form.required_text("citation")?);
-        for (name, value) in changed {
-            document["particulars"]["values"][name] = json!({ "value": value, "source": key });
-        }
-    }
-    Ok(document)
-}
-
-/// Adds a source to a document unless it is there, and returns its key.
-fn add_source(document: &mut Value, citation: &str) -> String {
-    // An earlier source keeps its key, since other values refer to it.
-    let keys = (2..).map(|number| format!("{SOURCE_KEY}-{number}"));
-    for key in std::iter::once(SOURCE_KEY.to_owned()).chain(keys) {
-        match document["sources"][&key]["citation"].as_str() {
-            Some(known) if known != citation => {}
-            Some(_) => return key,
-            None => {
-                document["sources"][&key] = json!({ "citation": citation });
-                return key;
-            }
-        }
-    }
-    SOURCE_KEY.to_owned()
+    let change = ParticularsChange::new(ship, values)?;
+    let citation = match change.needs_source() {
+        true => form.required_text("citation")?,
+        false => "",
+    };
+    Ok(change.into_document(citation))
 }
 
 /// Returns sources and particulars of a new ship.
@@ -176,8 +155,8 @@ pub(crate) fn new_particulars(form: &FormFields) -> Result<(Value, Value)> {
             values.insert(field.name.to_owned(), json!(value));
         }
     }
-    let sources = json!({ SOURCE_KEY: { "citation": form.required_text("citation")? } });
-    Ok((sources, json!({ "source": SOURCE_KEY, "values": values })))
+    let sources = json!({ STATED_SOURCE: { "citation": form.required_text("citation")? } });
+    Ok((sources, json!({ "source": STATED_SOURCE, "values": values })))
 }
 
 #[cfg(test)]

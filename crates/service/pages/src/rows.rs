@@ -4,6 +4,8 @@ use serde_json::Value;
 use sistership_store::{Job, Trial};
 
 use crate::date::format_date;
+use crate::language::{say, say_word};
+use crate::numbers::format_fixed;
 
 /// A job in a list.
 pub(crate) struct JobRow {
@@ -26,6 +28,16 @@ impl JobRow {
         let (id, kind, ship) = (job.id, job.kind, job.ship.unwrap_or_default());
         Self { id, kind, ship, state, percent, message, created }
     }
+
+    /// Kind in words.
+    pub fn kind_words(&self) -> String {
+        say_word("job-kind", &self.kind)
+    }
+
+    /// State in words.
+    pub fn state_words(&self) -> String {
+        say_word("job-state", self.state)
+    }
 }
 
 /// Returns the result of a completed job in words.
@@ -35,8 +47,11 @@ fn outcome_text(job: &Job) -> Option<String> {
         return Some(diagnosis_text(verdict, &result));
     }
     let (version, alias) = (result["version"].as_i64()?, result["alias"].as_str()?);
-    let from = result["from"].as_str().map_or(String::new(), |from| format!(", from {from}"));
-    Some(format!("version {version}, {alias}{from}"))
+    let text = match result["from"].as_str() {
+        Some(from) => say("outcome-version-from").with("from", from),
+        None => say("outcome-version"),
+    };
+    Some(text.with("number", version).with("alias", alias).to_string())
 }
 
 /// Returns the result of a diagnosis in words.
@@ -44,14 +59,13 @@ fn diagnosis_text(verdict: &str, result: &Value) -> String {
     let diagnosed = result["diagnosed"].as_str().unwrap_or_default();
     let effects: Vec<&str> =
         result["effects"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
-    match effects.as_slice() {
-        [] => format!("{diagnosed} diagnosed: {verdict}"),
-        effects => format!(
-            "{diagnosed} diagnosed: lacks {}; version {}",
-            effects.join(", "),
-            result["version"]
-        ),
-    }
+    let text = match effects.as_slice() {
+        [] => say("outcome-diagnosed").with("verdict", say_word("verdict", verdict)),
+        effects => say("outcome-lacks")
+            .with("effects", effects.join(", "))
+            .with("number", result["version"].to_string()),
+    };
+    text.with("model", diagnosed).to_string()
 }
 
 /// A trial in a list.
@@ -74,7 +88,7 @@ impl TrialRow {
             name: trial.name,
             manoeuvre: trial.manoeuvre.unwrap_or_default(),
             rows: trial.sample_rows,
-            duration: format!("{:.0} s", trial.duration_s),
+            duration: format!("{} s", format_fixed(trial.duration_s, 0)),
             warnings,
             created: format_date(trial.created_us),
         }

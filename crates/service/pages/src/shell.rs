@@ -8,6 +8,8 @@ use base64::prelude::BASE64_STANDARD;
 use sha2::{Digest as _, Sha256};
 use sistership_report::{CHART_SCRIPT, CHART_STYLE};
 
+use crate::language::{Message, say};
+
 /// Style sheet of every page.
 pub(crate) const STYLE: &str = include_str!("../templates/style.css");
 /// Script of every page; each page is complete without it.
@@ -16,16 +18,16 @@ pub(crate) const SCRIPT: &str = include_str!("../templates/script.js");
 /// Name of the form field with the token.
 pub const TOKEN_FIELD: &str = "form_token";
 
-/// Entries of the navigation.
+/// Entries of the navigation: path, and key of the name.
 const PLACES: [(&str, &str); 8] = [
-    ("/", "Fleet"),
-    ("/compare", "Compare"),
-    ("/playground", "Playground"),
-    ("/families", "Families"),
-    ("/zoo", "Zoo"),
-    ("/jobs", "Jobs"),
-    ("/users", "Users"),
-    ("/audit", "Audit"),
+    ("/", "place-fleet"),
+    ("/compare", "place-compare"),
+    ("/playground", "place-playground"),
+    ("/families", "place-families"),
+    ("/zoo", "place-zoo"),
+    ("/jobs", "place-jobs"),
+    ("/users", "place-users"),
+    ("/audit", "place-audit"),
 ];
 /// Entries for admins.
 const ADMIN_PLACES: [&str; 2] = ["/users", "/audit"];
@@ -70,10 +72,11 @@ impl PageShell {
     }
 
     /// Entries of the navigation that the user may open.
-    pub(crate) fn places(&self) -> Vec<(&'static str, &'static str)> {
+    pub(crate) fn places(&self) -> Vec<(&'static str, Message)> {
         // Without an identified user, on a loopback interface, all entries are shown.
         let admin = self.signed_in.as_ref().is_none_or(|who| who.is_admin);
-        PLACES.into_iter().filter(|(place, _)| admin || !ADMIN_PLACES.contains(place)).collect()
+        let own = PLACES.into_iter().filter(|(place, _)| admin || !ADMIN_PLACES.contains(place));
+        own.map(|(place, name)| (place, say(name))).collect()
     }
 
     /// Returns true if the page belongs to this entry.
@@ -88,12 +91,12 @@ impl PageShell {
 }
 
 /// Content Security Policy of pages: their own styles and scripts by their hashes (Content Security
-/// Policy Level 3, W3C), requests and forms to this server, images made by the page itself for download,
-/// and nothing else.
+/// Policy Level 3, W3C), requests and forms to this server, its images and those made by the page itself
+/// for download, and nothing else.
 pub fn security_policy() -> &'static str {
     static POLICY: LazyLock<String> = LazyLock::new(|| {
         format!(
-            "default-src 'none'; style-src {}; script-src {}; img-src blob:; \
+            "default-src 'none'; style-src {}; script-src {}; img-src 'self' blob:; \
              connect-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'",
             allowed_hashes(&[STYLE, CHART_STYLE]),
             allowed_hashes(&[SCRIPT, CHART_SCRIPT])

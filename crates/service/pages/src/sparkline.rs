@@ -2,6 +2,9 @@
 
 use sistership_report::plots::{Shape, SvgPlot, path_data};
 
+use crate::language::say;
+use crate::numbers::format_fixed;
+
 const SIZE: (f64, f64) = (110.0, 26.0);
 
 /// Plots residuals in the order of the trials; marked ones have a dot. Returns `None` for fewer
@@ -23,9 +26,8 @@ pub fn sparkline(all: impl Iterator<Item = (f64, bool)>) -> Option<SvgPlot> {
     let dots = marked.map(|(at, _)| Shape::Dot { at: *at, radius: 1.2, class: "dot b" });
     let shapes = std::iter::once(Shape::Path { d, class: "line a" }).chain(dots).collect();
     let last = 100.0 * all.last().map_or(0.0, |(left, _)| *left);
-    let label =
-        format!("Unexplained force of {} trials over time, {last:.0} % in the last", all.len());
-    Some(SvgPlot { width: SIZE.0, height: SIZE.1, label, shapes })
+    let label = say("fleet-spark").with("count", all.len()).with("last", format_fixed(last, 0));
+    Some(SvgPlot { width: SIZE.0, height: SIZE.1, label: label.to_string(), shapes })
 }
 
 #[cfg(test)]

@@ -8,7 +8,6 @@ use sistership_jobs::archive::version_document;
 use sistership_model::trial::{Channel, Finding, Trial as Samples};
 use sistership_model::version::RecipeTrial;
 use sistership_model::{Law, Model};
-use sistership_report::numbers::format_significant;
 use sistership_report::plots::{HullOutline, LiveChart};
 use sistership_report::variable_words;
 use sistership_simulation::Ship;
@@ -19,6 +18,8 @@ use sistership_store::{PageRequest, Trial};
 use crate::conditions::{CONDITIONS, ConditionField, stated_text};
 use crate::date::format_date;
 use crate::error::Result;
+use crate::language::{has_word, say, say_word};
+use crate::numbers::format_significant;
 use crate::plot::{LINES, PlotTrack, track_chart};
 use crate::shell::PageShell;
 
@@ -33,7 +34,7 @@ pub struct TrialPageInputs {
     champion: Option<ChampionModel>,
     versions: Vec<(i64, String)>,
     /// Conditions as they are stated for it: name and text.
-    conditions: Vec<(&'static str, String)>,
+    conditions: Vec<(String, String)>,
 }
 
 struct ChampionModel {
@@ -92,10 +93,10 @@ pub async fn gather_inputs(
 }
 
 /// Returns the conditions that are stated for a trial.
-async fn stated_conditions(archive: &Archive, id: &str) -> Result<Vec<(&'static str, String)>> {
+async fn stated_conditions(archive: &Archive, id: &str) -> Result<Vec<(String, String)>> {
     let stated = archive.store.trials().stated_conditions(id).await?;
     let text = |field: &ConditionField| stated_text(stated.as_ref(), field.name).to_owned();
-    let all = CONDITIONS.iter().map(|field| (field.label, text(field)));
+    let all = CONDITIONS.iter().map(|field| (field.label(), text(field)));
     Ok(all.filter(|(_, text)| !text.is_empty()).collect())
 }
 
@@ -169,14 +170,14 @@ fn format_json(json: &str) -> String {
 
 /// Returns an error with the name of its channel, in words and the unit of readers.
 fn error_words(channel: &str, value: f64) -> (String, String) {
-    match variable_words(channel) {
-        (words, "deg", _) => {
-            (words.to_owned(), format!("{} deg", format_significant(value.to_degrees(), 3)))
-        }
-        (words, unit, shown) => {
-            (words.to_owned(), format!("{} {unit}", format_significant(shown(value), 3)))
-        }
-    }
+    let (plain, unit, shown) = variable_words(channel);
+    let words = match has_word("variable", channel) {
+        true => say_word("variable", channel),
+        false => plain.to_owned(),
+    };
+    // Errors of directions do not wrap around.
+    let shown = if unit == "deg" { value.to_degrees() } else { shown(value) };
+    (words, format!("{} {}", format_significant(shown, 3), say_word("unit", unit)))
 }
 
 impl ChampionModel {
@@ -196,7 +197,7 @@ impl ChampionModel {
             .map_err(|error| error.to_string())?;
         let errors = SquaredError::from_trial(trial, &run).rmse_by_channel();
         let errors = errors.into_iter().map(|(name, value)| error_words(&name, value)).collect();
-        let name = format!("champion, version {}", self.number);
+        let name = say("trial-champion-line").with("number", self.number);
         Ok((PlotTrack::from_simulation(LINES[0], name, &run.track, run.has_roll), errors))
     }
 }

@@ -58,6 +58,16 @@ number! {
         |number| number.minimum(Some(0)).maximum(Some(80))
 }
 number! {
+    /// A component of the velocity of a current, m/s.
+    CurrentComponent: |value| (-10.0..=10.0).contains(&value), "from -10 to 10 m/s",
+        |number| number.minimum(Some(-10)).maximum(Some(10))
+}
+number! {
+    /// The draught of a ship, m.
+    Draught: |value| (0.0..=40.0).contains(&value), "from 0 to 40 m",
+        |number| number.minimum(Some(0)).maximum(Some(40))
+}
+number! {
     /// An angle of a rudder or a heading, in degrees.
     Angle: |value| value != 0.0 && value.abs() <= 90.0, "an angle up to 90 deg to either side and \
         not 0",

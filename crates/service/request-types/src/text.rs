@@ -147,10 +147,31 @@ text! {
         space, without NUL"
 }
 text! {
+    /// A condition of trials in words, as an acceptance summary prints it.
+    ConditionText: 1..=300, r"^[^\x00]*[^\s\x00][^\x00]*$", "1 to 300 characters that are not all \
+        white space, without NUL"
+}
+text! {
+    /// A date of the calendar.
+    CalendarDate: 10..=10, "^[0-9]{4}-(0[1-9]|1[0-2])-(0[1-9]|[12][0-9]|3[01])$",
+        "a date such as `2026-11-29`"
+}
+text! {
+    /// Name of a person under an acceptance summary.
+    PersonName: 1..=200, r"^[^\x00]*[^\s\x00][^\x00]*$", "a name of 1 to 200 characters that are not \
+        all white space, without NUL"
+}
+text! {
     /// URL of a web server.
     WebAddress: 10..=2000, r"^https?://[^\s\x00-\x1f\x7f-\x9f]+$", "a URL of 10 to 2000 \
                                                                     characters, such as \
                                                                     `https://example.com/hook`"
+}
+text! {
+    /// Address of a receiver of events: a web server, or a mail box.
+    ReceiverAddress: 10..=2000, r"^(https?://[^\s\x00-\x1f\x7f-\x9f]+|mailto:[^\s\x00-\x1f\x7f-\x9f@]+@[^\s\x00-\x1f\x7f-\x9f@]+)$",
+        "a URL of 10 to 2000 characters, such as `https://example.com/hook` or \
+         `mailto:ann@example.com`"
 }
 text! {
     /// The name of a file.
@@ -216,6 +237,14 @@ mod tests {
         for tags in ["*", "\"3\"", "W/\"3.a\" , \"4\"", " \"-\" "] {
             assert!(tags.parse::<EntityTags>().is_ok(), "{tags}");
         }
+        for address in ["https://example.com/a@b/hook", "mailto:ann@example.com"] {
+            assert!(address.parse::<ReceiverAddress>().is_ok(), "{address}");
+        }
+        assert!("mailto:a@b.example@c".parse::<ReceiverAddress>().is_err());
+        assert!(
+            "2026-02-30".parse::<CalendarDate>().is_ok()
+                && "2026-13-01".parse::<CalendarDate>().is_err()
+        );
         assert!("3".parse::<EntityTags>().is_err() && "\"\"".parse::<EntityTags>().is_err());
         assert_eq!(
             "x".repeat(65).parse::<Name>().unwrap_err(),

@@ -139,6 +139,14 @@ impl Store {
         self.database().fetch_all(CHAMPION_DOCUMENTS, args![names: &names_list(ships)]).await
     }
 
+    /// Returns the values of a fact by ship; ships without it are skipped.
+    pub async fn fact_values(&self, ships: &[String], fact: &str) -> Result<BTreeMap<String, f64>> {
+        let names = names_list(ships);
+        let values = args![names: &names, fact: fact];
+        let facts: Vec<FactValue> = self.database().fetch_all(FACTS, values).await?;
+        Ok(facts.into_iter().map(|fact| (fact.ship, fact.value)).collect())
+    }
+
     /// Returns the ids of those of the trials that are deleted.
     pub async fn deleted_trials(&self, ids: &[String]) -> Result<Vec<String>> {
         let found: Vec<TrialId> =

@@ -33,6 +33,10 @@ pub struct ConfigFile {
     /// `--oidc-...`, without `oidc-`
     #[serde(default)]
     pub oidc: OpenIdArguments,
+    /// `--smtp-url-file`
+    pub smtp_url_file: Option<PathBuf>,
+    /// `--mail-from`
+    pub mail_from: Option<String>,
     /// `--workers`
     pub workers: Option<u16>,
     /// `--jobs-per-person`
@@ -75,8 +79,9 @@ pub fn read_config(path: Option<&Path>) -> Result<ConfigFile, Failure> {
     let mut file: ConfigFile =
         sistership_model::yaml::read_document(&text).map_err(|error| about_file(path, error))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let secret = &mut file.oidc.client_secret_file;
-    for relative in [&mut file.data_dir, &mut file.api_key_file, secret].into_iter().flatten() {
+    let secrets =
+        [&mut file.api_key_file, &mut file.smtp_url_file, &mut file.oidc.client_secret_file];
+    for relative in secrets.into_iter().chain([&mut file.data_dir]).flatten() {
         *relative = folder.join(&*relative);
     }
     Ok(file)

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
+use sistership_jobs::stated_revolutions::state_revolutions;
 use sistership_model::trial::Trial;
 use sistership_model::{FileError, Vessel, Zoo};
 use sistership_trials::{
@@ -15,7 +16,6 @@ use super::import_bundle;
 use super::import_files::input_files;
 use super::import_log::segment_logs;
 use super::import_outcome::{GuessRow, ImportDocument, LawNeeds};
-use super::import_revolutions::state_revolutions;
 use super::import_template::{TemplateFolder, template_name};
 use super::import_text;
 use super::store::StoreArguments;

@@ -23,7 +23,6 @@ mod import_bundle;
 mod import_files;
 mod import_log;
 mod import_outcome;
-mod import_revolutions;
 mod import_template;
 mod import_text;
 pub mod init;

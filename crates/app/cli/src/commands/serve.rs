@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use sistership_api::{
-    Config, DEFAULT_LISTEN, ForwardedHeader, Limits, RunningServer, Server, StartError,
-    TrustedProxies,
+    Config, DEFAULT_LISTEN, ForwardedHeader, Limits, MailSettings, RunningServer, Server,
+    StartError, TrustedProxies,
 };
 use sistership_auth::openid::OpenIdArguments;
 
@@ -21,6 +21,8 @@ use crate::zoo::read_text_file;
 
 /// Environment variable with the API key.
 const API_KEY_VARIABLE: &str = "SISTERSHIP_API_KEY";
+/// Environment variable with the URL of the SMTP server.
+const SMTP_URL_VARIABLE: &str = "SISTERSHIP_SMTP_URL";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -85,6 +87,13 @@ pub struct ServeArguments {
     /// addresses.
     #[arg(long, env = "SISTERSHIP_WEBHOOKS_PRIVATE")]
     webhooks_private: bool,
+    /// File with the URL of the SMTP server that mails events, such as
+    /// smtps://user:password@host:465; overrides SISTERSHIP_SMTP_URL.
+    #[arg(long, value_name = "FILE", env = "SISTERSHIP_SMTP_URL_FILE")]
+    smtp_url_file: Option<PathBuf>,
+    /// Address of the sender of mail.
+    #[arg(long, value_name = "ADDRESS", env = "SISTERSHIP_MAIL_FROM")]
+    mail_from: Option<String>,
     #[command(flatten)]
     openid: Box<OpenIdArguments>,
     #[command(flatten)]
@@ -138,7 +147,9 @@ fn server_config(serve: &ServeArguments, file: &ConfigFile) -> Result<Config, Fa
     )?;
     limits.job_memory =
         memory_bytes("job_memory_mb", serve.job_memory_mb, file.job_memory_mb, limits.job_memory)?;
-    config.api_key = api_key(serve, file)?;
+    let key_files = [&serve.api_key_file, &file.api_key_file];
+    config.api_key = read_secret(key_files, API_KEY_VARIABLE)?;
+    config.mail = mail_settings(serve, file)?;
     config.proxies = trusted_proxies(serve, file)?;
     config.accounts = serve.accounts || file.accounts.unwrap_or(false);
     config.openid = serve
@@ -192,24 +203,47 @@ fn numeric_limits(serve: &ServeArguments, file: &ConfigFile) -> Result<Limits, F
     Ok(limits)
 }
 
-/// Returns the key from the flag's file, the environment, or the file that the configuration names.
-fn api_key(serve: &ServeArguments, file: &ConfigFile) -> Result<Option<String>, Failure> {
-    if let Some(path) = &serve.api_key_file {
-        // A flag comes before the environment, the environment before the configuration file.
-        return read_key(path).map(Some);
-    }
-    match std::env::var(API_KEY_VARIABLE).ok().filter(|key| !key.is_empty()) {
-        Some(key) => Ok(Some(key)),
-        None => file.api_key_file.as_deref().map(read_key).transpose(),
+/// Returns the settings of mail; both are set or none.
+fn mail_settings(
+    serve: &ServeArguments,
+    file: &ConfigFile,
+) -> Result<Option<MailSettings>, Failure> {
+    let smtp_url = read_secret([&serve.smtp_url_file, &file.smtp_url_file], SMTP_URL_VARIABLE)?;
+    let from = serve.mail_from.as_ref().or(file.mail_from.as_ref());
+    match (smtp_url, from) {
+        (None, None) => Ok(None),
+        (Some(smtp_url), Some(from)) => Ok(Some(MailSettings { smtp_url, from: from.clone() })),
+        (Some(_), None) => Err(Failure::Call(
+            "mail_from: mail needs a sender; set --mail-from, such as ships@example.com".into(),
+        )),
+        (None, Some(_)) => Err(Failure::Call(format!(
+            "mail_from: mail needs a server; set {SMTP_URL_VARIABLE} or --smtp-url-file"
+        ))),
     }
 }
 
-fn read_key(file: &Path) -> Result<String, Failure> {
-    let key = read_text_file(file)?.trim().to_owned();
-    if key.is_empty() {
-        Err(about_file(file, "is empty; write the API key into it"))
+/// Returns a secret from the file of the flag, the environment, or the file that the configuration
+/// names.
+fn read_secret(
+    [flag, configured]: [&Option<PathBuf>; 2],
+    variable: &str,
+) -> Result<Option<String>, Failure> {
+    if let Some(path) = flag {
+        // A flag comes before the environment, the environment before the configuration file.
+        return read_secret_file(path).map(Some);
+    }
+    match std::env::var(variable).ok().filter(|secret| !secret.is_empty()) {
+        Some(secret) => Ok(Some(secret)),
+        None => configured.as_deref().map(read_secret_file).transpose(),
+    }
+}
+
+fn read_secret_file(file: &Path) -> Result<String, Failure> {
+    let secret = read_text_file(file)?.trim().to_owned();
+    if secret.is_empty() {
+        Err(about_file(file, "is empty; write the secret into it"))
     } else {
-        Ok(key)
+        Ok(secret)
     }
 }
 
@@ -221,7 +255,9 @@ fn start_failure(error: StartError) -> Failure {
              --api-key-file, use accounts with --accounts, or listen on 127.0.0.1"
         )),
         // Errors of the call, which the user can correct without looking at the data.
-        StartError::Key | StartError::OpenIdWithoutAccounts => Failure::Call(error.to_string()),
+        StartError::Key | StartError::OpenIdWithoutAccounts | StartError::Mail(_) => {
+            Failure::Call(error.to_string())
+        }
         other => Failure::Refused(other.to_string()),
     }
 }

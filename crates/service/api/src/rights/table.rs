@@ -64,11 +64,12 @@ pub(crate) const HEALTH_ROUTES: [(&str, &str); 3] =
     [("GET", "/healthz"), ("GET", "/readyz"), ("GET", "/openapi.json")];
 
 /// Routes of signing in.
-pub(crate) const OPEN_ROUTES: [(&str, &str); 4] = [
+pub(crate) const OPEN_ROUTES: [(&str, &str); 5] = [
     ("GET", "/sign-in"),
     ("POST", "/sign-in"),
     ("GET", "/sign-in/oidc"),
     ("GET", "/sign-in/oidc/callback"),
+    ("POST", "/language"),
 ];
 
 /// Routes for any identified caller.
@@ -98,6 +99,7 @@ pub(crate) const ROLE_TABLE: &[RouteRow] = &[
     ("GET", "/v1/ships/{ship}/model", Reader, SHIP),
     ("GET", "/v1/ships/{ship}/notes", Reader, SHIP),
     ("POST", "/v1/ships/{ship}/notes", Engineer, SHIP),
+    ("PUT", "/v1/ships/{ship}/particulars", Engineer, SHIP),
     ("GET", "/v1/ships/{ship}/similar", Reader, SHIP),
     ("GET", "/v1/ships/{ship}/tags", Reader, SHIP),
     ("PUT", "/v1/ships/{ship}/tags/{tag}", Engineer, SHIP),
@@ -108,6 +110,8 @@ pub(crate) const ROLE_TABLE: &[RouteRow] = &[
     ("POST", "/v1/trials/check", Reader, RoleScope::Anything),
     ("GET", "/v1/trials/{id}", Reader, RoleScope::Trial),
     ("DELETE", "/v1/trials/{id}", Engineer, RoleScope::Trial),
+    ("GET", "/v1/trials/{id}/conditions", Reader, RoleScope::Trial),
+    ("PUT", "/v1/trials/{id}/conditions", Engineer, RoleScope::Trial),
     ("GET", "/v1/trials/{id}/samples", Reader, RoleScope::Trial),
     ("POST", "/v1/trials/{id}/undelete", Engineer, RoleScope::Trial),
     // Work.
@@ -128,6 +132,8 @@ pub(crate) const ROLE_TABLE: &[RouteRow] = &[
     ("GET", "/v1/models/{model}/versions/{number}", Reader, MODEL),
     ("GET", "/v1/models/{model}/versions/{number}/document", Reader, MODEL),
     ("GET", "/v1/models/{model}/versions/{number}/export", Reader, MODEL),
+    ("GET", "/v1/models/{model}/versions/{number}/signatures", Reader, MODEL),
+    ("POST", "/v1/models/{model}/versions/{number}/signatures", Engineer, MODEL),
     ("GET", "/v1/models/{model}/versions/{number}/validation", Reader, MODEL),
     ("GET", "/v1/models/{model}/versions/{number}/weights", Reader, MODEL),
     ("POST", "/v1/models/{model}/versions/{number}/verify", Reader, MODEL),
@@ -198,6 +204,8 @@ pub(crate) const ROLE_TABLE: &[RouteRow] = &[
     ("POST", "/ships", Engineer, RoleScope::Server),
     ("POST", "/example", Engineer, RoleScope::Server),
     ("GET", "/ships/{ship}", Reader, SHIP),
+    ("GET", "/ships/{ship}/turn.svg", Reader, SHIP),
+    ("GET", "/ships/{ship}/versions/{number}/turn.svg", Reader, SHIP),
     ("POST", "/ships/{ship}/refine", Engineer, SHIP),
     ("POST", "/ships/{ship}/diagnose", Engineer, SHIP),
     ("POST", "/ships/{ship}/champion", Engineer, SHIP),

@@ -11,7 +11,7 @@ use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
-use crate::web::field::{AuditName, Cursor, Limit};
+use crate::web::field::{AuditName, Cursor, Limit, WebAddress};
 use crate::web::{DocumentBody, Listing, QueryParams, page};
 
 pub(super) fn audit_routes() -> OpenApiRouter<App> {
@@ -77,11 +77,31 @@ struct AuditQuery {
 }
 
 /// Settings that apply to every process on the store.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Serialize, ToSchema)]
 struct Settings {
     /// True if a version becomes champion only by an approver who has not made it.
     second_person: bool,
+    /// Address of this server for links in messages; null for none.
+    public_url: Option<String>,
+}
+
+/// Settings that replace all others.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct SettingsRequest {
+    /// True if a version becomes champion only by an approver who has not made it.
+    second_person: bool,
+    /// Address of this server as people open it, for links in messages; by default none.
+    #[schema(inline)]
+    public_url: Option<WebAddress>,
+}
+
+impl Settings {
+    async fn load(app: &App) -> Result<Self> {
+        let settings = app.store().settings();
+        let second_person = settings.requires_second_person().await?;
+        Ok(Self { second_person, public_url: settings.public_url().await? })
+    }
 }
 
 impl EntryView {
@@ -143,16 +163,18 @@ async fn head(State(app): State<App>) -> Result<Json<HeadView>> {
 #[utoipa::path(get, path = "/v1/settings", tag = "access",
     responses((status = 200, body = Settings)))]
 async fn settings(State(app): State<App>) -> Result<Json<Settings>> {
-    Ok(Json(Settings { second_person: app.store().settings().requires_second_person().await? }))
+    Ok(Json(Settings::load(&app).await?))
 }
 
 /// Change the settings
 #[utoipa::path(
-    put, path = "/v1/settings", tag = "access", request_body = Settings,
+    put, path = "/v1/settings", tag = "access", request_body = SettingsRequest,
     responses((status = 200, body = Settings))
 )]
 async fn set_settings(State(app): State<App>, payload: DocumentBody) -> Result<Json<Settings>> {
-    let asked: Settings = payload.parse_json()?;
-    app.store().settings().set_second_person(asked.second_person).await?;
-    Ok(Json(asked))
+    let SettingsRequest { second_person, public_url } = payload.parse_json()?;
+    let settings = app.store().settings();
+    settings.set_second_person(second_person).await?;
+    settings.set_public_url(public_url.as_deref().unwrap_or_default()).await?;
+    Ok(Json(Settings::load(&app).await?))
 }

@@ -9,7 +9,8 @@ use super::{
     about, aliases, audit, branches, bulk_refinements, champion, compare, diagnoses, drift,
     effects, events, exports, families, health, jobs, keys, laws, metrics, notes, predictions,
     refinements, register, reports, samples, session_stream, sessions, ship_changes, ships,
-    similar, tags, trials, uploads, users, validation, versions, webhooks,
+    signatures, similar, tags, trial_conditions, trials, uploads, users, validation, versions,
+    webhooks,
 };
 use crate::app::App;
 use crate::config::Limits;
@@ -38,6 +39,7 @@ fn quick_router(limits: &Limits) -> OpenApiRouter<App> {
         .merge(similar::similarity_routes())
         .merge(champion::champion_routes())
         .merge(trials::trial_routes())
+        .merge(trial_conditions::condition_routes())
         .merge(samples::sample_routes())
         .merge(refinements::refinement_routes())
         .merge(diagnoses::diagnosis_routes())
@@ -45,6 +47,7 @@ fn quick_router(limits: &Limits) -> OpenApiRouter<App> {
         .merge(jobs::job_routes())
         .merge(events::event_routes())
         .merge(versions::version_routes())
+        .merge(signatures::signature_routes())
         .merge(exports::export_routes())
         .merge(compare::comparison_routes())
         .merge(validation::validation_routes())

@@ -1,11 +1,16 @@
 //! Changes of ships.
 
+use std::collections::BTreeMap;
+
 use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use serde_json::Value;
 use sistership_model::Vessel;
 use sistership_model::vessel::VesselFile;
 use sistership_store::Ship;
+use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -13,8 +18,9 @@ use super::described::VesselBodySchema as VesselBody;
 use super::ships::ShipDetail;
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::web::field::{EntityTags, RequestKey};
+use crate::web::field::{EntityTags, Remark, RequestKey};
 use crate::web::{DocumentBody, IdempotencyKey, Name, PathParams, RequestConditions, StoredReply};
+use sistership_jobs::particulars_change::ParticularsChange;
 use sistership_jobs::publish::publish_models;
 use sistership_jobs::seed::new_ship;
 
@@ -23,6 +29,18 @@ pub(super) fn ship_change_routes() -> OpenApiRouter<App> {
         .routes(routes!(create))
         .routes(routes!(replace, delete))
         .routes(routes!(undelete))
+        .routes(routes!(change_particulars))
+}
+
+/// A change of particulars.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+struct ParticularsRequest {
+    /// Source of the new values, such as `draught survey of 28 November 2026`.
+    #[schema(inline)]
+    citation: Remark,
+    /// New value of each particular, SI; null removes it.
+    values: BTreeMap<String, Option<f64>>,
 }
 
 /// Parses and checks a vessel as JSON or YAML.
@@ -107,7 +125,7 @@ async fn replace(
 }
 
 /// Stores the changed document of a ship that is still at a revision.
-pub(super) async fn store_changed_ship(app: &App, vessel: &Vessel, revision: i64) -> Result<Ship> {
+async fn store_changed_ship(app: &App, vessel: &Vessel, revision: i64) -> Result<Ship> {
     let zoo = app.stored_laws().await?;
     // The same check as for a new ship, before anything is written.
     zoo.check_models(vessel)?;
@@ -115,6 +133,38 @@ pub(super) async fn store_changed_ship(app: &App, vessel: &Vessel, revision: i64
     let ship = app.store().ships().update(&new, revision).await?;
     publish_models(app.store(), &zoo, vessel, &ship.document).await?;
     Ok(ship)
+}
+
+/// Stores the document of a ship whose particulars have changed since a revision.
+pub(super) async fn store_particulars(app: &App, document: Value, revision: i64) -> Result<Ship> {
+    let file: VesselFile = serde_json::from_value(document)
+        .map_err(|error| Problem::invalid("values", error.to_string()))?;
+    store_changed_ship(app, &Vessel::from_file("body", file)?, revision).await
+}
+
+/// Change particulars of a ship, if it is as you last read it
+///
+/// Particulars that are not named stay as they are. Versions that exist keep the particulars they
+/// were made with; the next refinement takes these.
+#[utoipa::path(
+    put, path = "/v1/ships/{ship}/particulars", tag = "ships",
+    params(("ship" = inline(Name), Path),
+    ("If-Match" = inline(EntityTags), Header, description = "ETag of your last request")),
+    request_body = ParticularsRequest,
+    responses((status = 200, body = ShipDetail, headers(("ETag" = String))))
+)]
+async fn change_particulars(
+    State(app): State<App>,
+    PathParams(name): PathParams<Name>,
+    conditions: RequestConditions,
+    payload: DocumentBody,
+) -> Result<Response> {
+    let current = app.store().ships().get(&name).await?;
+    let revision = conditions.required_revision(&format!("ship `{name}`"), current.revision)?;
+    let ParticularsRequest { citation, values } = payload.parse_json()?;
+    let document = ParticularsChange::new(&current, values)?.into_document(&citation);
+    let ship = store_particulars(&app, document, revision).await?;
+    Ok(ShipDetail::load(&app, ship).await?.etag_response())
 }
 
 /// Delete a ship; its versions stay, and `undelete` restores it

@@ -14,10 +14,10 @@ use utoipa_axum::routes;
 
 use crate::app::App;
 use crate::problem::{Problem, Result};
-use crate::web::field::{Positive, Remark, WebAddress};
+use crate::web::field::{Positive, ReceiverAddress, Remark};
 use crate::web::{DocumentBody, Id, Listing, Name, PageQuery, PathParams, QueryParams};
 use sistership_jobs::condition::DRIFT_LIMIT;
-use sistership_jobs::webhooks::check_url;
+use sistership_jobs::webhooks::{NO_MAIL, Receiver, check_receiver};
 use sistership_web_support::reply::encode_path;
 
 pub(super) fn webhook_routes() -> OpenApiRouter<App> {
@@ -61,9 +61,9 @@ struct WebhookRequest {
     /// Purpose.
     #[schema(inline)]
     title: Remark,
-    /// URL: https, at a public address.
+    /// URL: https, at a public address; or `mailto:` and a mail box of a public domain.
     #[schema(inline)]
-    url: WebAddress,
+    url: ReceiverAddress,
     /// Ship whose events are sent; by default all.
     #[schema(inline)]
     ship: Option<Name>,
@@ -159,7 +159,7 @@ async fn list(
 ///
 /// Each delivery is a `POST` of JSON with `Sistership-Event`, `Sistership-Delivery` (the same for
 /// every attempt) and `Sistership-Signature`: `t=SECONDS,v1=HEX`, the HMAC-SHA256 of `SECONDS.BODY`
-/// under the secret. It is sent until a status of 200 to 299 comes back, at least once. The answer
+/// under the secret. A URL of `mailto:` gets a mail of plain text instead. It is sent until a status of 200 to 299 comes back, at least once. The answer
 /// has the secret, once; the request therefore takes no `Idempotency-Key`.
 #[utoipa::path(
     post, path = "/v1/webhooks", tag = "webhooks", request_body = WebhookRequest,
@@ -185,8 +185,11 @@ pub(super) async fn create_from_page(app: &App, asked: Value) -> Result<(String,
 async fn create_webhook(app: &App, asked: WebhookRequest) -> Result<(String, Webhook)> {
     let WebhookRequest { title, url, ship, events, drift_above } = asked;
     // The address is checked again at each delivery, as a name may lead elsewhere later.
-    check_url(&url, app.limits().webhooks_private)
+    let receiver = check_receiver(&url, app.limits().webhooks_private)
         .map_err(|message| Problem::invalid("url", message))?;
+    if matches!(receiver, Receiver::Mail(_)) && app.mail().is_none() {
+        return Err(Problem::invalid("url", NO_MAIL));
+    }
     let new = NewWebhook {
         title: title.into_string(),
         url: url.into_string(),

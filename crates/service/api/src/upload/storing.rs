@@ -7,7 +7,7 @@ use sistership_store::{
     InsertOutcome, Job, NewJob, NewTrial, ObjectStorage, StoreError, Trial, is_out_of_space,
 };
 use sistership_trials::samples::{self, SamplesError};
-use sistership_trials::{ManifestFile, Refusal, read_trial};
+use sistership_trials::{ManifestFile, Refusal, TrialReading, read_in_full};
 use tempfile::NamedTempFile;
 
 use super::memory::run_with_memory;
@@ -119,8 +119,13 @@ fn read_arrived(
     spool: &SpoolFolder,
 ) -> Result<std::result::Result<AcceptedTrial, Refusal>> {
     let source = arrived.open().map_err(|error| read_failure(&arrived.name, &error));
-    match source.and_then(|source| read_trial(source, &arrived.mapping)) {
-        Ok(trial) => AcceptedTrial::new(&arrived.manifest, &trial, spool).map(Ok),
+    match source.and_then(|source| read_in_full(source, &arrived.mapping)) {
+        Ok(TrialReading { trial, origin, .. }) => {
+            // The samples are in metres: their place on the earth is kept with the manifest.
+            let mut only = arrived.manifest.clone();
+            only.declarations.origin = origin;
+            AcceptedTrial::new(&only, &trial, spool).map(Ok)
+        }
         Err(refusal) => Ok(Err(refusal)),
     }
 }

@@ -13,6 +13,7 @@ use uuid::Uuid;
 
 use crate::app::App;
 use crate::problem::{MEDIA, Problem};
+use crate::web::language::{VARY, request_language};
 use sistership_listener::PeerInfo;
 use sistership_web_support::large::count_large;
 use sistership_web_support::trace_context::{TRACE_PARENT, set_remote_parent};
@@ -22,11 +23,11 @@ pub(crate) async fn wrap_request(State(app): State<App>, request: Request, next:
     let id = Uuid::now_v7();
     let (method, route) = (request.method().clone(), route_path(&request));
     let peer = request.extensions().get::<PeerInfo>().cloned();
-    let for_people = is_for_people(&request);
+    let (for_people, language) = (is_for_people(&request), request_language(request.headers()));
     let span = tracing::info_span!("request", %id, method = %request.method(), path = request.uri().path());
     let parent = request.headers().get(TRACE_PARENT).and_then(|value| value.to_str().ok());
     set_remote_parent(&span, parent);
-    async move {
+    let answer = async move {
         let start = Instant::now();
         // The memory that the request takes is released when this scope ends, whatever the handler
         // does.
@@ -48,9 +49,9 @@ pub(crate) async fn wrap_request(State(app): State<App>, request: Request, next:
         );
         app.metrics().count_answer(&method, &route, response.status(), elapsed);
         response
-    }
-    .instrument(span)
-    .await
+    };
+    // Around everything: the page of an error is rendered by this layer.
+    language.run_scoped(answer.instrument(span)).await
 }
 
 /// The path as the router declares it, with names in place of ids.
@@ -105,6 +106,7 @@ fn problem_response(response: Response, id: Uuid, for_people: bool) -> Response 
     let head = [
         (header::CONTENT_TYPE, "text/html; charset=utf-8"),
         (header::CONTENT_SECURITY_POLICY, sistership_pages::security_policy()),
+        (header::VARY, VARY),
     ];
     head.into_iter().for_each(|(name, value)| {
         parts.headers.insert(name, HeaderValue::from_static(value));

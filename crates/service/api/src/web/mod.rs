@@ -5,6 +5,7 @@ pub(crate) mod envelope;
 pub(crate) mod form;
 pub(crate) mod guard;
 pub(crate) mod idempotency;
+pub(crate) mod language;
 pub(crate) mod unit;
 
 pub(crate) use idempotency::IdempotencyKey;

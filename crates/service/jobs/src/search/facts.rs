@@ -13,6 +13,7 @@ use sistership_priors::similarity::{CharacteristicVector, VectorDefinition};
 use sistership_store::{Ship, ShipFacts, StaleShip, StoreError, Version};
 
 use super::metrics;
+use super::position;
 use super::query::fact_name;
 use super::urgency;
 use crate::aliases::CHAMPION;
@@ -30,7 +31,7 @@ struct ShipContent {
     category: String,
     vessel: Option<Vessel>,
     champion: Option<VersionDocument>,
-    /// Facts about the validity of its champion.
+    /// Facts about the validity of its champion, and its position.
     standing: Vec<(String, f64)>,
 }
 
@@ -82,7 +83,8 @@ async fn read_content(
     // Publication comes first: it may make the champion that the next line reads.
     publish_missing(archive, laws, &vessel, &ship).await?;
     let champion = read_champion(archive, &ship.name).await?;
-    let standing = urgency::urgency_facts(archive, &ship.name, champion.as_ref()).await?;
+    let mut standing = urgency::urgency_facts(archive, &ship.name, champion.as_ref()).await?;
+    standing.extend(position::position_facts(archive, &ship.name).await?);
     Ok(ShipContent { waiting, category: ship.category, vessel: Some(vessel), champion, standing })
 }
 

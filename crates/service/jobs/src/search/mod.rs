@@ -5,6 +5,7 @@ mod facts;
 mod index;
 mod known_vectors;
 mod metrics;
+pub mod position;
 mod query;
 mod similar;
 pub mod urgency;

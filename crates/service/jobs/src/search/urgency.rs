@@ -52,6 +52,12 @@ impl UrgencyClass {
         }
     }
 
+    /// Returns the class of a ship from its value of [`URGENCY_FACT`] or [`FLEET_FACT`].
+    pub fn from_order(order: f64) -> Self {
+        let class = Self::ALL.into_iter().rfind(|class| f64::from(*class as u8) <= order);
+        class.unwrap_or(Self::DoesNotHold)
+    }
+
     /// Returns its name in URLs.
     pub fn name(self) -> &'static str {
         match self {
@@ -184,6 +190,9 @@ mod tests {
             let range = class.class_range();
             assert!((range.min..=range.max).contains(&urgency(class, None)));
             assert_eq!(UrgencyClass::by_name(class.name()), Some(class));
+            for error in [None, Some(0.0), Some(1e9)] {
+                assert_eq!(UrgencyClass::from_order(urgency(class, error)), class);
+            }
         }
     }
 }

@@ -1,16 +1,60 @@
-//! Check of the addresses of webhooks: a server that sends requests to given addresses must not be
+//! Check of the addresses of webhooks and mail boxes: a server that sends requests to given addresses must not be
 //! made to send them into its own network (server-side request forgery; OWASP 2021, A10).
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 
+use lettre::Address;
 use reqwest::Url;
+
+/// Endings of names that have no meaning outside of a network (RFC 6761, 6762, 8375; ICANN 2024).
+const LOCAL_ENDINGS: [&str; 5] = [".localhost", ".local", ".internal", ".home.arpa", ".lan"];
+
+/// Receiver of events.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Receiver {
+    /// A web server.
+    Web(Url),
+    /// A mail box.
+    Mail(Address),
+}
+
+/// Parses the address of a receiver: a URL as [`check_url`] takes it, or `mailto:` with one mail
+/// box; of a public domain unless private networks are allowed.
+///
+/// # Errors
+/// Returns a message that says what is wrong with it.
+pub fn check_receiver(text: &str, private: bool) -> Result<Receiver, String> {
+    let Some(mail) = text.strip_prefix("mailto:") else {
+        return check_url(text, private).map(Receiver::Web);
+    };
+    let address: Address = mail.parse().map_err(|_| {
+        format!("`{mail}` is not a mail box; write one such as mailto:ann@example.com")
+    })?;
+    match private || is_public_domain(address.domain()) {
+        true => Ok(Receiver::Mail(address)),
+        false => Err(format!("{} is not a public domain", address.domain())),
+    }
+}
+
+/// Returns true if the domain of a mail box is a public name or address.
+fn is_public_domain(domain: &str) -> bool {
+    // RFC 5321, 4.1.3: an address in brackets, with a tag for IPv6.
+    let literal = domain.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
+    match literal {
+        Some(literal) => literal.trim_start_matches("IPv6:").parse().is_ok_and(is_public),
+        None => {
+            let domain = domain.to_ascii_lowercase();
+            domain.contains('.') && !LOCAL_ENDINGS.iter().any(|ending| domain.ends_with(ending))
+        }
+    }
+}
 
 /// Parses the URL of a webhook: https, or also http if private networks are allowed; without name
 /// and password.
 ///
 /// # Errors
 /// Returns a message that says what is wrong with it.
-pub fn check_url(text: &str, private: bool) -> Result<Url, String> {
+pub(super) fn check_url(text: &str, private: bool) -> Result<Url, String> {
     let url = Url::parse(text).map_err(|error| format!("is not a URL: {error}"))?;
     // Plain http is for receivers in the same network only.
     let schemes: &[&str] = if private { &["https", "http"] } else { &["https"] };
@@ -122,6 +166,26 @@ mod tests {
         {
             assert!(is_public(public.parse().unwrap()), "{public}");
         }
+    }
+
+    #[test]
+    fn mail_boxes_are_of_public_domains() {
+        let is_mail =
+            |text: &str, private| matches!(check_receiver(text, private), Ok(Receiver::Mail(_)));
+        assert!(is_mail("mailto:ann@example.com", false));
+        assert!(is_mail("mailto:root@localhost", true));
+        let wrong = [
+            "ann",
+            "a@b@c",
+            "root@localhost",
+            "ann@host.local",
+            "ann@[127.0.0.1]",
+            "a@x.y?cc=b@x.y",
+        ];
+        for box_name in wrong {
+            assert!(!is_mail(&format!("mailto:{box_name}"), false), "{box_name}");
+        }
+        assert!(matches!(check_receiver("https://example.com/", false), Ok(Receiver::Web(_))));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use reqwest::{Client, Url, redirect};
 use sistership_auth::sign_message;
 use sistership_store::{Delivery, Webhook, provide_cryptography};
 
-use super::addresses::{check_url, is_public};
+use super::addresses::is_public;
 
 /// Timeout of an attempt.
 const TIMEOUT: Duration = Duration::from_secs(15);
@@ -16,6 +16,8 @@ const TIMEOUT: Duration = Duration::from_secs(15);
 pub(super) struct DeliveryAttempt<'a> {
     pub delivery: &'a Delivery,
     pub webhook: &'a Webhook,
+    /// Address of the receiver.
+    pub url: Url,
     /// Body in the format of the receiver.
     pub body: String,
     pub now_us: i64,
@@ -32,9 +34,7 @@ impl DeliveryAttempt<'_> {
     }
 
     async fn send_delivery(self) -> Result<String, String> {
-        let Self { delivery, webhook, body, now_us, private } = self;
-        // Checked again: the setting may have changed since the webhook was created.
-        let url = check_url(&webhook.url, private)?;
+        let Self { delivery, webhook, url, body, now_us, private } = self;
         let client = pinned_client(&url, &resolve_addresses(&url, private).await?)?;
         let at_s = now_us / 1_000_000;
         // The time is part of the signed text, so that a receiver can refuse a replay.

@@ -1,5 +1,5 @@
-//! Body of a delivery: JSON for programs, or a sentence with a link for chat rooms, whose services
-//! are recognised by the host of the webhook.
+//! Body of a delivery: JSON for programs, or a sentence with a link for people. Chat rooms are
+//! recognised by the host of the webhook, mail by its scheme.
 
 use reqwest::Url;
 use serde_json::{Value, json};
@@ -10,6 +10,11 @@ const SLACK_HOSTS: [&str; 2] = ["hooks.slack.com", "hooks.slack-gov.com"];
 const TEAMS_HOSTS: [&str; 3] =
     [".webhook.office.com", ".logic.azure.com", ".api.powerplatform.com"];
 
+/// Scheme of the address of a mail box.
+const MAIL_SCHEME: &str = "mailto";
+/// Largest number of trials that a mail lists.
+const MAX_LISTED_TRIALS: usize = 10;
+
 /// Form in which a receiver takes events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MessageFormat {
@@ -19,12 +24,44 @@ pub enum MessageFormat {
     Slack,
     /// An adaptive card in Microsoft Teams.
     Teams,
+    /// A mail of plain text.
+    Mail,
+}
+
+/// Subject and body of a mail.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct MailText {
+    pub subject: String,
+    pub body: String,
+}
+
+impl MailText {
+    /// Returns the mail of an event; `base` is the URL of this server, for links.
+    pub fn from_event(event: &str, base: Option<&str>) -> Self {
+        let parsed: Value = serde_json::from_str(event).unwrap_or_default();
+        let sentence = event_sentence(&parsed);
+        let trials = parsed["about"]["trials"].as_array().into_iter().flatten();
+        let link = |path: String| base.map(|base| format!("{}{path}", base.trim_end_matches('/')));
+        let trials = trials.filter_map(Value::as_str).take(MAX_LISTED_TRIALS);
+        let trials: Vec<String> = trials.filter_map(|id| link(format!("/trials/{id}"))).collect();
+        let mut parts = vec![sentence.clone()];
+        parts.extend(event_link(&parsed, base));
+        if !trials.is_empty() {
+            parts.push(format!("Trials:\n{}", trials.join("\n")));
+        }
+        // A reason may have several lines; a subject has one.
+        let subject = sentence.replace(char::is_control, " ");
+        Self { subject, body: parts.join("\n\n") + "\n" }
+    }
 }
 
 impl MessageFormat {
     /// Returns the format of a receiver by its URL.
     pub fn from_url(url: &str) -> Self {
         let url = Url::parse(url).ok();
+        if url.as_ref().is_some_and(|url| url.scheme() == MAIL_SCHEME) {
+            return Self::Mail;
+        }
         // The host alone counts: a path or a user name may contain any text.
         let host = url.as_ref().and_then(Url::host_str).unwrap_or_default();
         match host {
@@ -40,6 +77,7 @@ impl MessageFormat {
             Self::Json => "JSON",
             Self::Slack => "Slack",
             Self::Teams => "Microsoft Teams",
+            Self::Mail => "Mail",
         }
     }
 
@@ -55,6 +93,7 @@ impl MessageFormat {
                 json!({ "text": format!("{text} <{link}|Open>") }).to_string()
             }
             (Self::Teams, link) => teams_card(&text, link.as_deref()).to_string(),
+            (Self::Mail, _) => MailText::from_event(event, base).body,
         }
     }
 }
@@ -124,6 +163,22 @@ mod tests {
         assert_eq!(of("https://prod-1.westeurope.logic.azure.com/x"), MessageFormat::Teams);
         assert_eq!(of("https://hooks.slack.com.evil.example/x"), MessageFormat::Json);
         assert_eq!(MessageFormat::Json.render_body(EVENT, None), EVENT);
+    }
+
+    #[test]
+    fn a_mail_has_version_trials_and_links() {
+        let event = r#"{"event":"diagnosis.failed","ship":"kcs","page":"/ships/kcs/versions/2",
+            "about":{"version":2,"effects":["wind"],"trials":["t1","t2"]}}"#;
+        let mail = MailText::from_event(event, Some("https://ships.example/"));
+        assert_eq!(mail.subject, "kcs: its model no longer holds. It lacks wind, by 2 trials.");
+        for line in ["/ships/kcs/versions/2", "/trials/t1", "/trials/t2"] {
+            let line = format!("\nhttps://ships.example{line}\n");
+            assert!(mail.body.contains(&line), "{line} is not in {}", mail.body);
+        }
+        let event = EVENT.replace("looked over", "two\\nlines");
+        let mail = MailText::from_event(&event, None);
+        assert!(mail.subject.contains("(two lines)") && !mail.body.contains("http"), "{mail:?}");
+        assert_eq!(MessageFormat::from_url("mailto:a@b.example"), MessageFormat::Mail);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 mod addresses;
 mod attempt;
+mod mail;
 mod message;
 
 use std::collections::HashSet;
@@ -13,18 +14,26 @@ use sistership_store::{Delivery, Store, Webhook};
 use tokio::task::JoinSet;
 
 use self::attempt::DeliveryAttempt;
+use self::message::MailText;
 
-pub use addresses::check_url;
+pub use addresses::{Receiver, check_receiver};
+pub use mail::{MailSender, MailSettings};
 pub use message::MessageFormat;
 
 /// Settings of the deliveries.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct DeliverySettings {
     /// True if receivers may be in private networks and use plain http.
     pub private: bool,
     /// Interval at which the store is polled for due deliveries.
     pub poll: Duration,
+    /// Sender of mail, if there is one.
+    pub mail: Option<MailSender>,
 }
+
+/// Reason for which a server sends no mail.
+pub const NO_MAIL: &str =
+    "this server sends no mail; start it with SISTERSHIP_SMTP_URL and --mail-from";
 
 /// Number of deliveries that are sent to one receiver at a time.
 const SHARE: usize = 4;
@@ -57,7 +66,7 @@ pub async fn run_deliveries(store: Store, settings: DeliverySettings) {
             Ok(due) => {
                 for webhook in due {
                     if serving.len() < RECEIVERS && serving.insert(webhook.clone()) {
-                        served.spawn(serve_receiver(store.clone(), settings, webhook));
+                        served.spawn(serve_receiver(store.clone(), settings.clone(), webhook));
                     }
                 }
             }
@@ -73,7 +82,7 @@ pub async fn run_deliveries(store: Store, settings: DeliverySettings) {
 /// Sends all due deliveries to one receiver, and returns its webhook.
 async fn serve_receiver(store: Store, settings: DeliverySettings, webhook: String) -> String {
     loop {
-        match deliver_batch(&store, settings, &webhook).await {
+        match deliver_batch(&store, &settings, &webhook).await {
             // A full batch means that more may be due.
             Ok(SHARE) => {}
             Ok(_) => return webhook,
@@ -90,7 +99,7 @@ async fn serve_receiver(store: Store, settings: DeliverySettings, webhook: Strin
 /// Sends one batch of due deliveries to a receiver, and returns its size.
 async fn deliver_batch(
     store: &Store,
-    settings: DeliverySettings,
+    settings: &DeliverySettings,
     webhook: &str,
 ) -> sistership_store::Result<usize> {
     let mut taken = Vec::new();
@@ -110,20 +119,12 @@ async fn deliver_batch(
 
 async fn deliver(
     store: &Store,
-    settings: DeliverySettings,
+    settings: &DeliverySettings,
     delivery: &Delivery,
     webhook: &Webhook,
 ) -> sistership_store::Result<()> {
     let base = store.settings().public_url().await?;
-    let format = MessageFormat::from_url(&webhook.url);
-    let attempt = DeliveryAttempt {
-        delivery,
-        webhook,
-        body: format.render_body(&delivery.body, base.as_deref()),
-        now_us: store.now_us(),
-        private: settings.private,
-    };
-    match attempt.send_once().await {
+    match attempt_delivery(store, settings, (delivery, webhook), base.as_deref()).await {
         Ok(answer) => store.webhooks().record_arrival(&delivery.id, &answer).await,
         Err(reason) => {
             let due = retry_delay(delivery.attempts).map(|pause| store.now_us() + to_micros(pause));
@@ -131,6 +132,35 @@ async fn deliver(
             store.webhooks().record_failure(&delivery.id, due, &reason).await
         }
     }
+}
+
+/// Sends a delivery once; returns the answer, or the reason of the failure.
+async fn attempt_delivery(
+    store: &Store,
+    settings: &DeliverySettings,
+    (delivery, webhook): (&Delivery, &Webhook),
+    base: Option<&str>,
+) -> Result<String, String> {
+    // Checked again: the setting may have changed since the webhook was created.
+    let url = match check_receiver(&webhook.url, settings.private)? {
+        Receiver::Web(url) => url,
+        Receiver::Mail(to) => {
+            let sender = settings.mail.as_ref().ok_or(NO_MAIL)?;
+            return sender
+                .send_once(delivery, to, MailText::from_event(&delivery.body, base))
+                .await;
+        }
+    };
+    let format = MessageFormat::from_url(&webhook.url);
+    let attempt = DeliveryAttempt {
+        delivery,
+        webhook,
+        url,
+        body: format.render_body(&delivery.body, base),
+        now_us: store.now_us(),
+        private: settings.private,
+    };
+    attempt.send_once().await
 }
 
 /// Returns the delay after this number of attempts; `None` if the delivery is abandoned.

@@ -11,7 +11,9 @@ use self::simulations::VersionManoeuvres;
 use self::tables::{ValueRow, coefficient_rows, criterion_rows, figure_rows};
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
+use crate::language::say;
 use crate::named::NamedVersion;
+use crate::numbers::format_fixed;
 use crate::pickers;
 use crate::plot::{PlotTrack, track_chart};
 use crate::shell::PageShell;
@@ -74,7 +76,7 @@ pub async fn gather_inputs(
     let many = asked.len() > MOST_VERSIONS;
     // Names beyond the limit are dropped with a message.
     let wrong =
-        wrong.or_else(|| many.then(|| format!("at most {MOST_VERSIONS} versions can be compared")));
+        wrong.or_else(|| many.then(|| say("compare-too-many").with("most", MOST_VERSIONS).into()));
     let known = pickers::model_names(archive).await?;
     Ok(ComparisonInputs { shell: shell.at_place("/compare"), versions, wrong, asked, known })
 }
@@ -98,8 +100,8 @@ impl ComparisonInputs {
             .filter_map(|one| HullOutline::from_particulars(&one.document.model.particulars));
         let hull =
             longest.max_by(|a, b| a.lpp_m.total_cmp(&b.lpp_m)).filter(|_| self.is_single_ship());
-        let chart = |tracks: &[PlotTrack], label| {
-            (!tracks.is_empty()).then(|| track_chart(tracks, hull, label))
+        let chart = |tracks: &[PlotTrack], label: &'static str| {
+            (!tracks.is_empty()).then(|| track_chart(tracks, hull, &say(label).to_string()))
         };
         let page = ComparePage {
             shell: &self.shell,
@@ -107,8 +109,8 @@ impl ComparisonInputs {
             known: &self.known,
             wrong: self.wrong.as_deref(),
             versions: self.versions.iter().map(ComparisonColumn::from_version).collect(),
-            turns: chart(&turns, "turning circles, 35 deg to starboard"),
-            zigzags: chart(&zigzags, "zigzags 20/20"),
+            turns: chart(&turns, "compare-turns-label"),
+            zigzags: chart(&zigzags, "compare-zigzags-label"),
             figures: figure_rows(&sailed),
             criteria: criterion_rows(&sailed),
             coefficients: coefficient_rows(&self.versions),
@@ -137,7 +139,7 @@ impl<'a> ComparisonColumn<'a> {
             at: format!("/ships/{}/versions/{}", version.head.model, version.head.number),
             law: &version.head.law,
             method: &version.head.method,
-            speed: speed.map_or_else(String::new, |speed| format!("{speed:.2}")),
+            speed: speed.map_or_else(String::new, |speed| format_fixed(speed, 2)),
         }
     }
 }

@@ -6,6 +6,7 @@ use sistership_simulation::manoeuvre::{
     simulate_zigzag,
 };
 
+use crate::language::say;
 use crate::named::NamedVersion;
 use crate::plot::{LINES, PlotTrack};
 
@@ -28,7 +29,12 @@ impl VersionManoeuvres {
                 figures: None,
                 turn: None,
                 zigzag: None,
-                notes: vec![format!("{label} cannot be simulated: {error}")],
+                notes: vec![
+                    say("compare-not-simulated")
+                        .with("version", label)
+                        .with("reason", error.to_string())
+                        .into(),
+                ],
             },
         }
     }

@@ -1,10 +1,13 @@
 //! Tables of a comparison: one row for each name, one cell for each version.
 
-use sistership_report::numbers::{format_fixed, format_significant};
 use sistership_simulation::manoeuvre::NamedFigure;
 
 use super::simulations::VersionManoeuvres;
+use crate::language::{say, say_word};
 use crate::named::NamedVersion;
+use crate::numbers::{format_fixed, format_significant};
+use crate::terms::figure_words;
+use crate::version::figures::pass_words;
 
 /// A row: name, unit, and the cell of each version.
 pub(super) struct ValueRow {
@@ -52,8 +55,8 @@ pub(super) fn figure_rows(sailed: &[VersionManoeuvres]) -> Vec<ValueRow> {
         };
         let values: Vec<Option<f64>> = all.iter().map(own).collect();
         ValueRow {
-            name: figure.name.clone(),
-            unit: figure.unit.clone(),
+            name: figure_words(&figure.name),
+            unit: say_word("unit", &figure.unit),
             cells: value_cells(&values, 4),
         }
     };
@@ -74,20 +77,17 @@ pub(super) fn criterion_rows(sailed: &[VersionManoeuvres]) -> Vec<ValueRow> {
         let own = |one: &VersionManoeuvres| {
             let own = one.figures.as_ref().and_then(|figures| figures.imo.get(place));
             own.map_or_else(TableCell::default, |own| {
-                let (beside, class) = match own.pass {
-                    Some(true) => ("met", "good"),
-                    Some(false) => ("not met", "bad"),
-                    None => ("unknown", ""),
-                };
-                let limit = format_significant(own.limit, 3);
+                let (verdict, class) = pass_words(own.pass);
+                let beside = say("compare-pass-limit").with("verdict", verdict);
+                let beside = beside.with("limit", format_significant(own.limit, 3)).into();
                 let value =
                     own.value.map_or_else(String::new, |value| format_significant(value, 4));
-                TableCell { value, beside: format!("{beside}, limit {limit}"), class }
+                TableCell { value, beside, class }
             })
         };
         ValueRow {
-            name: criterion.criterion.clone(),
-            unit: criterion.unit.clone(),
+            name: say_word("criterion", &criterion.criterion),
+            unit: say_word("unit", &criterion.unit),
             cells: sailed.iter().map(own).collect(),
         }
     };

@@ -2,11 +2,12 @@
 
 use sistership_jobs::Archive;
 use sistership_jobs::condition::{DRIFT_LIMIT, RecentDrift};
-use sistership_report::numbers::format_significant;
 use sistership_report::plots::{Shape, SvgPlot};
 
-use crate::date::format_date;
+use crate::date::format_day;
 use crate::error::Result;
+use crate::language::say;
+use crate::numbers::format_significant;
 use crate::picture::{line_shape, text_shape};
 
 /// Number of diagnoses that are read.
@@ -90,15 +91,15 @@ fn draw_weeks(weeks: &[Option<WeekDrift>; WEEKS], now_us: i64) -> SvgPlot {
         shapes.push(Shape::Rect { at: (x + 0.15 * step, above), size, class });
         shapes.push(text_shape((x + 0.5 * step, above - 3.0), week.count.to_string(), "tick mid"));
     }
-    let day = |age: i64| format_date(now_us - age * WEEK_US).chars().take(10).collect::<String>();
-    shapes.push(text_shape((left, SIZE.1 - 6.0), day(WEEKS as i64), "tick"));
-    shapes.push(text_shape((left + width, SIZE.1 - 6.0), "today", "tick end"));
+    shapes.push(text_shape(
+        (left, SIZE.1 - 6.0),
+        format_day(now_us - WEEKS as i64 * WEEK_US),
+        "tick",
+    ));
+    shapes.push(text_shape((left + width, SIZE.1 - 6.0), say("board-today"), "tick end"));
     let last = weeks.iter().flatten().last().map_or(0.0, |week| week.median);
-    let label = format!(
-        "Median drift of the diagnoses of each week, {} in the last; a model is in doubt above {}",
-        format_significant(last, 2),
-        format_significant(DRIFT_LIMIT, 2)
-    );
+    let label = say("board-drift-label").with("last", format_significant(last, 2));
+    let label = label.with("limit", format_significant(DRIFT_LIMIT, 2)).into();
     SvgPlot { width: SIZE.0, height: SIZE.1, label, shapes }
 }
 

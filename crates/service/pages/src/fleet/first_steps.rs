@@ -4,6 +4,7 @@ use sistership_jobs::Archive;
 use sistership_store::PageRequest;
 
 use crate::error::Result;
+use crate::language::{Message, say};
 
 /// Number of ships from which on the steps are no longer shown.
 const FEW_SHIPS: usize = 2;
@@ -55,22 +56,21 @@ impl FirstSteps {
         [
             FirstStep {
                 state: state(0),
-                title: "Add your ship",
+                title: say("step-add-title"),
                 address: Some("/new-ship".to_owned()),
-                text: "Length, beam, draught and displacement are enough to begin with.",
+                text: say("step-add-text"),
             },
             FirstStep {
                 state: state(1),
-                title: "Upload its trials",
+                title: say("step-upload-title"),
                 address: at("/upload"),
-                text: "Turning circles and zigzags, as recorded; the columns are identified.",
+                text: say("step-upload-text"),
             },
             FirstStep {
                 state: state(2),
-                title: "Refine its model",
+                title: say("step-refine-title"),
                 address: at(""),
-                text: "The model of the most similar ship is fitted to the trials, and judged on \
-                       manoeuvres that it has not seen.",
+                text: say("step-refine-text"),
             },
         ]
     }
@@ -79,9 +79,9 @@ impl FirstSteps {
 /// One step: `state` is `done`, `next` or `later`.
 pub(super) struct FirstStep {
     pub state: &'static str,
-    pub title: &'static str,
+    pub title: Message,
     pub address: Option<String>,
-    pub text: &'static str,
+    pub text: Message,
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! The fleet: a list of the ships, the one that most needs attention first.
 
+mod class_label;
 mod drift_trend;
 mod first_steps;
+mod map;
 mod query;
 mod recent;
 
@@ -12,16 +14,19 @@ use sistership_jobs::search::urgency::{
     ERROR_FACT, FLEET_FACT, RESIDUAL_FACT_PREFIX, ShipCollection, UrgencyClass,
 };
 use sistership_jobs::search::{self, SearchCriteria, VectorCache};
-use sistership_report::numbers::{format_significant, format_stated};
 use sistership_store::{FactRange, FoundShip, ListPage, PageRequest, ShipKey, ShipOverview};
 
+pub(crate) use self::class_label::class_label;
 use self::drift_trend::drift_trend;
 use self::first_steps::FirstSteps;
+use self::map::FleetMap;
 use self::query::{FleetQuery, SortOrder};
 use self::recent::{RecentShip, recent_ships};
 use crate::cursor::encode_cursor;
 use crate::error::Result;
 use crate::form::FormFields;
+use crate::language::say;
+use crate::numbers::{format_significant, format_stated};
 use crate::picture::render_svg;
 use crate::shell::PageShell;
 use crate::sparkline::sparkline;
@@ -56,6 +61,7 @@ struct FleetDashboard {
     recent: Vec<RecentShip>,
     /// Chart of the drift over the last weeks, SVG.
     drift: Option<String>,
+    map: Option<FleetMap>,
 }
 
 /// Ship that needs attention, and why.
@@ -75,7 +81,7 @@ struct ShipRow {
     title: String,
     category: String,
     class: &'static str,
-    says: &'static str,
+    says: String,
     why: String,
     champion: Option<i64>,
     error: String,
@@ -143,6 +149,7 @@ impl FleetDashboard {
             worst: if ships.len() > WORST_SHIPS { worst } else { Vec::new() },
             recent: recent_ships(archive).await?,
             drift: drift_trend(archive).await?.as_ref().map(render_svg).transpose()?,
+            map: FleetMap::read(archive).await?,
         })
     }
 }
@@ -150,7 +157,7 @@ impl FleetDashboard {
 impl WorstShip {
     fn from_row(row: &ShipRow) -> Self {
         let why = match row.why.as_str() {
-            "" => "something unexplained".to_owned(),
+            "" => say("board-unexplained").into(),
             why => why.to_owned(),
         };
         Self { name: row.name.clone(), why }
@@ -211,19 +218,11 @@ fn ship_row(
 fn condition_reason(condition: &Condition) -> String {
     match condition.verdict.as_deref() {
         Some("drift") => match &condition.drift {
-            Some(drift) => format!("drift, {} times", format_significant(drift.ratio, 2)),
-            None => "drift".to_owned(),
+            Some(drift) => say("condition-drift-times")
+                .with("ratio", format_significant(drift.ratio, 2))
+                .into(),
+            None => say("condition-drift").into(),
         },
         _ => condition.effects.join(", "),
-    }
-}
-
-/// Returns a class of condition in words.
-pub(crate) fn class_label(class: UrgencyClass) -> &'static str {
-    match class {
-        UrgencyClass::DoesNotHold => "does not hold",
-        UrgencyClass::Unknown => "not diagnosed",
-        UrgencyClass::NoModel => "no model",
-        UrgencyClass::Holds => "holds",
     }
 }

@@ -7,6 +7,7 @@ use sistership_store::{FactRange, ShipKey, ShipSearch};
 use crate::cursor::decode_cursor;
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
+use crate::language::say;
 
 /// Fields of the form that select ships.
 const FILTER_FIELDS: [&str; 11] = [
@@ -53,7 +54,7 @@ impl FleetQuery {
             (None, Some("name")) => SortOrder::Name,
             (None, Some("value")) => SortOrder::Value,
             (None, Some(other)) => {
-                let message = format!("choose one of worst, name and value, not `{other}`");
+                let message = say("search-wrong-order").with("text", other);
                 return Err(PageError::invalid_field("sort", message));
             }
         };
@@ -111,15 +112,8 @@ impl FleetQuery {
         // All ships of a collection have the same value: they are in the order of their names.
         let collection = self.collection.map(ShipCollection::fact_range);
         match (by_name_of_some, self.sort == SortOrder::Value && ranges.is_empty()) {
-            (true, _) => Err(PageError::invalid_field(
-                "sort",
-                "order by name is possible only without condition, particular and metric; order \
-                 by value or worst first",
-            )),
-            (_, true) => Err(PageError::invalid_field(
-                "sort",
-                "order by value needs a range of a particular or metric",
-            )),
+            (true, _) => Err(PageError::invalid_field("sort", say("search-order-by-name"))),
+            (_, true) => Err(PageError::invalid_field("sort", say("search-order-by-value"))),
             _ => Ok(self.with_ranges(ranges.into_iter().chain(collection).collect())),
         }
     }
@@ -133,7 +127,7 @@ impl FleetQuery {
     fn selected_class(&self) -> Result<Option<UrgencyClass>> {
         let read = |name: &str| {
             UrgencyClass::by_name(name).ok_or_else(|| {
-                PageError::invalid_field("standing", format!("there is no `{name}`"))
+                PageError::invalid_field("standing", say("search-no-class").with("name", name))
             })
         };
         self.fields.get_text("standing").map(read).transpose()
@@ -165,7 +159,7 @@ impl FleetQuery {
     /// Heading of the column with the value that sorts the ships, if no other column has it.
     pub fn value_name(&self) -> Option<String> {
         match self.sort {
-            SortOrder::Similar => Some("Correlation".to_owned()),
+            SortOrder::Similar => Some(say("search-correlation").into()),
             SortOrder::Value => self
                 .fields
                 .get_text("particular")

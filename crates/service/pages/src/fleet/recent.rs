@@ -5,6 +5,7 @@ use sistership_store::{ChangeKind, ShipChange};
 
 use crate::date::format_date;
 use crate::error::Result;
+use crate::language::{Message, say};
 
 /// Time that counts as recent, µs.
 const WEEK_US: i64 = 7 * 86_400_000_000;
@@ -51,34 +52,33 @@ fn change_words(changes: &[&ShipChange]) -> String {
     let kinds = || changes.iter().map(|change| &change.kind);
     // Of several diagnoses and promotions the latest one counts.
     let diagnosed = kinds().find_map(|kind| match kind {
-        ChangeKind::Diagnosed(verdict) => Some(verdict_words(verdict).to_owned()),
+        ChangeKind::Diagnosed(verdict) => Some(verdict_words(verdict)),
         _ => None,
     });
     let promoted = kinds().find_map(|kind| match kind {
-        ChangeKind::Promoted(number) => Some(format!("version {number} came into use")),
+        ChangeKind::Promoted(number) => Some(say("change-promoted").with("number", number)),
         _ => None,
     });
     let made = kinds().find_map(|kind| match kind {
-        ChangeKind::VersionMade(number) => Some(format!("version {number} was made")),
+        ChangeKind::VersionMade(number) => Some(say("change-made").with("number", number)),
         _ => None,
     });
     let uploaded = match kinds().filter(|kind| **kind == ChangeKind::TrialUploaded).count() {
         0 => None,
-        1 => Some("1 trial was uploaded".to_owned()),
-        count => Some(format!("{count} trials were uploaded")),
+        count => Some(say("change-uploaded").with("count", count)),
     };
     let added = kinds().any(|kind| *kind == ChangeKind::ShipAdded);
-    let added = added.then(|| "the ship was added".to_owned());
+    let added = added.then(|| say("change-added"));
     let all = [diagnosed, promoted, made, uploaded, added];
-    all.into_iter().flatten().collect::<Vec<_>>().join("; ")
+    all.into_iter().flatten().map(String::from).collect::<Vec<_>>().join("; ")
 }
 
 /// Verdict of a diagnosis in words.
-fn verdict_words(verdict: &str) -> &'static str {
+fn verdict_words(verdict: &str) -> Message {
     match verdict {
-        "complete" => "a diagnosis found nothing missing",
-        "effects" => "a diagnosis found a missing effect",
-        _ => "a diagnosis found an unexplained remainder",
+        "complete" => say("change-diagnosed-complete"),
+        "effects" => say("change-diagnosed-effects"),
+        _ => say("change-diagnosed-other"),
     }
 }
 

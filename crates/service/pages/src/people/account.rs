@@ -3,6 +3,7 @@
 use askama::Template;
 use sistership_store::IdentityRow;
 
+use super::roles::role_words;
 use crate::error::Result;
 use crate::shell::PageShell;
 
@@ -25,7 +26,8 @@ pub struct LinkedIdentities<'a> {
     pub provider: Option<&'a str>,
 }
 
-/// Returns the page; `notice` reports an action that was just completed.
+/// Returns the page; `roles` are in the notation of forms, `notice` reports an action that was just
+/// completed.
 ///
 /// # Errors
 /// Returns an error if the page cannot be rendered.
@@ -37,5 +39,6 @@ pub fn account_page(
     notice: Option<&str>,
 ) -> Result<String> {
     let shell = shell.at_place("/account");
+    let roles = roles.iter().map(|role| role_words(role)).collect();
     Ok(AccountPage { shell, name, roles, known, notice }.render()?)
 }

@@ -9,6 +9,7 @@ use crate::cursor::{decode_cursor, encode_cursor};
 use crate::date::format_date;
 use crate::error::Result;
 use crate::form::FormFields;
+use crate::language::say;
 use crate::shell::PageShell;
 
 /// Number of users, and of keys, on one page.
@@ -93,11 +94,11 @@ impl KeyRowView {
         } = row;
         // A revoked key has ended, whatever its date.
         let ends = match (revoked_us, expires_us) {
-            (Some(revoked), _) => format!("revoked {}", format_date(revoked)),
+            (Some(revoked), _) => say("keys-revoked").with("at", format_date(revoked)).into(),
             (None, Some(ends)) => format_date(ends),
-            (None, None) => "when revoked".to_owned(),
+            (None, None) => say("keys-until-revoked").into(),
         };
-        let used = last_used_us.map_or_else(|| "never".to_owned(), format_date);
+        let used = last_used_us.map_or_else(|| say("keys-never-used").into(), format_date);
         let (user, created) = (user_name.unwrap_or_default(), format_date(created_us));
         Self { prefix, title, user, roles, created, ends, used, valid }
     }

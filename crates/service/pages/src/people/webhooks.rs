@@ -10,6 +10,7 @@ use sistership_store::{
 use crate::date::format_date;
 use crate::error::Result;
 use crate::form::FormFields;
+use crate::language::{Message, say};
 use crate::shell::PageShell;
 
 /// Number of webhooks on the page.
@@ -21,8 +22,10 @@ struct WebhooksPage {
     shell: PageShell,
     webhooks: Vec<WebhookRow>,
     /// Name and words of each event.
-    events: Vec<(&'static str, &'static str)>,
+    events: Vec<(&'static str, Message)>,
     public_url: String,
+    /// True if the server sends mail.
+    has_mail: bool,
 }
 
 struct WebhookRow {
@@ -41,7 +44,7 @@ struct WebhookRow {
 ///
 /// # Errors
 /// Returns an error if the store fails.
-pub async fn webhooks_page(archive: &Archive, shell: PageShell) -> Result<String> {
+pub async fn webhooks_page(archive: &Archive, shell: PageShell, has_mail: bool) -> Result<String> {
     let store = &archive.store;
     let mut webhooks = Vec::new();
     for webhook in store.webhooks().list(&PageRequest::first_page(LISTED_WEBHOOKS)).await?.items {
@@ -55,36 +58,39 @@ pub async fn webhooks_page(archive: &Archive, shell: PageShell) -> Result<String
         webhooks,
         events: EVENTS.iter().map(|event| (*event, event_words(event))).collect(),
         public_url: store.settings().public_url().await?.unwrap_or_default(),
+        has_mail,
     };
     Ok(page.render()?)
 }
 
 /// Event in words.
-fn event_words(event: &str) -> &'static str {
+fn event_words(event: &str) -> Message {
     match event {
-        CHAMPION_MOVED => "another version is in use",
-        DIAGNOSIS_FAILED => "a diagnosis finds that the model does not hold",
-        DRIFT => "the model drifts",
-        _ => "another event",
+        CHAMPION_MOVED => say("webhooks-event-champion"),
+        DIAGNOSIS_FAILED => say("webhooks-event-diagnosis"),
+        DRIFT => say("webhooks-event-drift"),
+        _ => say("webhooks-event-other"),
     }
 }
 
 impl WebhookRow {
     fn new(webhook: Webhook, events: &[String], last: Option<&Delivery>) -> Self {
         let format = MessageFormat::from_url(&webhook.url).title();
-        let events: Vec<&str> = events.iter().map(|event| event_words(event)).collect();
+        let events: Vec<String> = events.iter().map(|event| event_words(event).into()).collect();
         let last = match last {
-            None => "none yet".to_owned(),
+            None => say("webhooks-none-sent").into(),
             Some(Delivery { delivered_us: Some(at_us), .. }) => {
-                format!("arrived {}", format_date(*at_us))
+                say("webhooks-arrived").with("at", format_date(*at_us)).into()
             }
             Some(Delivery { answer, .. }) => {
-                format!("not arrived: {}", answer.as_deref().unwrap_or("not sent yet"))
+                let unsent = || say("webhooks-not-sent").into();
+                let why = answer.clone().unwrap_or_else(unsent);
+                say("webhooks-not-arrived").with("why", why).into()
             }
         };
         Self {
             active: webhook.ended_us.is_none(),
-            ship: webhook.ship.unwrap_or_else(|| "all ships".to_owned()),
+            ship: webhook.ship.unwrap_or_else(|| say("webhooks-all-ships").into()),
             id: webhook.id,
             title: webhook.title,
             events: events.join("; "),

@@ -14,7 +14,9 @@ use self::orders::{ManoeuvreOrders, Surroundings};
 use self::simulation::{FigureList, simulate_orders};
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
+use crate::language::say;
 use crate::named::NamedVersion;
+use crate::numbers::format_fixed;
 use crate::pickers;
 use crate::plot::{LINES, PlotTrack, track_chart};
 use crate::shell::PageShell;
@@ -159,10 +161,9 @@ fn run_playground(
     let mut notes = Vec::new();
     match (around.depth_m, knows_depth) {
         (Some(depth), true) => ship.set_depth(depth),
-        (Some(_), false) => notes.push(format!(
-            "The law {} does not depend on water depth: deep water is simulated.",
-            version.law.name
-        )),
+        (Some(_), false) => {
+            notes.push(say("playground-no-depth").with("law", &version.law.name).into());
+        }
         (None, _) => {}
     }
     let speed = ship.approach_speed_m_s();
@@ -172,11 +173,11 @@ fn run_playground(
     let tracks = [track];
     let hull = HullOutline::from_particulars(&model.particulars);
     Ok(PlaygroundResult {
-        chart: Some(track_chart(&tracks, hull, "simulated manoeuvre")),
+        chart: Some(track_chart(&tracks, hull, &say("playground-chart").to_string())),
         figures: run.figures,
         notes,
         deep: !knows_depth,
-        speed_hint: format!("{speed:.2}"),
+        speed_hint: format_fixed(speed, 2),
     })
 }
 
@@ -186,9 +187,7 @@ impl Surroundings {
         let named = [("current", self.current_vector()), ("wind", self.wind_vector())];
         let some = named.into_iter().filter_map(|(name, of)| Some((name, of?)));
         some.map(|(name, (north, east))| {
-            let missing = || {
-                PageError::invalid_field(name, "the library of effects has no constant form of it")
-            };
+            let missing = || PageError::invalid_field(name, say("playground-no-form"));
             steady_effect(name, [north, east], "playground").ok_or_else(missing)
         })
         .collect()

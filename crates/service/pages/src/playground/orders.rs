@@ -2,11 +2,15 @@
 
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
+use crate::language::{Message, say};
+use crate::numbers::format_plain;
 
 /// Longest simulation, s.
 const LONGEST_S: f64 = 20_000.0;
 /// Largest rudder angle, deg.
 const HARD_OVER: f64 = 45.0;
+/// Largest depth of water, m.
+const DEEPEST_M: f64 = 12_000.0;
 /// Largest number of lines of a script.
 const MOST_LINES: usize = 500;
 
@@ -71,14 +75,15 @@ impl ManoeuvreOrders {
             Some("zigzag") => ManoeuvreKind::Zigzag,
             Some("script") => ManoeuvreKind::Script,
             Some(other) => {
-                let message = format!("choose one of turn, zigzag and script, not `{other}`");
+                let message = say("playground-wrong-kind").with("text", other);
                 return Err(PageError::invalid_field("kind", message));
             }
         };
         // Written so that NaN is refused as well.
         let positive = |name: &str, most: f64| match fields.optional_number(name)? {
             Some(number) if !(number > 0.0 && number <= most) => {
-                Err(PageError::invalid_field(name, format!("must be above 0 and at most {most}")))
+                let message = say("playground-positive").with("most", format_plain(most));
+                Err(PageError::invalid_field(name, message))
             }
             number => Ok(number),
         };
@@ -107,15 +112,17 @@ impl ManoeuvreOrders {
         let written = written.filter(|(_, line)| !line.is_empty());
         let lines =
             written.map(|(at, text)| parse_line(at + 1, text)).collect::<Result<Vec<_>>>()?;
-        let wrong = |message: String| Err(PageError::invalid_field("script", message));
+        let wrong = |message: Message| Err(PageError::invalid_field("script", message));
         match lines.as_slice() {
-            [] | [_] => wrong("needs at least two lines, such as `0 0` and `60 20`".to_owned()),
-            many if many.len() > MOST_LINES => wrong(format!("has more than {MOST_LINES} lines")),
+            [] | [_] => wrong(say("playground-two-lines")),
+            many if many.len() > MOST_LINES => {
+                wrong(say("playground-many-lines").with("most", MOST_LINES))
+            }
             all if all.windows(2).any(|pair| pair[1].0 <= pair[0].0) => {
-                wrong("times must increase from line to line".to_owned())
+                wrong(say("playground-times-increase"))
             }
             all if all[all.len() - 1].0 - all[0].0 > LONGEST_S => {
-                wrong(format!("lasts longer than {LONGEST_S} s"))
+                wrong(say("playground-lasts-longer").with("most", format_plain(LONGEST_S)))
             }
             _ => Ok(lines),
         }
@@ -134,13 +141,11 @@ fn parse_line(number: usize, text: &str) -> Result<ScriptLine> {
         [Some(t), Some(rudder), Some(rpm)] if rudder.abs() <= HARD_OVER => {
             Ok((*t, rudder.to_radians(), Some(rpm / 60.0)))
         }
-        _ => Err(PageError::invalid_field(
-            "script",
-            format!(
-                "line {number}, `{text}`: write time in s, rudder in deg (at most {HARD_OVER} to \
-                 either side) and optionally revolutions in 1/min"
-            ),
-        )),
+        _ => {
+            let message = say("playground-wrong-line").with("number", number).with("text", text);
+            let message = message.with("most", format_plain(HARD_OVER));
+            Err(PageError::invalid_field("script", message))
+        }
     }
 }
 
@@ -157,11 +162,9 @@ pub(super) struct Surroundings {
 impl Surroundings {
     pub fn from_fields(fields: &FormFields) -> Result<Self> {
         let depth_m = match fields.optional_number("depth")? {
-            Some(depth) if !(depth > 0.0 && depth <= 12_000.0) => {
-                return Err(PageError::invalid_field(
-                    "depth",
-                    "must be above 0 and at most 12000 m",
-                ));
+            Some(depth) if !(depth > 0.0 && depth <= DEEPEST_M) => {
+                let message = say("playground-depth-range").with("most", format_plain(DEEPEST_M));
+                return Err(PageError::invalid_field("depth", message));
             }
             depth => depth,
         };

@@ -1,7 +1,6 @@
 //! Simulation of the manoeuvre of the playground.
 
 use sistership_model::trial::{Channel, Trial};
-use sistership_report::numbers::format_significant;
 use sistership_simulation::manoeuvre::{ManoeuvreSettings, simulate_turn, simulate_zigzag};
 use sistership_simulation::metrics::{TurningMetrics, ZigzagMetrics};
 use sistership_simulation::recorded::{ReplaySettings, replay_trial};
@@ -9,12 +8,14 @@ use sistership_simulation::{Ship, Trajectory};
 
 use super::orders::{ManoeuvreKind, ManoeuvreOrders, ScriptLine};
 use crate::error::{PageError, Result};
+use crate::language::{Message, say, say_word};
+use crate::numbers::{format_fixed, format_significant};
 
 /// Longest time step, s.
 const STEP_S: f64 = 0.1;
 
-/// Name, value and unit of each figure.
-pub(super) type FigureList = Vec<(&'static str, String, &'static str)>;
+/// Name, value and unit of each figure; no unit where the manoeuvre did not reach it.
+pub(super) type FigureList = Vec<(String, String, &'static str)>;
 
 /// A simulation with its figures.
 pub(super) struct PlaygroundRun {
@@ -41,13 +42,9 @@ pub(super) fn simulate_orders(
     };
     let mut notes = Vec::new();
     if let Some(outside) = ship.find_excursion(&track) {
-        notes.push(format!(
-            "{:.0} % of this simulation is outside the range covered by the model's trials, first \
-             after {:.0} s, in {}.",
-            100.0 * outside.share,
-            outside.first_s,
-            outside.along
-        ));
+        let note = say("playground-outside").with("share", format_fixed(100.0 * outside.share, 0));
+        let note = note.with("first", format_fixed(outside.first_s, 0));
+        notes.push(note.with("along", outside.along.to_string()).into());
     }
     Ok(PlaygroundRun { track, figures, notes })
 }
@@ -65,8 +62,8 @@ fn simulate_standard(
     // The default duration follows the speed, and has a fixed number of steps unless the speed is
     // low.
     let remedy = match orders.duration_s {
-        Some(_) => StepRemedy { field: "duration", says: "give a shorter time" },
-        None => StepRemedy { field: "speed", says: "give a higher speed, or a shorter time" },
+        Some(_) => StepRemedy { field: "duration", says: say("playground-shorter-time") },
+        None => StepRemedy { field: "speed", says: say("playground-higher-speed") },
     };
     check_step_count(steps, most, remedy)?;
     let settings = ManoeuvreSettings {
@@ -77,12 +74,8 @@ fn simulate_standard(
         ..ManoeuvreSettings::default()
     };
     let left = |stopped: sistership_simulation::SimulationStop| {
-        PageError::invalid_field(
-            "rudder",
-            format!(
-                "the simulation left the physical range, {stopped}; the model is not valid there"
-            ),
-        )
+        let message = say("playground-left").with("stopped", stopped.to_string());
+        PageError::invalid_field("rudder", message)
     };
     Ok(match orders.kind {
         ManoeuvreKind::Zigzag => {
@@ -100,16 +93,17 @@ fn simulate_standard(
 /// Field of the form that makes a simulation too long, and how to put it right.
 struct StepRemedy {
     field: &'static str,
-    says: &'static str,
+    says: Message,
 }
 
 fn check_step_count(steps: f64, most: usize, remedy: StepRemedy) -> Result<()> {
     match steps <= most as f64 {
         true => Ok(()),
-        false => Err(PageError::invalid_field(
-            remedy.field,
-            format!("needs {steps:.0} steps, but at most {most} are possible: {}", remedy.says),
-        )),
+        false => {
+            let message = say("playground-steps").with("steps", format_fixed(steps, 0));
+            let message = message.with("most", most).with("remedy", remedy.says);
+            Err(PageError::invalid_field(remedy.field, message))
+        }
     }
 }
 
@@ -117,28 +111,32 @@ fn turn_figures(metrics: &TurningMetrics) -> FigureList {
     let figures = [
         ("advance", metrics.advance_m, "m"),
         ("transfer", metrics.transfer_m, "m"),
-        ("tactical diameter", metrics.tactical_diameter_m, "m"),
-        ("steady turning radius", metrics.steady_radius_m, "m"),
-        ("speed loss", Some(metrics.speed_loss_m_s), "m/s"),
+        ("tactical-diameter", metrics.tactical_diameter_m, "m"),
+        ("steady-turning-radius", metrics.steady_radius_m, "m"),
+        ("speed-loss", Some(metrics.speed_loss_m_s), "m/s"),
     ];
     format_figures(&figures)
 }
 
 fn zigzag_figures(metrics: &ZigzagMetrics) -> FigureList {
     let figures = [
-        ("first overshoot", metrics.first_overshoot_deg, "deg"),
-        ("second overshoot", metrics.second_overshoot_deg, "deg"),
-        ("initial turning time", metrics.initial_turning_time_s, "s"),
+        ("first-overshoot", metrics.first_overshoot_deg, "deg"),
+        ("second-overshoot", metrics.second_overshoot_deg, "deg"),
+        ("initial-turning-time", metrics.initial_turning_time_s, "s"),
         ("period", metrics.period_s, "s"),
     ];
     format_figures(&figures)
 }
 
 fn format_figures(figures: &[(&'static str, Option<f64>, &'static str)]) -> FigureList {
-    let text = |value: Option<f64>| {
-        value.map_or_else(|| "not reached".to_owned(), |value| format_significant(value, 4))
+    let row = |&(name, value, unit): &(&'static str, Option<f64>, &'static str)| {
+        let name = say_word("figure", name);
+        match value {
+            Some(value) => (name, format_significant(value, 4), unit),
+            None => (name, say("word-not-reached").into(), ""),
+        }
     };
-    figures.iter().map(|&(name, value, unit)| (name, text(value), unit)).collect()
+    figures.iter().map(row).collect()
 }
 
 /// Simulates a script like recorded inputs: the rudder angle is that of the script, linear between
@@ -153,7 +151,7 @@ fn simulate_script(
     let settings = ReplaySettings::default();
     let trial = script_trial(ship, &lines, orders, speed);
     let steps = trial.duration_s() / settings.step_s + trial.len() as f64;
-    let remedy = StepRemedy { field: "script", says: "shorten the script" };
+    let remedy = StepRemedy { field: "script", says: say("playground-shorter-script") };
     check_step_count(steps, most, remedy)?;
     let run = replay_trial(ship, &trial, &settings)
         .map_err(|error| PageError::invalid_field("script", error.to_string()))?;

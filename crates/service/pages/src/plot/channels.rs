@@ -7,6 +7,8 @@ use sistership_report::plots::axes::{
 use sistership_report::plots::{ChartLine, PanelAxes, Shape, SvgPlot, WIDTH, path_data};
 
 use super::track::PlotTrack;
+use crate::language::{say, say_word};
+use crate::picture::localize_plot;
 
 const LEFT: f64 = 46.0;
 const RIGHT: f64 = 18.0;
@@ -16,35 +18,35 @@ const BOTTOM: f64 = 34.0;
 /// Smallest width of a shaded interval, in units of the plot.
 const THINNEST: f64 = 1.6;
 
-/// Contents of a panel: channel, name, unit, and the factor from SI.
-type ChannelPanel = (Channel, &'static str, &'static str, f64);
+/// Contents of a panel: channel, unit, and the factor from SI.
+type ChannelPanel = (Channel, &'static str, f64);
 
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
 const PANELS: [ChannelPanel; 10] = [
-    (Channel::U, "surge speed u", "m/s", 1.0),
-    (Channel::V, "sway speed v", "m/s", 1.0),
-    (Channel::R, "yaw rate r", "deg/s", DEGREES),
-    (Channel::Psi, "heading ψ", "deg", DEGREES),
-    (Channel::Phi, "roll φ", "deg", DEGREES),
-    (Channel::Delta, "rudder δ", "deg", DEGREES),
-    (Channel::N, "revolutions n", "1/min", 60.0),
-    (Channel::WindSpeed, "true wind speed", "m/s", 1.0),
-    (Channel::WindFrom, "true wind from", "deg", DEGREES),
-    (Channel::Depth, "water depth", "m", 1.0),
+    (Channel::U, "m/s", 1.0),
+    (Channel::V, "m/s", 1.0),
+    (Channel::R, "deg/s", DEGREES),
+    (Channel::Psi, "deg", DEGREES),
+    (Channel::Phi, "deg", DEGREES),
+    (Channel::Delta, "deg", DEGREES),
+    (Channel::N, "1/min", 60.0),
+    (Channel::WindSpeed, "m/s", 1.0),
+    (Channel::WindFrom, "deg", DEGREES),
+    (Channel::Depth, "m", 1.0),
 ];
 
 /// Further panels of an upload, in which each channel that was read can be reviewed.
 const FURTHER: [ChannelPanel; 9] = [
-    (Channel::X, "position north x", "m", 1.0),
-    (Channel::Y, "position east y", "m", 1.0),
-    (Channel::P, "roll rate p", "deg/s", DEGREES),
-    (Channel::UWater, "surge speed through water", "m/s", 1.0),
-    (Channel::VWater, "sway speed through water", "m/s", 1.0),
-    (Channel::DeltaS, "starboard rudder", "deg", DEGREES),
-    (Channel::DeltaP, "port rudder", "deg", DEGREES),
-    (Channel::NS, "starboard revolutions", "1/min", 60.0),
-    (Channel::NP, "port revolutions", "1/min", 60.0),
+    (Channel::X, "m", 1.0),
+    (Channel::Y, "m", 1.0),
+    (Channel::P, "deg/s", DEGREES),
+    (Channel::UWater, "m/s", 1.0),
+    (Channel::VWater, "m/s", 1.0),
+    (Channel::DeltaS, "deg", DEGREES),
+    (Channel::DeltaP, "deg", DEGREES),
+    (Channel::NS, "1/min", 60.0),
+    (Channel::NP, "1/min", 60.0),
 ];
 
 /// Interval of time in which values of a channel, or of every channel, are excluded, s.
@@ -118,8 +120,8 @@ impl<'a> ChannelPlot<'a> {
         }
         let height = self.panels.len() as f64 * (TITLE + HEIGHT) + BOTTOM;
         let at = (LEFT + 0.5 * self.time.length, height - 4.0);
-        shapes.push(Shape::Text { at, text: "time [s]".into(), class: "title mid" });
-        SvgPlot { width: WIDTH, height, label: label.to_owned(), shapes }
+        shapes.push(Shape::Text { at, text: say("plot-time").into(), class: "title mid" });
+        localize_plot(SvgPlot { width: WIDTH, height, label: label.to_owned(), shapes })
     }
 
     fn time_panels(&self) -> TimePanels {
@@ -158,7 +160,7 @@ impl<'a> ChannelPlot<'a> {
 
     fn panel_shapes(
         &self,
-        (channel, name, unit, factor): ChannelPanel,
+        (channel, unit, factor): ChannelPanel,
         top: f64,
         last: bool,
     ) -> Vec<Shape> {
@@ -171,7 +173,8 @@ impl<'a> ChannelPlot<'a> {
             padded_range(widen_range(value_range(values).unwrap_or((0.0, 1.0))), 0.06);
         let scale = AxisScale { low, high, length: HEIGHT, reversed: true };
         let (at, size) = ((LEFT, top), (time.length, HEIGHT));
-        let title = format!("{name} [{unit}]");
+        let name = say_word("channel", channel.name());
+        let title = format!("{name} [{}]", say_word("unit", unit));
         let mut shapes = vec![Shape::Text { at: (LEFT, top - 6.0), text: title, class: "title" }];
         shapes.extend(grid_rows(at, time.length, &scale, 4));
         shapes.extend(grid_columns(at, HEIGHT, time, 6, last));
@@ -193,7 +196,7 @@ impl<'a> ChannelPlot<'a> {
         let inside = shaded.chain(lines.iter().map(curve)).collect();
         let axes = PanelAxes {
             quantity: channel.name().to_owned(),
-            title: name.to_owned(),
+            title: name,
             unit,
             across: *time,
             up: scale,
@@ -206,7 +209,7 @@ impl<'a> ChannelPlot<'a> {
 
 /// Returns the values of a track in the units of the panels, with its positions.
 pub(super) fn chart_line(track: &PlotTrack) -> ChartLine {
-    let shown = PANELS.into_iter().map(|(channel, _, _, factor)| (channel, factor));
+    let shown = PANELS.into_iter().map(|(channel, _, factor)| (channel, factor));
     let all = [(Channel::X, 1.0), (Channel::Y, 1.0)].into_iter().chain(shown);
     let quantity = |(channel, factor): (Channel, f64)| {
         let values = track.channels.get(&channel)?;

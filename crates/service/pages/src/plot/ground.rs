@@ -5,8 +5,10 @@ use sistership_report::plots::{
     GroundChart, HullOutline, Shape, SvgPlot, WIDTH, mark_interval_s, path_data,
 };
 
-use super::track::PlotTrack;
 use sistership_model::trial::Channel;
+
+use super::track::PlotTrack;
+use crate::picture::localize_plot;
 
 /// Returns the tracks; `None` if no track has positions. `label` describes the plot.
 pub(crate) fn plot_ground(
@@ -33,7 +35,9 @@ pub(crate) fn plot_ground(
     let mut shapes = chart.draw_chart(inside);
     let first = placed.first().and_then(|(_, places)| places.first());
     shapes.extend(first.into_iter().flat_map(|place| chart.start_mark(*place)));
-    Some(SvgPlot { width: WIDTH, height: chart.plot_height(), label: label.to_owned(), shapes })
+    let plot =
+        SvgPlot { width: WIDTH, height: chart.plot_height(), label: label.to_owned(), shapes };
+    Some(localize_plot(plot))
 }
 
 fn duration_s(placed: &[(&PlotTrack, Vec<(f64, f64)>)]) -> f64 {

@@ -6,6 +6,8 @@ use sistership_model::trial::{Channel, Trial};
 use sistership_simulation::Trajectory;
 use sistership_simulation::state::{RECORDED_CHANNELS, at};
 
+use crate::language::say;
+
 /// Style of a line, of the outlines and of the dots on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct LineStyle {
@@ -49,7 +51,7 @@ impl PlotTrack {
     pub fn from_trial(trial: &Trial) -> Self {
         Self {
             style: MEASURED,
-            name: "measured".to_owned(),
+            name: say("trial-measured").into(),
             t_s: trial.t_s.clone(),
             channels: trial.channels.clone(),
             gaps: trial.segments().into_iter().skip(1).map(|segment| segment.start).collect(),

@@ -4,9 +4,10 @@
 //! and stern is not the ship's own.
 
 use sistership_model::particulars::Particulars;
-use sistership_report::numbers::format_stated;
 use sistership_report::plots::{HullOutline, Shape, SvgPlot};
 
+use crate::language::say;
+use crate::numbers::format_stated;
 use crate::picture::{line_shape, polygon_shape, text_shape};
 
 const WIDTH: f64 = 640.0;
@@ -44,11 +45,9 @@ pub(super) fn draw_ship(particulars: &Particulars, title: &str) -> Option<SvgPlo
         bottom = water + draught * frame.per_metre + 22.0;
     }
     shapes.extend(scale_bar(&frame, bottom + 6.0));
-    let label = format!(
-        "{title} to scale: length {} m, beam {} m",
-        format_stated(hull.lpp_m, 4),
-        format_stated(hull.beam_m, 4)
-    );
+    let label = say("drawing-label").with("title", title);
+    let label = label.with("length", format_stated(hull.lpp_m, 4));
+    let label = label.with("beam", format_stated(hull.beam_m, 4)).into();
     Some(SvgPlot { width: WIDTH, height: bottom + 30.0, label, shapes })
 }
 
@@ -80,13 +79,13 @@ fn top_view(
         ),
         text_shape(
             (frame.x_at(0.0) + 5.0, middle - half - 8.0),
-            format!("midship, beam {} m", format_stated(hull.beam_m, 4)),
+            say("drawing-midship").with("beam", format_stated(hull.beam_m, 4)),
             "small",
         ),
     ];
     if let Some(x_g) = x_g_m {
         shapes.push(Shape::Dot { at: (frame.x_at(x_g), middle), radius: 3.2, class: "part" });
-        let words = format!("G {} m from midship", format_stated(x_g, 3));
+        let words = say("drawing-gravity").with("distance", format_stated(x_g, 3));
         shapes.push(text_shape((frame.x_at(x_g), middle + half + 14.0), words, "small mid"));
     }
     shapes
@@ -118,7 +117,7 @@ fn side_view(
         line_shape((aft - 14.0, water), (fore + 14.0, water), "water"),
         line_shape((fore + 12.0, water), (fore + 12.0, keel), "measure"),
     ];
-    let draught_words = format!("draught {} m", format_stated(draught, 3));
+    let draught_words = say("drawing-draught").with("draught", format_stated(draught, 3));
     shapes.push(text_shape((fore + 12.0, keel + 13.0), draught_words, "small end"));
     shapes.extend(rudder_shape(frame, known, draught, keel));
     if let Some(diameter) = known("propeller_diameter_m") {
@@ -150,14 +149,11 @@ fn rudder_shape(
 }
 
 fn stern_text(known: &dyn Fn(&str) -> Option<f64>) -> String {
-    let part = |name: &str, what: &str, unit: &str| {
-        known(name).map(|value| format!("{what} {} {unit}", format_stated(value, 3)))
-    };
-    let parts = [
-        part("rudder_area_m2", "rudder", "m²"),
-        part("propeller_diameter_m", "propeller diameter", "m"),
-    ];
-    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    let text = |name: &str| known(name).map(|value| format_stated(value, 3));
+    let rudder = text("rudder_area_m2").map(|area| say("drawing-rudder").with("area", area));
+    let diameter = text("propeller_diameter_m");
+    let propeller = diameter.map(|of| say("drawing-propeller").with("diameter", of));
+    rudder.into_iter().chain(propeller).map(String::from).collect::<Vec<_>>().join(", ")
 }
 
 /// Returns a bar of a round length.

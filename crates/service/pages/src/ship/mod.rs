@@ -17,18 +17,19 @@ use sistership_model::particulars::Particulars;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Vessel, Zoo};
 use sistership_priors::similarity::RankedSource;
-use sistership_report::field_words;
-use sistership_report::numbers::{format_significant, format_stated};
 use sistership_store::{Alias, JobFilter, PageRequest, Ship, ShipNote};
 
 use self::next_step::{NextStep, ShipSituation, StepAction};
 use self::versions::{VersionRow, list_versions};
 use crate::date::format_date;
 use crate::error::Result;
+use crate::language::{Message, say};
+use crate::numbers::{format_significant, format_stated};
 use crate::particulars::PARTICULARS;
 use crate::picture::render_svg;
 use crate::rows::{JobRow, TrialRow};
 use crate::shell::PageShell;
+use crate::terms::{condition_sentence, particular_words};
 
 /// Knots in a metre per second.
 const KNOTS: f64 = 3600.0 / 1852.0;
@@ -61,7 +62,7 @@ struct ShipPage<'a> {
     of: &'a ShipPageInputs,
     shell: &'a PageShell,
     class: &'static str,
-    since: Option<String>,
+    since: Option<Message>,
     next: NextStep,
     evidence: Vec<EvidenceRow>,
     revision: Option<i64>,
@@ -69,7 +70,9 @@ struct ShipPage<'a> {
     drawing: Option<String>,
     similar: Vec<SimilarRow>,
     compare: String,
-    methods: [(&'static str, &'static str); 5],
+    methods: [(&'static str, Message); 5],
+    /// Condition of the ship in a sentence.
+    sentence: String,
 }
 
 impl ShipPage<'_> {
@@ -90,11 +93,8 @@ struct ParticularRow {
 
 impl ParticularRow {
     fn from_quantity(name: &str, of: &Quantity) -> Self {
-        let (words, unit) = field_words(name);
-        let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
-        let words = first.to_uppercase() + rest;
+        let (words, unit) = particular_words(name);
         let value = format_stated(of.value, 6);
-        let unit = if unit == "–" { "" } else { unit };
         // Speeds of ships are read in knots.
         let value = match unit {
             "m/s" => format!("{value} ({} kn)", format_stated(of.value * KNOTS, 3)),
@@ -127,19 +127,20 @@ struct EvidenceRow {
 
 impl EvidenceRow {
     fn from_diagnosis(diagnosis: &WeighedDiagnosis) -> Self {
-        let trials = match diagnosis.trials.len() {
-            1 => "1 trial".to_owned(),
-            count => format!("{count} trials"),
+        let trials = say("word-count-trials").with("count", diagnosis.trials.len());
+        let what = match diagnosis.whole {
+            true => say("ship-all-trials").with("trials", trials),
+            false => trials,
         };
-        let what = if diagnosis.whole { format!("all trials: {trials}") } else { trials };
+        let what = what.into();
         let (made, report) = (format_date(diagnosis.by.at_us), diagnosis.by.report.clone());
         Self { made, what, verdict: diagnosis.verdict.clone(), report }
     }
 }
 
 /// Formats the trial since which a condition holds.
-fn since_text(since: &SinceTrial) -> String {
-    format!("{}, uploaded {}", since.name, format_date(since.at_us))
+fn since_text(since: &SinceTrial) -> Message {
+    say("ship-since").with("trial", &since.name).with("at", format_date(since.at_us))
 }
 
 struct SimilarRow {
@@ -150,14 +151,16 @@ struct SimilarRow {
     reasons: Vec<String>,
 }
 
-/// Methods of a refinement, by their names in requests.
-const METHODS: [(&str, &str); 5] = [
-    ("", "compare all and select the best"),
-    ("weak", "weak: equations integrated over windows"),
-    ("trajectory", "trajectory: least squares on simulated segments"),
-    ("published", "published: one-step differences"),
-    ("cma-es", "cma-es: evolutionary search on simulations"),
-];
+/// Methods of a refinement: names in requests, and words.
+fn methods() -> [(&'static str, Message); 5] {
+    [
+        ("", say("method-select")),
+        ("weak", say("method-weak")),
+        ("trajectory", say("method-trajectory")),
+        ("published", say("method-published")),
+        ("cma-es", say("method-cma-es")),
+    ]
+}
 
 /// Reads the inputs of the page.
 ///
@@ -261,7 +264,8 @@ impl ShipPageInputs {
             drawing: drawing.as_ref().map(render_svg).transpose()?,
             similar: similar.into_iter().map(SimilarRow::from_ranked).collect(),
             compare: comparison_address(&self.ship.name, &self.versions.0),
-            methods: METHODS,
+            methods: methods(),
+            sentence: condition_sentence(&self.condition),
         };
         Ok(page.render()?)
     }

@@ -3,6 +3,7 @@
 use sistership_jobs::condition::{Condition, ModelValidity};
 
 use super::versions::VersionRow;
+use crate::language::{Message, say};
 use crate::rows::JobRow;
 
 /// What a step follows from.
@@ -18,8 +19,8 @@ pub(super) struct ShipSituation<'a> {
 
 /// Next step: explanation, and what its button does.
 pub(super) struct NextStep {
-    pub text: String,
-    pub button: String,
+    pub text: Message,
+    pub button: Message,
     pub action: StepAction,
 }
 
@@ -44,18 +45,22 @@ impl NextStep {
         let name = of.name;
         let waits = |state: &str| ["running", "queued"].contains(&state);
         if let Some(job) = of.jobs.iter().find(|job| waits(job.state)) {
-            let text = format!("A {} of this ship is under way: {} %.", job.kind, job.percent);
-            return Some(Self::open_place(text, "See its progress", format!("/jobs/{}", job.id)));
+            let text =
+                say("next-job-runs").with("kind", job.kind_words()).with("percent", job.percent);
+            return Some(Self::open_place(
+                text,
+                say("next-see-progress"),
+                format!("/jobs/{}", job.id),
+            ));
         }
         if !of.has_trials {
-            let text = "The ship has no trials yet. Turning circles and zigzags tell most.";
             let place = format!("/ships/{name}/upload");
-            return Some(Self::open_place(text.to_owned(), "Upload trials", place));
+            return Some(Self::open_place(say("next-no-trials"), say("next-upload"), place));
         }
         let refined = of.versions.iter().any(|version| !version.method.starts_with("published"));
         (!refined).then(|| Self {
-            text: "The ship has trials, and no model that is fitted to them.".to_owned(),
-            button: "Refine its model".to_owned(),
+            text: say("next-not-refined"),
+            button: say("next-refine"),
             action: StepAction::Refine,
         })
     }
@@ -68,26 +73,26 @@ impl NextStep {
         match (condition.model, &condition.with_effects, champion) {
             // A model that does not hold comes before everything else.
             (ModelValidity::DoesNotHold, Some(made), _) => Self::open_place(
-                format!("Version {} has the missing effects.", made.number),
-                &format!("Look at version {}", made.number),
+                say("next-has-effects").with("number", made.number),
+                say("next-look-at-version").with("number", made.number),
                 at(made.number),
             ),
             (_, _, None) => Self::open_place(
-                "No version is in use yet.".to_owned(),
-                "Look at the newest version",
+                say("next-none-in-use"),
+                say("next-look-at-newest"),
                 at(newest.unwrap_or(1)),
             ),
             (_, _, Some(champion)) if newest.is_some_and(|newest| newest > champion) => {
                 Self::open_place(
-                    format!("Version {champion} is in use, and there is a newer one."),
-                    "Compare them",
+                    say("next-newer").with("number", champion),
+                    say("next-compare"),
                     format!("/compare?v={name}/{champion}&v={name}/{}", newest.unwrap_or(champion)),
                 )
             }
             // Trials may be there that the champion has not seen.
             (ModelValidity::Unknown, _, Some(champion)) => Self {
-                text: format!("Version {champion} was not diagnosed since it came into use."),
-                button: "Diagnose it".to_owned(),
+                text: say("next-not-diagnosed").with("number", champion),
+                button: say("next-diagnose"),
                 action: StepAction::Diagnose(champion),
             },
             (_, _, Some(champion)) => Self::report_step(of, champion),
@@ -99,20 +104,20 @@ impl NextStep {
         let own = of.versions.iter().find(|version| version.number == champion);
         match own.and_then(|version| version.report.as_ref()) {
             Some(report) => Self::open_place(
-                format!("Version {champion} is in use. Its report has the verdict on it."),
-                "Look at the report",
+                say("next-has-report").with("number", champion),
+                say("next-look-at-report"),
                 format!("/v1/reports/{report}?format=html"),
             ),
             None => Self::open_place(
-                format!("Version {champion} is in use."),
-                "Look at it",
+                say("next-in-use").with("number", champion),
+                say("next-look-at-it"),
                 format!("/ships/{}/versions/{champion}", of.name),
             ),
         }
     }
 
-    fn open_place(text: String, button: &str, place: String) -> Self {
-        Self { text, button: button.to_owned(), action: StepAction::Open(place) }
+    fn open_place(text: Message, button: Message, place: String) -> Self {
+        Self { text, button, action: StepAction::Open(place) }
     }
 }
 

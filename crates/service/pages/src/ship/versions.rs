@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use sistership_jobs::Archive;
-use sistership_report::numbers::format_significant;
 use sistership_store::{Alias, PageRequest, Store, StoreError, VersionHead};
 
 use crate::date::format_date;
 use crate::error::Result;
+use crate::numbers::format_significant;
 
 /// Number of versions on the page; their errors are read from their documents.
 const LISTED_VERSIONS: i64 = 12;

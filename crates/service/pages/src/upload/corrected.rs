@@ -4,12 +4,11 @@ use indexmap::IndexMap;
 use sistership_model::manifest::{ColumnMapping, MissingValues, RudderSign, VelocityFrame};
 use sistership_trials::{ColumnGuess, ManifestFile};
 
-use super::proposed::{DERIVED, TARGETS, UploadProposal};
+use super::proposed::{DERIVED, GIVEN, TARGETS, UploadProposal};
+use super::trial_fields::apply_trial_fields;
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
-
-/// Reason of a reading that the form gives.
-const GIVEN: &str = "given on this page";
+use crate::language::say;
 
 /// Returns the proposal with the form's columns, signs, manoeuvres, depths and exclusions.
 ///
@@ -44,8 +43,8 @@ fn correct_guesses(
         if let Some((channel, mapping)) = &read
             && let Some(first) = columns.insert(channel.clone(), mapping.clone())
         {
-            let message =
-                format!("`{}` is read as {channel} already; choose one column", first.column);
+            let message = say("upload-read-already").with("column", first.column);
+            let message = message.with("channel", channel);
             return Err(PageError::invalid_field(&format!("channel.{key}"), message));
         }
         settle_guess(guess, read, port);
@@ -122,7 +121,7 @@ fn column_mapping(
     if !TARGETS.contains(&channel) {
         return Err(PageError::invalid_field(
             &field,
-            format!("`{channel}` is not a channel; choose one of the list"),
+            say("upload-no-channel").with("channel", channel),
         ));
     }
     let unit = fields.required_text(&format!("unit.{key}"))?.to_owned();
@@ -145,7 +144,10 @@ fn apply_conventions(manifest: &mut ManifestFile, fields: &FormFields) -> Result
     let one_of = |name: &str, words: [&str; 2]| match fields.get_text(name) {
         Some(text) if text == words[0] => Ok(true),
         Some(text) if text == words[1] => Ok(false),
-        _ => Err(PageError::invalid_field(name, format!("must be {} or {}", words[0], words[1]))),
+        _ => {
+            let message = say("upload-one-of").with("one", words[0]).with("other", words[1]);
+            Err(PageError::invalid_field(name, message))
+        }
     };
     let conventions = &mut manifest.manifest.conventions;
     conventions.rudder_positive = match one_of("rudder_positive", ["starboard_turn", "port_turn"])?
@@ -161,27 +163,12 @@ fn apply_conventions(manifest: &mut ManifestFile, fields: &FormFields) -> Result
         Some("bridge") => MissingValues::Bridge,
         Some("drop") => MissingValues::Drop,
         Some("refuse") => MissingValues::Refuse,
-        _ => return Err(PageError::invalid_field("missing", "must be bridge, drop or refuse")),
+        _ => return Err(PageError::invalid_field("missing", say("upload-missing-values"))),
     };
     let wanted = DERIVED
         .into_iter()
         .filter(|(name, _)| fields.get_text(&format!("derive_{name}")).is_some());
     manifest.declarations.derive = wanted.map(|(_, one)| one).collect();
-    Ok(())
-}
-
-fn apply_trial_fields(manifest: &mut ManifestFile, fields: &FormFields) -> Result<()> {
-    for (place, trial) in manifest.manifest.trials.iter_mut().enumerate() {
-        trial.manoeuvre = fields.get_text(&format!("manoeuvre.{place}")).map(str::to_owned);
-        let field = format!("depth.{place}");
-        trial.depth_m = match fields.optional_number(&field)? {
-            Some(depth) if depth <= 0.0 => {
-                let message = "must be above 0; leave it empty for deep water";
-                return Err(PageError::invalid_field(&field, message));
-            }
-            depth => depth,
-        };
-    }
     Ok(())
 }
 
@@ -205,6 +192,7 @@ mod tests {
             manifest,
             diagnose: true,
             template: None,
+            notes: Vec::new(),
         };
         (folder, of)
     }

@@ -5,8 +5,9 @@ use sistership_trials::{Exclusion, RowRanges, TrialWithRows};
 use super::proposed::UploadProposal;
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
+use crate::language::say;
 
-/// Reason of an exclusion that the form gives.
+/// Reason of an exclusion that the form gives, as manifests have it.
 const BY_HAND: &str = "excluded on the upload page";
 
 /// A range of time of a trial, and what is to be done with it.
@@ -32,18 +33,17 @@ impl RangeRequest {
             _ => return Ok(None),
         };
         let time = |name: &str| {
-            let missing = || PageError::invalid_field(name, "is empty; enter a time in seconds");
+            let missing = || PageError::invalid_field(name, say("upload-time-empty"));
             fields.optional_number(name)?.ok_or_else(missing)
         };
         let trial = usize::try_from(fields.whole_number("range_trial")?).ok();
         // The index is from a form, which may be older than the proposal.
         let trial = trial.filter(|at| *at < of.manifest.manifest.trials.len());
-        let trial = trial.ok_or_else(|| {
-            PageError::invalid_field("range_trial", "is not a file of this upload")
-        })?;
+        let trial = trial
+            .ok_or_else(|| PageError::invalid_field("range_trial", say("upload-not-a-file")))?;
         let channel = fields.get_text("range_channel").map(str::to_owned);
         if let Some(name) = channel.as_deref().filter(|name| !of.channel_names().contains(name)) {
-            let message = format!("`{name}` is not read from these files; choose one of the list");
+            let message = say("upload-not-read").with("channel", name);
             return Err(PageError::invalid_field("range_channel", message));
         }
         let (from_s, to_s) = (time("range_from")?, time("range_to")?);
@@ -55,10 +55,9 @@ impl RangeRequest {
     /// # Errors
     /// Returns an error if the range has no row, or nothing is excluded in it.
     pub fn apply(&self, of: &mut UploadProposal, trial: &TrialWithRows) -> Result<()> {
-        let rows = trial.rows_between(self.from_s, self.to_s).ok_or_else(|| {
-            let message = "is not after the start, or there is no row between them";
-            PageError::invalid_field("range_to", message)
-        })?;
+        let rows = trial
+            .rows_between(self.from_s, self.to_s)
+            .ok_or_else(|| PageError::invalid_field("range_to", say("upload-no-rows")))?;
         let file = of.manifest.manifest.trials[self.trial].file.clone();
         let exclude = &mut of.manifest.declarations.exclude;
         if self.excludes {
@@ -82,9 +81,7 @@ impl RangeRequest {
         };
         exclude.retain_mut(|one| !is_meant(one) || one.restore_rows(&rows));
         match *exclude == before {
-            true => {
-                Err(PageError::invalid_field("range_from", "nothing is excluded in this range"))
-            }
+            true => Err(PageError::invalid_field("range_from", say("upload-nothing-excluded"))),
             false => Ok(()),
         }
     }
@@ -110,6 +107,7 @@ mod tests {
             manifest,
             diagnose: true,
             template: None,
+            notes: Vec::new(),
         };
         let trial = Trial { t_s: vec![0.0, 1.0, 2.0, 3.0], ..Trial::default() };
         (of, TrialWithRows { trial, rows: vec![2, 3, 4, 5] })

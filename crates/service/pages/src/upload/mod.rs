@@ -7,6 +7,7 @@ mod preview;
 mod proposed;
 mod stored;
 mod templates;
+mod trial_fields;
 
 use askama::Template;
 use sistership_model::manifest::{MissingValues, RudderSign, VelocityFrame};
@@ -22,7 +23,10 @@ pub use templates::TemplatePlace;
 
 use self::proposed::{DERIVED, TARGETS};
 use self::templates::TemplateOffer;
+use self::trial_fields::{TrialFields, trial_fields};
 use crate::error::Result;
+use crate::language::say;
+use crate::numbers::format_fixed;
 use crate::shell::PageShell;
 
 /// Units offered by the form.
@@ -54,6 +58,7 @@ struct MappingPage<'a> {
     targets: [&'static str; 28],
     units: [&'static str; 17],
     columns: Vec<ColumnRow<'a>>,
+    trials: Vec<TrialFields>,
     previews: &'a [FilePreview],
     accepted: bool,
     port: bool,
@@ -102,6 +107,7 @@ pub fn mapping_page(
         targets: TARGETS,
         units: UNITS,
         columns: column_rows(of),
+        trials: trial_fields(&of.manifest),
         previews,
         // Only an upload without errors may be stored.
         accepted: previews.iter().all(FilePreview::is_accepted),
@@ -126,6 +132,12 @@ impl MappingPage<'_> {
     }
 }
 
+/// Returns the reason of a reading: that of the form in the language of the page, those of the
+/// identification of columns as manifests have them.
+pub(crate) fn reading_reason(why: &str) -> String {
+    if why == proposed::GIVEN { say("mapping-given").into() } else { why.to_owned() }
+}
+
 /// Returns the guesses whose columns the manifest maps. A sentence of NMEA 0183 needs no mapping.
 fn column_rows(of: &UploadProposal) -> Vec<ColumnRow<'_>> {
     let files = of.mapped_files();
@@ -146,8 +158,8 @@ fn column_rows(of: &UploadProposal) -> Vec<ColumnRow<'_>> {
 /// Formats a posterior probability, which is never certainty.
 fn format_confidence(probability: f64) -> String {
     match probability {
-        sure if sure >= 0.995 => "over 99 %".into(),
-        other => format!("{:.0} %", 100.0 * other),
+        sure if sure >= 0.995 => say("mapping-over-99").into(),
+        other => format!("{} %", format_fixed(100.0 * other, 0)),
     }
 }
 

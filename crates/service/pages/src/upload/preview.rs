@@ -3,6 +3,8 @@
 use sistership_model::trial::{Channel, Finding};
 use sistership_trials::{Exclusion, Refusal, TrialWithRows};
 
+use crate::language::say;
+use crate::numbers::format_fixed;
 use crate::picture::render_svg;
 use crate::plot::{ExcludedInterval, PlotTrack, TimePanels, plot_ground, plot_with_exclusions};
 
@@ -46,14 +48,15 @@ impl FilePreview {
     fn from_trial(read: &TrialWithRows, excluded: &[Exclusion]) -> Self {
         let trial = &read.trial;
         let tracks = [PlotTrack::from_trial(trial)];
-        let track = plot_ground(&tracks, None, &format!("Track of {}", trial.name));
-        let label = format!("Channels of {} over time; what is excluded is shaded", trial.name);
+        let track =
+            plot_ground(&tracks, None, &say("preview-track").with("name", &trial.name).to_string());
+        let label = say("preview-channels").with("name", &trial.name).to_string();
         let intervals = excluded_intervals(read, excluded);
         let (series, panels) = plot_with_exclusions(&tracks, &intervals, &label);
         Self {
             file: trial.name.clone(),
             rows: trial.len(),
-            duration: format!("{:.1} s", trial.duration_s()),
+            duration: format!("{} s", format_fixed(trial.duration_s(), 1)),
             errors: Vec::new(),
             remarks: trial.warnings.clone(),
             track: track.and_then(|plot| render_svg(&plot).ok()),

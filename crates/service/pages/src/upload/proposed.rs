@@ -37,6 +37,8 @@ pub(super) const TARGETS: [&str; 28] = [
     "apparent_wind_from",
     "depth",
 ];
+/// Reason of what the form gives.
+pub(super) const GIVEN: &str = "given on this page";
 /// Velocities that can be derived, by the name of their field.
 pub(super) const DERIVED: [(&str, Derivable); 3] =
     [("u", Derivable::U), ("v", Derivable::V), ("r", Derivable::R)];
@@ -56,6 +58,8 @@ pub struct UploadProposal {
     pub diagnose: bool,
     /// Name of the template by which the columns are read.
     pub template: Option<String>,
+    /// Notes on what was estimated.
+    pub notes: Vec<String>,
 }
 
 impl UploadProposal {

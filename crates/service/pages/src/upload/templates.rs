@@ -7,6 +7,7 @@ use sistership_trials::{ColumnGuess, ImportTemplate};
 use super::proposed::UploadProposal;
 use crate::error::{PageError, Result};
 use crate::form::FormFields;
+use crate::language::say;
 
 /// Prefixes of the values of the form's list: a template of the ship, or of the server.
 const OF_SHIP: &str = "ship:";
@@ -29,10 +30,11 @@ impl TemplateOffer {
         let offer = |row: &ImportTemplateRow| {
             let template: ImportTemplate = serde_json::from_str(&row.document).ok()?;
             let file = template.matching_file(guesses).map(str::to_owned);
-            let (prefix, owner) =
-                if row.ship.is_empty() { (OF_SERVER, " (server)") } else { (OF_SHIP, "") };
-            let value = format!("{prefix}{}", row.name);
-            Some(Self { value, label: format!("{}{owner}", row.name), file })
+            let (prefix, label) = match row.ship.is_empty() {
+                true => (OF_SERVER, say("templates-of-server").with("name", &row.name).into()),
+                false => (OF_SHIP, row.name.clone()),
+            };
+            Some(Self { value: format!("{prefix}{}", row.name), label, file })
         };
         rows.iter().filter_map(offer).collect()
     }
@@ -58,7 +60,7 @@ impl TemplatePlace {
             let name = text.strip_prefix(prefix)?.to_owned();
             Some(Self { ship: ship.to_owned(), name })
         });
-        found.ok_or_else(|| PageError::invalid_field("template", "choose one of the list"))
+        found.ok_or_else(|| PageError::invalid_field("template", say("upload-choose-template")))
     }
 
     /// Reads the name under which a template is to be kept.

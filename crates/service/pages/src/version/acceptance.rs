@@ -6,16 +6,17 @@ use serde_json::Value;
 use sistership_jobs::Archive;
 use sistership_jobs::archive::parse_vessel;
 use sistership_model::Vessel;
-use sistership_report::imo_verdict;
-use sistership_report::numbers::{format_fixed, format_significant, format_stated};
 use sistership_store::{SignOff, StoreError};
 
 use super::figures::CriterionRow;
 use super::{ManoeuvreCache, VersionPageInputs, gather_inputs, speed_words};
 use crate::conditions::{CONDITIONS, stated_text};
-use crate::date::format_date;
+use crate::date::{format_date, format_stored_day};
 use crate::error::Result;
+use crate::language::{Message, say};
+use crate::numbers::{format_fixed, format_significant, format_stated};
 use crate::shell::PageShell;
+use crate::terms::{imo_words, particular_words};
 
 /// Conditions that are among the facts of the ship, as its loading.
 const LOADING: [&str; 3] = ["draught_fore_m", "draught_aft_m", "displacement"];
@@ -54,7 +55,7 @@ struct SummaryCriterion<'a> {
 
 /// Fact of the summary: name, and value if it is known.
 struct SummaryFact {
-    name: &'static str,
+    name: String,
     value: Option<String>,
     /// Address of the form in which it is stated.
     form: String,
@@ -62,7 +63,7 @@ struct SummaryFact {
 
 /// Signature: role, and name and date if somebody has signed.
 struct Signature {
-    role: &'static str,
+    role: Message,
     person: String,
     date: String,
 }
@@ -107,7 +108,7 @@ impl SummaryInputs {
     pub fn render_html(&self, known: &ManoeuvreCache) -> Result<String> {
         let of = &self.of;
         let sailed = known.get_or_simulate(&of.version.head.id, &of.document, &of.law)?;
-        let (verdict, verdict_class) = imo_verdict(&sailed.verdicts());
+        let (verdict, verdict_class) = imo_words(&sailed.verdicts());
         let lpp_m = self.vessel.particular("lpp_m");
         let (ship_facts, trial_facts) = (self.ship_facts(), self.trial_facts());
         let page = SummaryPage {
@@ -134,14 +135,20 @@ impl SummaryInputs {
         let volume = volume.map(|volume| format!("{} m³", format_stated(volume, 6)));
         let speed = self.of.document.model.speed_m_s.map(speed_words);
         let form = format!("/ships/{}/particulars", self.of.version.head.model);
-        let fact = |name, value| SummaryFact { name, value, form: form.clone() };
+        let fact = |name: String, value| SummaryFact { name, value, form: form.clone() };
         vec![
-            fact("Length between perpendiculars", metres("lpp_m")),
-            fact("Beam", metres("beam_m")),
-            fact("Draught", self.stated_draught().or_else(|| metres("draught_m"))),
-            fact("Trim", self.trim_text()),
-            fact("Displacement", self.stated_words("displacement").or(volume)),
-            fact("Approach speed", speed),
+            fact(particular_words("lpp_m").0, metres("lpp_m")),
+            fact(particular_words("beam_m").0, metres("beam_m")),
+            fact(
+                say("acceptance-draught").into(),
+                self.stated_draught().or_else(|| metres("draught_m")),
+            ),
+            fact(say("acceptance-trim").into(), self.trim_text()),
+            fact(
+                say("acceptance-displacement").into(),
+                self.stated_words("displacement").or(volume),
+            ),
+            fact(say("acceptance-speed").into(), speed),
         ]
     }
 
@@ -154,7 +161,7 @@ impl SummaryInputs {
             .filter(|field| !LOADING.contains(&field.name))
             .map(|field| (field, self.stated_words(field.name)))
             .filter(|(field, value)| field.name != "remarks" || value.is_some())
-            .map(|(field, value)| SummaryFact { name: field.label, value, form: form.clone() })
+            .map(|(field, value)| SummaryFact { name: field.label(), value, form: form.clone() })
             .collect()
     }
 
@@ -168,7 +175,11 @@ impl SummaryInputs {
                 all.push(text);
             }
         }
-        (!all.is_empty()).then(|| all.join("; "))
+        let shown = |text: &&str| match name {
+            "date" => format_stored_day(text),
+            _ => (*text).to_owned(),
+        };
+        (!all.is_empty()).then(|| all.iter().map(shown).collect::<Vec<_>>().join("; "))
     }
 
     /// Draughts fore and aft as they are stated for the first trial that has both, m.
@@ -183,7 +194,8 @@ impl SummaryInputs {
 
     fn stated_draught(&self) -> Option<String> {
         let (fore, aft) = self.stated_draughts()?;
-        Some(format!("{} m fore, {} m aft", format_stated(fore, 5), format_stated(aft, 5)))
+        let text = say("acceptance-draughts").with("fore", format_stated(fore, 5));
+        Some(text.with("aft", format_stated(aft, 5)).into())
     }
 
     fn trim_text(&self) -> Option<String> {
@@ -191,8 +203,9 @@ impl SummaryInputs {
         // Draughts of the ship are those of a usual loading: those of the trials count first.
         let own = || known("draught_fore_m").zip(known("draught_aft_m"));
         let (fore, aft) = self.stated_draughts().or_else(own)?;
-        let end = if aft < fore { "bow" } else { "stern" };
-        Some(format!("{} m by the {end}", format_fixed((aft - fore).abs(), 2)))
+        let text =
+            if aft < fore { say("acceptance-trim-bow") } else { say("acceptance-trim-stern") };
+        Some(text.with("trim", format_fixed((aft - fore).abs(), 2)).into())
     }
 
     fn signatures(&self) -> [Signature; 3] {
@@ -205,9 +218,9 @@ impl SummaryInputs {
         };
         let (person, date) = (head.author.clone(), format_date(head.created_us));
         [
-            Signature { role: "Made by", person, date },
-            by("Checked by", "checked"),
-            by("Approved by", "approved"),
+            Signature { role: say("acceptance-made"), person, date },
+            by(say("acceptance-checked"), "checked"),
+            by(say("acceptance-approved"), "approved"),
         ]
     }
 }

@@ -1,8 +1,9 @@
 //! The list of coefficients on the page of a version.
 
 use sistership_model::{Law, Model};
-use sistership_report::axis_words;
-use sistership_report::numbers::{format_fixed, format_significant};
+
+use crate::language::say_word;
+use crate::numbers::{format_fixed, format_significant};
 
 /// A coefficient with its standard error.
 pub(super) struct CoefficientRow {
@@ -18,7 +19,7 @@ pub(super) struct CoefficientRow {
 
 /// Coefficients of an axis, those that the data determine best first.
 pub(super) struct AxisCoefficients {
-    pub axis: String,
+    pub axis: &'static str,
     pub rows: Vec<CoefficientRow>,
     /// Number of coefficients that are determined.
     pub determined: usize,
@@ -27,24 +28,30 @@ pub(super) struct AxisCoefficients {
 /// Largest ratio of standard error and value of a coefficient that counts as determined.
 const DETERMINED_SHARE: f64 = 0.25;
 
+impl AxisCoefficients {
+    /// Axis in words.
+    pub fn words(&self) -> String {
+        say_word("axis", self.axis)
+    }
+}
+
 /// Order of the axes; others come first.
 const AXES: [&str; 5] = ["X", "Y", "K", "N", "parameters"];
+/// Axis of coefficients of all other names.
+const OTHER_AXIS: &str = "other";
 
 /// Returns the coefficients by axis, the determined ones first, then in the order of the law.
 pub(super) fn coefficients_by_axis(model: &Model, law: &Law) -> Vec<AxisCoefficients> {
     let mut axes: Vec<AxisCoefficients> = Vec::new();
     for row in coefficient_rows(model, law) {
-        let axis = axis_words(row.name.split('_').next().unwrap_or_default());
+        let name = row.name.split('_').next().unwrap_or_default();
+        let axis = AXES.into_iter().find(|axis| *axis == name).unwrap_or(OTHER_AXIS);
         match axes.iter_mut().find(|known| known.axis == axis) {
             Some(known) => known.rows.push(row),
-            None => axes.push(AxisCoefficients {
-                axis: axis.to_owned(),
-                rows: vec![row],
-                determined: 0,
-            }),
+            None => axes.push(AxisCoefficients { axis, rows: vec![row], determined: 0 }),
         }
     }
-    axes.sort_by_key(|one| AXES.iter().position(|axis| axis_words(axis) == one.axis));
+    axes.sort_by_key(|one| AXES.iter().position(|axis| *axis == one.axis));
     for one in &mut axes {
         // Stable: coefficients without an error keep the order of the law, after the others.
         one.rows.sort_by(|a, b| a.relative.total_cmp(&b.relative));

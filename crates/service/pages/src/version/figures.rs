@@ -1,8 +1,11 @@
 //! Figures of the standard manoeuvres of a version, with uncertainty bands if its report has them.
 
 use serde_json::Value;
-use sistership_report::numbers::{format_fixed, format_known, format_significant};
 use sistership_simulation::manoeuvre::{NamedFigure, StandardManoeuvres};
+
+use crate::language::{Message, say, say_word};
+use crate::numbers::{format_fixed, format_known, format_significant};
+use crate::terms::figure_words;
 
 /// A band wider than this share of the figure is marked as wide.
 const WIDE_SHARE: f64 = 0.5;
@@ -21,6 +24,8 @@ pub(super) struct FigureRow {
 #[derive(Debug)]
 pub(super) struct CriterionRow {
     pub name: String,
+    /// Name in reports.
+    pub key: String,
     pub unit: String,
     pub value: String,
     /// The value as a number, if the manoeuvre reached it.
@@ -28,7 +33,7 @@ pub(super) struct CriterionRow {
     pub pass: Option<bool>,
     pub band: String,
     pub limit: String,
-    pub verdict: &'static str,
+    pub verdict: String,
     pub class: &'static str,
     /// Share of the models drawn from the posterior that meet it.
     pub share: String,
@@ -48,26 +53,32 @@ pub(super) fn figure_rows(
         let name = format!("IMO: {}", criterion.criterion);
         let own = find_band(&name, bands);
         let share = own.and_then(|band| band["pass"].as_f64());
-        let (verdict, class) = match criterion.pass {
-            Some(true) => ("met", "good"),
-            Some(false) => ("not met", "bad"),
-            None => ("unknown", ""),
-        };
+        let (verdict, class) = pass_words(criterion.pass);
         CriterionRow {
-            name: criterion.criterion.clone(),
-            unit: criterion.unit.clone(),
+            name: say_word("criterion", &criterion.criterion),
+            key: criterion.criterion.clone(),
+            unit: say_word("unit", &criterion.unit),
             value: format_value(criterion.value),
             number: criterion.value,
             pass: criterion.pass,
             band: own.and_then(band_limits).map_or_else(String::new, format_limits),
             limit: format_significant(criterion.limit, 3),
-            verdict,
+            verdict: verdict.into(),
             class,
             share: share
                 .map_or_else(String::new, |share| format!("{} %", format_fixed(100.0 * share, 0))),
         }
     });
     (plain.map(|figure| figure_row(figure, bands)).collect(), criteria.collect())
+}
+
+/// Returns the verdict on a criterion in a word, and its class.
+pub(crate) fn pass_words(pass: Option<bool>) -> (Message, &'static str) {
+    match pass {
+        Some(true) => (say("pass-met"), "good"),
+        Some(false) => (say("pass-not-met"), "bad"),
+        None => (say("pass-unknown"), ""),
+    }
 }
 
 fn format_value(value: Option<f64>) -> String {
@@ -81,8 +92,8 @@ fn figure_row(figure: &NamedFigure, bands: &Value) -> FigureRow {
         figure.value.is_some_and(|value| high - low > WIDE_SHARE * value.abs())
     };
     FigureRow {
-        name: figure.name.clone(),
-        unit: figure.unit.clone(),
+        name: figure_words(&figure.name),
+        unit: say_word("unit", &figure.unit),
         value: format_value(figure.value),
         band: band.map_or_else(String::new, format_limits),
         wide: band.is_some_and(wide),
@@ -95,7 +106,8 @@ fn band_limits(band: &Value) -> Option<(f64, f64)> {
 }
 
 fn format_limits((low, high): (f64, f64)) -> String {
-    format!("{} to {}", format_significant(low, 3), format_significant(high, 3))
+    let text = say("range-text").with("low", format_significant(low, 3));
+    text.with("high", format_significant(high, 3)).into()
 }
 
 /// Returns the band of a figure, by its name.

@@ -6,6 +6,7 @@ use sistership_report::plots::{Shape, SvgPlot};
 use sistership_store::{PageRequest, VersionHead};
 
 use crate::error::Result;
+use crate::language::say;
 use crate::picture::{line_shape, text_shape};
 
 /// Number of ancestors in the picture.
@@ -90,7 +91,7 @@ impl VersionLineage {
         SvgPlot {
             width,
             height: 20.0 + rows as f64 * step + 8.0,
-            label: format!("Lineage of {}; the list below has the same content", self.own.label),
+            label: say("lineage-label").with("version", &self.own.label).into(),
             shapes,
         }
     }
@@ -99,11 +100,10 @@ impl VersionLineage {
     fn input_texts(&self, at: (f64, f64)) -> Vec<Shape> {
         let trials = match self.trials.len() {
             0 => None,
-            1 => Some("of 1 trial".to_owned()),
-            count => Some(format!("of {count} trials")),
+            count => Some(say("lineage-trials").with("count", count)),
         };
-        let effects =
-            (!self.effects.is_empty()).then(|| format!("with {}", self.effects.join(", ")));
+        let with = || say("lineage-effects").with("effects", self.effects.join(", "));
+        let effects = (!self.effects.is_empty()).then(with);
         let words = trials.into_iter().chain(effects);
         words
             .enumerate()

@@ -19,15 +19,17 @@ use sistership_simulation::{PlantError, Ship, Trajectory};
 
 use super::figures::{self, CriterionRow, FigureRow};
 use crate::error::Result;
+use crate::language::{Language, say};
 use crate::plot::{LINES, PlotTrack, track_chart};
 
 /// Memory of the cache, bytes.
 const CACHE_BYTES: u64 = 32 << 20;
 /// Estimated number of versions in the cache.
 const CACHED_VERSIONS: usize = 500;
-/// Manoeuvres in the plots, by their index among the standard manoeuvres.
+/// Manoeuvres in the plots, by their index among the standard manoeuvres, and the keys of their
+/// names.
 const PLOTTED: [(usize, &str); 3] =
-    [(0, "turn, 35 deg to starboard"), (1, "turn, 35 deg to port"), (4, "zigzag 20/20")];
+    [(0, "plot-turn-starboard"), (1, "plot-turn-port"), (4, "plot-zigzag-line")];
 /// Zigzag among them, which has a chart of its own.
 const ZIGZAG: &str = PLOTTED[2].1;
 
@@ -44,7 +46,7 @@ pub(super) struct ManoeuvreResults {
     pub wide: bool,
     pub notes: Vec<String>,
     /// Name and chart of the turning circles and of the zigzag, HTML.
-    pub charts: Vec<(&'static str, String)>,
+    pub charts: Vec<(String, String)>,
 }
 
 #[derive(Debug, Clone)]
@@ -76,12 +78,14 @@ impl ManoeuvreCache {
         document: &VersionDocument,
         law: &Law,
     ) -> Result<Arc<ManoeuvreResults>> {
-        if let Some(known) = self.0.get(id) {
+        // Names of figures and charts are in the language of the page.
+        let key = format!("{id} {}", Language::current().code());
+        if let Some(known) = self.0.get(&key) {
             return Ok(known);
         }
         let manoeuvres = Arc::new(ManoeuvreResults::from_version(document, law)?);
         // Two requests at a time may both simulate; the results are equal.
-        self.0.insert(id.to_owned(), Arc::clone(&manoeuvres));
+        self.0.insert(key, Arc::clone(&manoeuvres));
         Ok(manoeuvres)
     }
 }
@@ -89,7 +93,7 @@ impl ManoeuvreCache {
 impl ManoeuvreResults {
     /// Name of each criterion, and whether it is met.
     pub fn verdicts(&self) -> Vec<(&str, Option<bool>)> {
-        self.criteria.iter().map(|row| (row.name.as_str(), row.pass)).collect()
+        self.criteria.iter().map(|row| (row.key.as_str(), row.pass)).collect()
     }
 
     fn from_version(document: &VersionDocument, law: &Law) -> Result<Self> {
@@ -105,12 +109,14 @@ impl ManoeuvreResults {
         let notes = figures.failures.clone();
         let (figures, criteria) = figures::figure_rows(&figures, &document.report);
         let (zigzags, circles): (Vec<PlotTrack>, Vec<PlotTrack>) =
-            tracks.into_iter().partition(|track| track.name == ZIGZAG);
+            tracks.into_iter().partition(|track| track.name == say(ZIGZAG).to_string());
         let hull = HullOutline::from_particulars(&model.particulars);
         let mut charts = Vec::new();
-        for (name, tracks) in [("Turning circles, 35 deg", circles), ("Zigzag 20/20", zigzags)] {
+        for (key, tracks) in [("plot-turns", circles), ("plot-zigzag", zigzags)] {
+            let name = String::from(say(key));
             if !tracks.is_empty() {
-                charts.push((name, track_chart(&tracks, hull, name).render()?));
+                let chart = track_chart(&tracks, hull, &name).render()?;
+                charts.push((name, chart));
             }
         }
         Ok(Self {
@@ -140,7 +146,7 @@ fn simulate_manoeuvres(
     };
     let named = tracks.into_iter().zip(PLOTTED).zip(LINES);
     let tracks = named.filter_map(|((track, (_, name)), style)| {
-        Some(PlotTrack::from_simulation(style, name, &track?, ship.has_roll()))
+        Some(PlotTrack::from_simulation(style, say(name), &track?, ship.has_roll()))
     });
     Ok((figures, tracks.collect()))
 }
@@ -176,7 +182,7 @@ mod tests {
         let known = ManoeuvreCache::default();
         let first = known.get_or_simulate("a", &document, law).unwrap();
         assert!(Arc::ptr_eq(&first, &known.get_or_simulate("a", &document, law).unwrap()));
-        let names: Vec<&str> = first.charts.iter().map(|(name, _)| *name).collect();
+        let names: Vec<&str> = first.charts.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(names, ["Turning circles, 35 deg", "Zigzag 20/20"]);
         let ship = Ship::new(&document.model, law).unwrap();
         let refined = simulate_standard_manoeuvres(&ship, &ManoeuvreSettings::default());

@@ -2,9 +2,10 @@
 
 pub mod acceptance;
 mod coefficients;
-mod figures;
+pub(crate) mod figures;
 mod lineage;
 mod manoeuvres;
+pub mod turn;
 
 use std::sync::Arc;
 
@@ -14,8 +15,7 @@ use sistership_jobs::aliases::CHAMPION;
 use sistership_jobs::archive::version_document;
 use sistership_jobs::version::VersionDocument;
 use sistership_model::Law;
-use sistership_report::numbers::format_stated;
-use sistership_report::{imo_verdict, variable_words};
+use sistership_report::variable_words;
 use sistership_store::{PageRequest, Version};
 
 use self::coefficients::AxisCoefficients;
@@ -23,8 +23,11 @@ use self::lineage::VersionLineage;
 use self::manoeuvres::ManoeuvreResults;
 use crate::date::format_date;
 use crate::error::Result;
+use crate::language::{has_word, say_word};
+use crate::numbers::{format_fixed, format_stated};
 use crate::picture::render_svg;
 use crate::shell::PageShell;
+use crate::terms::imo_words;
 
 pub use self::manoeuvres::ManoeuvreCache;
 
@@ -117,7 +120,7 @@ impl VersionPageInputs {
             coefficients: coefficients::coefficients_by_axis(model, &self.law),
             speed: model.speed_m_s.map(speed_words),
             effects: effect_rows(model),
-            verdict: imo_verdict(&sailed.verdicts()),
+            verdict: imo_words(&sailed.verdicts()),
             sailed,
             validity: validity_rows(model),
             lineage: render_svg(&self.lineage.draw())?,
@@ -145,7 +148,8 @@ fn effect_rows(model: &sistership_model::Model) -> Vec<EffectRow> {
 
 /// Returns a speed in metres per second and knots.
 fn speed_words(speed_m_s: f64) -> String {
-    format!("{speed_m_s:.2} m/s ({:.1} kn)", speed_m_s * 3600.0 / 1852.0)
+    let knots = format_fixed(speed_m_s * 3600.0 / 1852.0, 1);
+    format!("{} m/s ({knots} kn)", format_fixed(speed_m_s, 2))
 }
 
 /// Returns name, minimum and maximum of the ranges that the trials covered, in words and units of
@@ -154,7 +158,12 @@ fn validity_rows(model: &sistership_model::Model) -> Vec<(String, String, String
     let ranges = model.validity.iter().flat_map(|region| &region.ranges);
     let row = |(name, [low, high]): (&String, &[f64; 2])| {
         let (words, unit, shown) = variable_words(name);
-        let name = if unit == "SI" { words.to_owned() } else { format!("{words} [{unit}]") };
+        let words = match has_word("variable", name) {
+            true => say_word("variable", name),
+            false => words.to_owned(),
+        };
+        let name =
+            if unit == "SI" { words } else { format!("{words} [{}]", say_word("unit", unit)) };
         (name, format_stated(shown(*low), 4), format_stated(shown(*high), 4))
     };
     ranges.map(row).collect()

@@ -9,6 +9,8 @@ use sistership_store::StoreError;
 use super::citation::{Citation, citations};
 use super::equations::formula_mathml;
 use crate::error::Result;
+use crate::language::{MarkupMessage, Message, MessageArgument, say, say_html};
+use crate::numbers::format_plain;
 use crate::shell::PageShell;
 
 #[derive(Template)]
@@ -17,7 +19,7 @@ struct EffectPage {
     shell: PageShell,
     name: String,
     title: String,
-    acts_on: &'static str,
+    acts_on: MarkupMessage,
     note: Option<String>,
     forms: Vec<FormRows>,
     searched: bool,
@@ -48,7 +50,7 @@ pub fn effect_page(shell: PageShell, name: &str) -> Result<String> {
         shell: shell.at_place("/zoo"),
         name: effect.name.clone(),
         title: effect.title.clone(),
-        acts_on: acts_on_text(effect.acts_on),
+        acts_on: acts_on_text(effect.acts_on).with("name", &effect.name),
         note: effect.note.clone(),
         forms: effect.forms.iter().map(|form| form_rows(&form.file)).collect(),
         searched: effect.grammar.is_some(),
@@ -57,31 +59,43 @@ pub fn effect_page(shell: PageShell, name: &str) -> Result<String> {
     Ok(page.render()?)
 }
 
-fn acts_on_text(acts_on: ActsOn) -> &'static str {
+fn acts_on_text(acts_on: ActsOn) -> MarkupMessage {
     match acts_on {
-        ActsOn::Force => "adds forces",
-        ActsOn::Inflow => "changes the inflow of hull, propeller or rudder",
-        ActsOn::Measurement => "changes the readings of instruments",
+        ActsOn::Force => say_html("effect-force"),
+        ActsOn::Inflow => say_html("effect-inflow"),
+        ActsOn::Measurement => say_html("effect-measurement"),
     }
 }
 
 fn form_rows(form: &FormFile) -> FormRows {
     let parameters = form.parameters.iter().map(|(name, of)| {
         let [low, high] = of.bounds;
-        (name.clone(), of.unit.clone(), of.meaning.clone(), format!("{low} to {high}"))
+        (name.clone(), of.unit.clone(), of.meaning.clone(), {
+            let text = say("range-text").with("low", format_plain(low));
+            text.with("high", format_plain(high)).into()
+        })
     });
     let values = form.values.iter().map(|(name, formula)| (format!("{name} ="), formula));
-    let sees =
-        form.sees.iter().map(|(name, formula)| (format!("inflow in place of {name}"), formula));
-    let forces = form.forces.iter().map(|(axis, formula)| (format!("adds to {axis}"), formula));
-    let accelerates =
-        form.accelerates.iter().map(|(axis, formula)| (format!("accelerates {axis} by"), formula));
-    let coefficients =
-        form.coefficients.iter().map(|(name, formula)| (format!("{name} becomes"), formula));
-    let lags = form.lags.iter().map(|(name, formula)| (format!("lag of {name}"), formula));
-    let bands = form.bands.iter().map(|(name, formula)| (format!("dead band of {name}"), formula));
-    let measures =
-        form.measures.iter().map(|(channel, formula)| (format!("{channel} is read as"), formula));
+    let sees = form.sees.iter().map(|(name, formula)| (named(say("formula-sees"), name), formula));
+    let forces = form
+        .forces
+        .iter()
+        .map(|(axis, formula)| (named(say("formula-adds"), axis.to_string()), formula));
+    let accelerates = form
+        .accelerates
+        .iter()
+        .map(|(axis, formula)| (named(say("formula-accelerates"), axis.to_string()), formula));
+    let coefficients = form
+        .coefficients
+        .iter()
+        .map(|(name, formula)| (named(say("formula-becomes"), name), formula));
+    let lags = form.lags.iter().map(|(name, formula)| (named(say("formula-lag"), name), formula));
+    let bands =
+        form.bands.iter().map(|(name, formula)| (named(say("formula-dead-band"), name), formula));
+    let measures = form
+        .measures
+        .iter()
+        .map(|(channel, formula)| (named(say("formula-reads"), channel.to_string()), formula));
     let all = values.chain(sees).chain(forces).chain(accelerates).chain(coefficients);
     FormRows {
         name: form.name.clone(),
@@ -95,4 +109,8 @@ fn form_rows(form: &FormFile) -> FormRows {
             .map(|(what, formula)| (what, formula_mathml(formula)))
             .collect(),
     }
+}
+
+fn named(message: Message, name: impl MessageArgument) -> String {
+    message.with("name", name).into()
 }

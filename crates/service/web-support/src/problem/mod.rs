@@ -6,6 +6,7 @@ use axum::Json;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
+use sistership_pages::PageProblem;
 use utoipa::ToSchema;
 
 /// Media type of [`Problem`].
@@ -155,7 +156,14 @@ impl Problem {
         };
         let faults: Vec<_> = self.errors.iter().map(place).collect();
         let instance = self.instance.as_deref().unwrap_or_default();
-        sistership_pages::problem_page(self.title, &self.detail, &faults, instance).ok()
+        let page = PageProblem {
+            kind: self.kind,
+            title: self.title,
+            detail: &self.detail,
+            faults: &faults,
+            instance,
+        };
+        sistership_pages::problem_page(page).ok()
     }
 
     /// HTTP status.

@@ -175,7 +175,7 @@ impl FormParts {
         let trial = |part: &FormPart| ManifestTrial::from_file_name(part.name.clone());
         let manifest = canonical_manifest(ship, self.files.iter().map(trial).collect())?;
         Ok(TrialUpload::from_files(
-            manifest,
+            manifest.into(),
             true,
             self.files.into_iter().map(|part| part.file).collect(),
         ))

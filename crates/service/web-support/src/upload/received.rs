@@ -24,10 +24,14 @@ pub struct TrialUpload {
 
 impl TrialUpload {
     /// Creates an upload of files each of which is a trial, in the order of the manifest.
-    pub(super) fn from_files(manifest: Manifest, diagnose: bool, files: Vec<SpooledFile>) -> Self {
+    pub(super) fn from_files(
+        manifest: ManifestFile,
+        diagnose: bool,
+        files: Vec<SpooledFile>,
+    ) -> Self {
         // One file for each trial, and no sensors.
         let places = (0..files.len()).map(|file| (file, Vec::new())).collect();
-        Self { manifest: manifest.into(), diagnose, files, places }
+        Self { manifest, diagnose, files, places }
     }
 
     /// Returns the ship of the trials.

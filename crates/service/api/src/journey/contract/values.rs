@@ -4,7 +4,7 @@ use regex::Regex;
 use serde_json::Value;
 
 /// Texts that match some pattern.
-const SAMPLES: [&str; 9] = [
+const SAMPLES: [&str; 10] = [
     "mariner",
     "walked",
     "*",
@@ -14,6 +14,7 @@ const SAMPLES: [&str; 9] = [
     "IjAi",
     "a",
     "https://example.com/hook",
+    "2026-11-29",
 ];
 /// Texts that most patterns refuse.
 const ODD: [&str; 9] = ["", " ", "a b", "-", "A", "\u{7}", "é", "a/b/c", "\"\""];

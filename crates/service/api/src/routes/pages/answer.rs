@@ -7,10 +7,11 @@ use axum::http::{HeaderName, HeaderValue, header};
 use axum::response::{IntoResponse, Redirect, Response};
 use futures::{FutureExt as _, StreamExt as _, stream};
 use sistership_jobs::budget::{RequestMemory, run_with_request_memory};
-use sistership_pages::from_content;
+use sistership_pages::{Language, from_content};
 
 use crate::problem::Result;
 use crate::rights::carry_actor;
+use crate::web::language::VARY;
 
 const REFERRER_POLICY: HeaderName = header::REFERRER_POLICY;
 
@@ -26,6 +27,7 @@ pub(super) fn stream_page(
             let page = page.unwrap_or_else(|problem| problem.to_page().unwrap_or_default());
             from_content(&page).to_owned()
         });
+    let content = Language::current().run_scoped(content);
     let parts = stream::once(std::future::ready(beginning)).chain(stream::once(content));
     page_response(Body::from_stream(parts.map(Ok::<_, Infallible>)))
 }
@@ -37,8 +39,19 @@ pub(super) fn page_response(html: impl Into<Body>) -> Response {
         (header::CONTENT_SECURITY_POLICY, sistership_pages::security_policy()),
         (header::CACHE_CONTROL, "no-cache"),
         (REFERRER_POLICY, "same-origin"),
+        (header::VARY, VARY),
     ];
     (head, html.into()).into_response()
+}
+
+/// Returns an SVG picture with the value of its `Cache-Control`.
+pub(super) fn picture_response(svg: &str, cached: &'static str) -> Response {
+    let head = [
+        (header::CONTENT_TYPE, "image/svg+xml"),
+        (header::CONTENT_SECURITY_POLICY, "default-src 'none'"),
+        (header::CACHE_CONTROL, cached),
+    ];
+    (head, svg.to_owned()).into_response()
 }
 
 /// Redirects to a page after an action (RFC 9110, 15.4.4).

@@ -11,13 +11,14 @@ use sistership_auth::Role;
 use sistership_pages::upload::{
     self, FilePreview, RangeRequest, StoredUpload, TemplatePlace, UploadProposal,
 };
-use sistership_pages::{FormFields, TOKEN_FIELD};
+use sistership_pages::{FormFields, TOKEN_FIELD, say};
 use sistership_trials::{
     Exclusion, GivenColumn, ImportTemplate, ManifestFile, ManifestProposal, ProposalRequest,
     propose_files,
 };
 
 use super::answer::{page_response, redirect_to};
+use super::draft_estimates;
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
 use crate::rights::check_server_role;
@@ -61,7 +62,7 @@ pub(super) async fn receive_files(
         let name = plain_name(field.file_name().unwrap_or_default())?;
         if files.len() >= app.limits().upload_files || files.iter().any(|(known, _)| *known == name)
         {
-            return Err(Problem::invalid(&name, "is listed twice, or there are too many files"));
+            return Err(Problem::invalid(&name, say("upload-listed-twice")));
         }
         let SpooledFile { path, sha256 } = spool_stream(app.spool(), field).await?;
         path.persist(folder.path().join(&name)).map_err(|error| write_problem(error.error))?;
@@ -79,7 +80,7 @@ fn plain_name(path: &str) -> Result<String> {
     let plain = !name.is_empty() && name.len() <= 200 && !name.starts_with('.');
     match plain && !name.chars().any(char::is_control) {
         true => Ok(name.to_owned()),
-        false => Err(Problem::invalid("file", "choose files with names of 1 to 200 bytes")),
+        false => Err(Problem::invalid("file", say("upload-file-names"))),
     }
 }
 
@@ -98,9 +99,11 @@ async fn propose_draft(
         manifest,
         diagnose: true,
         template: None,
+        notes: Vec::new(),
     };
     let draft = UploadDraft { folder, files, proposed: proposed.into() };
     exclude_faults(app, &draft).await?;
+    draft_estimates::state_estimates(app, &draft, draft_upload(&draft, app)?).await?;
     Ok(draft)
 }
 
@@ -120,7 +123,7 @@ async fn identify_files(
         propose_files(&ProposalRequest { ship: &ship, files: &files, folder, given: &given })
     };
     app.read_files(look).await?.map_err(|errors| {
-        let why = "a file cannot be read; see its errors below";
+        let why = say("upload-cannot-read");
         let problem = Problem::new(axum::http::StatusCode::UNPROCESSABLE_ENTITY, why);
         errors.into_iter().fold(problem, |problem, error| {
             let name = error.file.rsplit('/').next().unwrap_or_default().to_owned();
@@ -163,9 +166,7 @@ fn draft_upload(draft: &UploadDraft, app: &App) -> Result<TrialUpload> {
 }
 
 fn find_draft(app: &App, ship: &str, id: &str) -> Result<Arc<UploadDraft>> {
-    app.drafts().get(ship, id).ok_or_else(|| {
-        Problem::not_found("this upload has expired or was stored already; choose the files again")
-    })
+    app.drafts().get(ship, id).ok_or_else(|| Problem::not_found(say("upload-expired")))
 }
 
 pub(super) async fn review_draft(
@@ -241,7 +242,7 @@ async fn use_template(app: &App, draft: &UploadDraft, place: TemplatePlace) -> R
     let rows = app.store().templates().list_for_ship(&draft.current_proposal().ship).await?;
     let TemplatePlace { ship, name } = place;
     let row = rows.into_iter().find(|row| row.ship == ship && row.name == name);
-    let row = row.ok_or_else(|| Problem::invalid("template", "was removed; choose another"))?;
+    let row = row.ok_or_else(|| Problem::invalid("template", say("templates-removed")))?;
     let template: ImportTemplate =
         serde_json::from_str(&row.document).map_err(Problem::internal)?;
     let given = template.given_columns().map_err(|why| Problem::invalid("template", why))?;
@@ -250,7 +251,8 @@ async fn use_template(app: &App, draft: &UploadDraft, place: TemplatePlace) -> R
     let ManifestProposal { guesses, manifest, .. } =
         identify_files(app, &before.ship, folder, files, given).await?;
     draft.set_proposal(UploadProposal { guesses, manifest, template: Some(name), ..before });
-    exclude_faults(app, draft).await
+    exclude_faults(app, draft).await?;
+    draft_estimates::state_estimates(app, draft, draft_upload(draft, app)?).await
 }
 
 async fn save_template(app: &App, draft: &UploadDraft, place: &TemplatePlace) -> Result<()> {

@@ -2,8 +2,10 @@
 
 mod answer;
 mod draft;
+mod draft_estimates;
 mod example;
 mod form_actions;
+mod language;
 mod new_ship;
 mod openid;
 mod people;
@@ -27,6 +29,8 @@ pub(super) fn page_routes(limits: &Limits) -> Router<App> {
         .route("/ships", post(new_ship::create_ship))
         .route("/example", post(example::load_example))
         .route("/ships/{ship}", get(views::ship_page))
+        .route("/ships/{ship}/turn.svg", get(views::champion_turn))
+        .route("/ships/{ship}/versions/{number}/turn.svg", get(views::version_turn))
         .route("/ships/{ship}/refine", post(form_actions::refine_ship))
         .route("/ships/{ship}/diagnose", post(form_actions::diagnose_ship))
         .route("/ships/{ship}/champion", post(form_actions::promote_version))
@@ -81,6 +85,7 @@ pub(super) fn page_routes(limits: &Limits) -> Router<App> {
         .route("/webhooks/address", post(people::set_address))
         .route("/webhooks/{id}/end", post(people::end_webhook))
         .route("/audit", get(people::audit_page))
+        .route("/language", post(language::choose_language))
         .layer(DefaultBodyLimit::max(FORM_BYTES));
     // Uploads have a limit of their own.
     let upload = Router::new()

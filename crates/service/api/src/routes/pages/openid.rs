@@ -6,7 +6,7 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use sistership_auth::openid::{LIFETIME_S, SignInPurpose};
 use sistership_pages::people::ProviderLink;
-use sistership_pages::{FormFields, people};
+use sistership_pages::{FormFields, people, say};
 
 use super::answer::{local_path, page_response, redirect_to, with_cookie};
 use super::people::{current_caller, sign_in_page, with_session};
@@ -60,10 +60,7 @@ pub(super) async fn link_account(
 ) -> Result<Response> {
     let RequestActor { principal, .. } = current_caller()?;
     if !matches!(principal.kind, AuthenticationKind::Session { .. }) {
-        return Err(Problem::invalid(
-            "identity",
-            "sign in first, so that there is an account to link",
-        ));
+        return Err(Problem::invalid("identity", say("account-sign-in-to-link")));
     }
     let purpose = SignInPurpose::Link(principal.name.clone());
     let begun = app.accounts().begin_at_provider(purpose, "/account").await?;

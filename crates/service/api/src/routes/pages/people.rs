@@ -7,8 +7,9 @@ use axum::extract::{FromRequest as _, Request, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::Response;
 use sistership_auth::Grant;
+use sistership_jobs::webhooks::MessageFormat;
 use sistership_pages::people::{LinkedIdentities, ProviderLink};
-use sistership_pages::{FormFields, audit, people};
+use sistership_pages::{FormFields, audit, people, say};
 use sistership_store::{KeyRow, User};
 
 use super::super::webhooks;
@@ -16,7 +17,7 @@ use super::answer::{local_path, page_response, redirect_to, with_cookie};
 use crate::app::App;
 use crate::problem::{Problem, Result};
 use crate::rights::{AuthenticationKind, RequestActor, current_actor};
-use crate::web::field::{KeyPrefix, UserName};
+use crate::web::field::{KeyPrefix, UserName, WebAddress};
 use crate::web::form::{PageForm, page_shell};
 use crate::web::guard::origin_of;
 use crate::web::{Id, PathParams, QueryParams};
@@ -40,7 +41,7 @@ pub(super) async fn sign_in_form(
 pub(super) async fn sign_in_user(State(app): State<App>, request: Request) -> Result<Response> {
     let addressed = host::request_authority(&request)?;
     if !host::is_same_origin(request.headers(), addressed.as_ref())? {
-        let why = "sign in on the page of this server; the request comes from another web site";
+        let why = say("sign-in-other-site");
         return Err(Problem::new(StatusCode::FORBIDDEN, why));
     }
     let from = origin_of(request.extensions());
@@ -102,8 +103,8 @@ pub(super) async fn account_page(
     let principal = Arc::clone(&current_caller()?.principal);
     let roles = principal.rights.grants().iter().map(ToString::to_string).collect();
     let notice = match FormFields::from(query).get_text("done") {
-        Some("password") => Some("The password is changed; sign in again on your other devices."),
-        Some("link") => Some("Your account is linked."),
+        Some("password") => Some(say("account-password-changed").to_string()),
+        Some("link") => Some(say("account-linked").to_string()),
         _ => None,
     };
     let identities = app.store().identities().list_by_user(&principal.name).await?;
@@ -114,7 +115,7 @@ pub(super) async fn account_page(
         &principal.name,
         roles,
         known,
-        notice,
+        notice.as_deref(),
     )?))
 }
 
@@ -126,16 +127,13 @@ pub(super) async fn change_password(
 ) -> Result<Response> {
     let RequestActor { principal, origin } = current_caller()?;
     if !matches!(principal.kind, AuthenticationKind::Session { .. }) {
-        return Err(Problem::invalid(
-            "old",
-            "sign in first; a key or this machine has no password",
-        ));
+        return Err(Problem::invalid("old", say("account-sign-in-first")));
     }
     let (old, new) = (form.required_text("old")?, form.required_text("new")?);
     // A session alone must not be enough to change the password.
     app.accounts().verify_password_of(&principal.name, old, &origin).await.map_err(|problem| {
         match problem.status() {
-            StatusCode::UNAUTHORIZED => Problem::invalid("old", "is not your present password"),
+            StatusCode::UNAUTHORIZED => Problem::invalid("old", say("account-wrong-password")),
             _ => problem,
         }
     })?;
@@ -259,7 +257,9 @@ pub(super) async fn audit_page(
 }
 
 pub(super) async fn webhooks_page(State(app): State<App>) -> Result<Response> {
-    Ok(page_response(people::webhooks_page(app.archive(), page_shell(&app)).await?))
+    Ok(page_response(
+        people::webhooks_page(app.archive(), page_shell(&app), app.mail().is_some()).await?,
+    ))
 }
 
 /// Creates a webhook, and shows its secret: no other page ever does.
@@ -269,6 +269,10 @@ pub(super) async fn make_webhook(
 ) -> Result<Response> {
     let (secret, webhook) =
         webhooks::create_from_page(&app, people::webhook_request(&form)?).await?;
+    // A mail box checks no signature.
+    if MessageFormat::from_url(&webhook.url) == MessageFormat::Mail {
+        return Ok(redirect_to("/webhooks"));
+    }
     let mut page =
         page_response(people::new_webhook_page(page_shell(&app), &webhook.title, &secret)?);
     page.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
@@ -290,8 +294,8 @@ pub(super) async fn set_address(
     PageForm(form): PageForm,
 ) -> Result<Response> {
     let url = form.get_text("public_url").unwrap_or_default();
-    if !url.is_empty() && !url.starts_with("https://") && !url.starts_with("http://") {
-        return Err(Problem::invalid("public_url", "must begin with https:// or http://"));
+    if !url.is_empty() {
+        url.parse::<WebAddress>().map_err(|message| Problem::invalid("public_url", message))?;
     }
     app.store().settings().set_public_url(url).await?;
     Ok(redirect_to("/webhooks"))

@@ -3,13 +3,11 @@
 
 use axum::extract::State;
 use axum::response::Response;
-use sistership_model::Vessel;
-use sistership_model::vessel::VesselFile;
-use sistership_pages::{FormFields, conditions, page_beginning, particulars, version};
-use sistership_store::Actor;
+use serde_json::json;
+use sistership_pages::{FormFields, conditions, page_beginning, particulars, say, version};
 
-use super::super::aliases::check_second_person;
-use super::super::ship_changes::store_changed_ship;
+use super::super::ship_changes::store_particulars;
+use super::super::signatures::{self, SignatureRequest};
 use super::answer::{page_response, redirect_to, stream_page};
 use crate::app::App;
 use crate::problem::{Problem, Result};
@@ -32,10 +30,7 @@ pub(super) async fn change_particulars(
 ) -> Result<Response> {
     let ship = app.store().ships().get(&name).await?;
     let document = particulars::changed_document(&ship, &form)?;
-    let file: VesselFile = serde_json::from_value(document)
-        .map_err(|error| Problem::invalid("form", error.to_string()))?;
-    let vessel = Vessel::from_file("form", file)?;
-    store_changed_ship(&app, &vessel, form.whole_number("revision")?).await?;
+    store_particulars(&app, document, form.whole_number("revision")?).await?;
     Ok(redirect_to(&format!("/ships/{}#particulars", &*name)))
 }
 
@@ -57,7 +52,7 @@ pub(super) async fn state_conditions(
 ) -> Result<Response> {
     let trials: Vec<String> = form.get_texts("trial").map(str::to_owned).collect();
     if trials.is_empty() {
-        return Err(Problem::invalid("trial", "choose the trials with these conditions"));
+        return Err(Problem::invalid("trial", say("conditions-choose-trials")));
     }
     let stated = conditions::read_conditions(&form)?;
     app.store().trials().state_conditions(&ship, &trials, &stated).await?;
@@ -89,24 +84,10 @@ pub(super) async fn sign_version(
     PathParams((ship, number)): PathParams<(Name, Number)>,
     PageForm(form): PageForm,
 ) -> Result<Response> {
-    let (role, person) = (form.required_text("role")?, form.required_text("person")?);
-    if role == "approved" {
-        check_approver(&app, &ship, number.get()).await?;
-    }
-    app.store().versions().sign_off(&ship, number.get(), role, person).await?;
+    let asked =
+        json!({ "role": form.required_text("role")?, "person": form.required_text("person")? });
+    let asked: SignatureRequest =
+        serde_json::from_value(asked).map_err(|why| Problem::invalid("form", why.to_string()))?;
+    signatures::sign_version(&app, &ship, number.get(), &asked).await?;
     Ok(redirect_to(&format!("/ships/{}/versions/{}/acceptance", &*ship, number.get())))
-}
-
-/// Checks that the caller may approve a version: where a second person is required, an approver who
-/// has not made it.
-async fn check_approver(app: &App, ship: &str, number: i64) -> Result<()> {
-    check_second_person(app.store(), ship).await?;
-    let required = app.store().settings().requires_second_person().await?;
-    let author = app.store().versions().get_head(ship, number).await?.author;
-    match required && author == Actor::current().name {
-        true => {
-            Err(Problem::invalid("role", "another person approves a version that you have made"))
-        }
-        false => Ok(()),
-    }
 }

@@ -6,9 +6,10 @@ use sistership_auth::Role;
 use sistership_jobs::budget;
 use sistership_jobs::memory::trial_bytes;
 use sistership_pages as pages;
-use sistership_pages::FormFields;
+use sistership_pages::version::turn::TurnInputs;
+use sistership_pages::{FormFields, say};
 
-use super::answer::{page_response, stream_page};
+use super::answer::{page_response, picture_response, stream_page};
 use crate::app::App;
 use crate::problem::Result;
 use crate::rights::filter_visible;
@@ -56,6 +57,37 @@ pub(super) async fn version_page(
     Ok(stream_page(beginning, page))
 }
 
+/// Picture of the turning circle of a version, which never changes.
+pub(super) async fn version_turn(
+    State(app): State<App>,
+    PathParams((ship, number)): PathParams<(Name, Number)>,
+) -> Result<Response> {
+    turn_picture(&app, &ship, Some(number.get()), "private, max-age=604800, immutable").await
+}
+
+/// The same of the champion, which may move.
+pub(super) async fn champion_turn(
+    State(app): State<App>,
+    PathParams(ship): PathParams<Name>,
+) -> Result<Response> {
+    turn_picture(&app, &ship, None, "private, max-age=300").await
+}
+
+async fn turn_picture(
+    app: &App,
+    ship: &str,
+    number: Option<i64>,
+    cached: &'static str,
+) -> Result<Response> {
+    let known = app.turn_pictures();
+    let gathered = pages::version::turn::gather_turn(app.archive(), &known, ship, number).await?;
+    let picture = match gathered {
+        TurnInputs::Known(picture) => picture,
+        open => app.run_blocking(move || open.render_svg(&known)).await?,
+    };
+    Ok(picture_response(&picture, cached))
+}
+
 pub(super) async fn trial_page(
     State(app): State<App>,
     PathParams(id): PathParams<Id>,
@@ -72,7 +104,8 @@ pub(super) async fn compare_page(
 ) -> Result<Response> {
     let query = FormFields::from(query);
     let gathered = pages::compare::gather_inputs(app.archive(), page_shell(&app), &query).await?;
-    let beginning = pages::page_beginning(page_shell(&app), "Compare", "/compare")?;
+    let beginning =
+        pages::page_beginning(page_shell(&app), &say("place-compare").to_string(), "/compare")?;
     Ok(stream_page(beginning, async move {
         Ok(app.run_blocking(move || gathered.render_html()).await??)
     }))
@@ -85,7 +118,11 @@ pub(super) async fn playground_page(
     let query = FormFields::from(query);
     let gathered = pages::playground::gather_inputs(app.archive(), page_shell(&app), query).await?;
     let most = app.limits().prediction_samples;
-    let beginning = pages::page_beginning(page_shell(&app), "Playground", "/playground")?;
+    let beginning = pages::page_beginning(
+        page_shell(&app),
+        &say("place-playground").to_string(),
+        "/playground",
+    )?;
     Ok(stream_page(beginning, async move {
         Ok(app.run_blocking(move || gathered.render_html(most)).await??)
     }))

@@ -1,4 +1,4 @@
-//! Revolutions of trials that record none, stated in their manifest.
+//! Revolutions of trials that record none, as they are stated in a manifest.
 
 use sistership_model::manifest::ManifestTrial;
 use sistership_model::trial::{Channel, Trial};
@@ -7,7 +7,7 @@ use sistership_priors::revolutions::assume_revolutions;
 
 /// States the revolutions of each trial where none were recorded; returns a note on it, also if
 /// they cannot be estimated.
-pub(super) fn state_revolutions(
+pub fn state_revolutions(
     zoo: &Zoo,
     vessel: Option<&Vessel>,
     listed: &mut [ManifestTrial],

@@ -1,0 +1,24 @@
+trial-kicker = Versuch
+trial-samples = { $rows } über { $duration } s
+trial-conditions = Bedingungen
+trial-state-conditions = Datum, Ort, Wetter und Beladung angeben
+trial-change-conditions = Ändern
+trial-hash = SHA-256 der Messpunkte
+trial-download = Herunterladen
+trial-csv = <a href="{ $address }">Messpunkte als CSV</a>, einheitliche Namen und Vorzeichen
+trial-track = Bahn und Kanäle
+trial-not-simulated = Die aktive Version ist nicht simuliert: { $reason }
+trial-outlines = Umrisse des Schiffes im Maßstab (Punkte, wo sie zu klein wären) zu gleichen Zeiten auf jeder Bahn. Norden ist oben.
+trial-no-positions = Der Versuch hat keine Positionen.
+trial-errors = Fehler der aktiven Version
+trial-errors-explained = Die Simulation beginnt im gemessenen Zustand mit der gemessenen Ruderlage (und Drehzahl, wenn die Modellstruktur einen Propeller hat) und läuft ohne Neustart bis zum Ende.
+trial-errors-unit = Quadratisches Mittel der simulierten minus der gemessenen Werte.
+trial-findings = Befunde
+trial-no-findings = Die Prüfungen fanden keine Fehler.
+trial-row = Zeile
+trial-versions = An diesen Versuch angepasste Versionen
+trial-no-versions = Keine der neuesten Versionen des Schiffes.
+trial-version = Version { $number }
+trial-manifest = Wie die Datei gelesen wurde
+trial-champion-line = aktive Version { $number }
+trial-measured = gemessen

@@ -1,0 +1,24 @@
+trial-kicker = trial
+trial-samples = { $rows } over { $duration } s
+trial-conditions = Conditions
+trial-state-conditions = State date, place, weather and loading
+trial-change-conditions = Change them
+trial-hash = SHA-256 of the samples
+trial-download = Download
+trial-csv = <a href="{ $address }">samples as CSV</a>, canonical names and signs
+trial-track = Track and channels
+trial-not-simulated = The champion is not simulated: { $reason }
+trial-outlines = Outlines of the ship to scale (dots where they would be too small to see) at the same times on every track. North is up.
+trial-no-positions = The trial has no positions.
+trial-errors = Errors of the champion
+trial-errors-explained = The simulation starts from the measured state with the measured rudder (and revolutions, if the law has a propeller) and runs to the end without a restart.
+trial-errors-unit = Root mean square of simulated minus measured values.
+trial-findings = Findings
+trial-no-findings = The checks found no faults.
+trial-row = Row
+trial-versions = Versions fitted to this trial
+trial-no-versions = None of the ship's newest versions.
+trial-version = Version { $number }
+trial-manifest = How the file was read
+trial-champion-line = champion, version { $number }
+trial-measured = measured

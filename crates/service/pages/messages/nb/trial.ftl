@@ -1,0 +1,24 @@
+trial-kicker = prøve
+trial-samples = { $rows } over { $duration } s
+trial-conditions = Forhold
+trial-state-conditions = Oppgi dato, sted, vær og lastetilstand
+trial-change-conditions = Endre dem
+trial-hash = SHA-256 av måleverdiene
+trial-download = Last ned
+trial-csv = <a href="{ $address }">måleverdier som CSV</a>, kanoniske navn og fortegn
+trial-track = Bane og kanaler
+trial-not-simulated = Den aktive versjonen er ikke simulert: { $reason }
+trial-outlines = Omriss av skipet i målestokk (prikker der de ville bli for små) ved samme tidspunkter på hver bane. Nord er opp.
+trial-no-positions = Prøven har ingen posisjoner.
+trial-errors = Feil for den aktive versjonen
+trial-errors-explained = Simuleringen begynner i den målte tilstanden med den målte rorvinkelen (og turtallet, hvis modellstrukturen har en propell) og går til slutten uten omstart.
+trial-errors-unit = Kvadratisk middel av simulerte minus målte verdier.
+trial-findings = Funn
+trial-no-findings = Kontrollene fant ingen feil.
+trial-row = Rad
+trial-versions = Versjoner tilpasset denne prøven
+trial-no-versions = Ingen av skipets nyeste versjoner.
+trial-version = Versjon { $number }
+trial-manifest = Hvordan filen ble lest
+trial-champion-line = aktiv versjon { $number }
+trial-measured = målt
