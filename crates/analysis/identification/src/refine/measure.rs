@@ -13,7 +13,6 @@ use super::blocks::RegressionBlocks;
 use super::envelope::{MemberRates, OperatingEnvelope};
 use super::outcome::RefineError;
 use super::population::PopulationRegression;
-use super::settings::EstimationMethod;
 use sistership_numerics::{RegressionMoments, merge_trials};
 use sistership_priors::transfer::TYPICAL_SOURCE;
 
@@ -21,8 +20,9 @@ use sistership_priors::transfer::TYPICAL_SOURCE;
 pub(super) enum PriorMeasure {
     /// The trials (Kanazawa 2023, Eq. 5.11).
     Trials,
-    /// The trials and the source's standard manoeuvres. Trials at small angles do not reveal a cubic
-    /// term that is wrong beyond them: in the sizes of the envelope it takes more to move it than a
+    /// The trials and the source's standard manoeuvres, where trials are held out part by part.
+    /// Such parts resemble the fitted ones, so that errors on them do not reveal a cubic term that
+    /// is wrong beyond the trials: in the sizes of the envelope it takes more to move it than a
     /// linear one. docs/decisions/0006 has the evidence.
     Envelope(OperatingEnvelope),
     /// Typical values of a law's coefficients, with their deviations over ships by name.
@@ -40,20 +40,14 @@ pub(super) enum PriorMeasure {
 impl PriorMeasure {
     /// Returns the measure for a source of the law that is fitted. A source that cannot be
     /// simulated, and a law of several actuators, have no envelope.
-    pub fn for_own_law(
-        source: &Model,
-        law: &Law,
-        trials: &[&Trial],
-        method: EstimationMethod,
-    ) -> Self {
+    pub fn for_own_law(source: &Model, law: &Law, trials: &[&Trial], in_parts: bool) -> Self {
         let typical = typical_deviations(source);
         if !typical.is_empty() {
             return Self::Typical(typical);
         }
         // The states of an envelope have one helm and one number of revolutions, which do not tell
         // the inputs of several actuators.
-        let has_states =
-            method != EstimationMethod::Published && law.helm_inputs().next().is_none();
+        let has_states = in_parts && law.helm_inputs().next().is_none();
         let envelope =
             has_states.then(|| OperatingEnvelope::new(source, law, trials).ok()).flatten();
         envelope.map_or(Self::Trials, |envelope| {
@@ -116,8 +110,8 @@ impl PriorMeasure {
                 law.name
             )),
             Self::Envelope(_) => Some(
-                "the prior scales each term by its size in the trials or in the standard manoeuvres \
-                 of the source, whichever is larger"
+                "there are few trials for a law with roll: parts of trials were held out, and the \
+                 prior scales each term also by its size in the standard manoeuvres of the source"
                     .to_owned(),
             ),
             Self::Mixture(envelope) => envelope.mixed.clone(),

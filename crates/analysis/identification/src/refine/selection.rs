@@ -158,12 +158,13 @@ fn with_candidates<T>(
         let asked = settings.regressions_sha256.as_deref();
         settings.regressions_sha256 = Some(mixture::regressions_sha256(asked)?);
     }
+    // Parts must be known before the prior, whose measure depends on them.
     let estimator = estimator_for(settings.method);
     let equations = estimator.equation_form(&settings);
     let parts = trial_parts(&whole, request.law, equations, &settings);
     let started = StartingPoint { request, known, whole: &whole, approach: trial_approach(&whole) };
     let propeller = started.source_propeller();
-    let (mut transferred, measure) = started.starting_prior()?;
+    let (mut transferred, measure) = started.starting_prior(!parts.is_empty())?;
     if request.law.steers_by_difference() {
         steer_by_thrusters(&mut transferred);
     }

@@ -47,7 +47,7 @@ impl<'a> StartingPoint<'_, 'a> {
     /// # Errors
     /// Returns an error if the prior does not suit the source or the law, or the source cannot be
     /// simulated.
-    pub fn starting_prior(&self) -> Result<(Model, PriorMeasure), RefineError> {
+    pub fn starting_prior(&self, in_parts: bool) -> Result<(Model, PriorMeasure), RefineError> {
         let RefinementSpec { target, source, source_law, law, settings, .. } = *self.request;
         match settings.prior {
             Prior::Mixture => mixture::check_source(source, target)?,
@@ -56,14 +56,14 @@ impl<'a> StartingPoint<'_, 'a> {
         }
         // Without a law of its own the source has the law that is fitted.
         let Some(own) = source_law.filter(|own| own.name != law.name) else {
-            return self.start_same_law();
+            return self.start_same_law(in_parts);
         };
         // A law that agrees with the source's in the plane keeps the source's coefficients and adds
         // roll from hydrostatics; no regression is needed.
         if settings.prior == Prior::Source {
             let carried = across::transfer_source((source, own), target, self.approach);
             if let Some(rolling) = with_roll((&carried, own), law, target, self.approach) {
-                let measure = PriorMeasure::for_own_law(&rolling, law, self.whole, settings.method);
+                let measure = PriorMeasure::for_own_law(&rolling, law, self.whole, in_parts);
                 return Ok((rolling, measure));
             }
         }
@@ -71,7 +71,7 @@ impl<'a> StartingPoint<'_, 'a> {
     }
 
     /// The start from a source of the law that is fitted.
-    fn start_same_law(&self) -> Result<(Model, PriorMeasure), RefineError> {
+    fn start_same_law(&self, in_parts: bool) -> Result<(Model, PriorMeasure), RefineError> {
         let RefinementSpec { target, source, law, settings, .. } = *self.request;
         let mut carried = across::transfer_source((source, law), target, self.approach);
         unrecorded::remove_unrecorded_terms(&mut carried, law, self.whole);
@@ -83,7 +83,7 @@ impl<'a> StartingPoint<'_, 'a> {
                 (self.whole, self.mixture_position()),
             );
         }
-        let measure = PriorMeasure::for_own_law(&carried, law, self.whole, settings.method);
+        let measure = PriorMeasure::for_own_law(&carried, law, self.whole, in_parts);
         Ok((carried, measure))
     }
 

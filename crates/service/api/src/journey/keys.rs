@@ -47,6 +47,10 @@ async fn request(harness: &Harness, route: &str) -> RequestBuilder {
             let model = harness.get("/v1/ships/mariner/model").await["model"].clone();
             post("/v1/models/mariner/versions").json(&json!({ "model": model, "origin": "a test" }))
         }
+        "post /v1/models/{model}/versions/{number}/signatures" => {
+            post("/v1/models/mariner/versions/1/signatures")
+                .json(&json!({ "role": "checked", "person": "Ann" }))
+        }
         "post /v1/ships/{ship}/notes" => {
             post("/v1/ships/mariner/notes").json(&json!({ "text": "docked" }))
         }

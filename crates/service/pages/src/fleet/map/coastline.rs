@@ -2,6 +2,9 @@
 
 use std::sync::LazyLock;
 
+/// Smallest area of land that is drawn, deg²: less than a hundredth of a pixel.
+const LEAST_AREA: f64 = 1e-6;
+
 /// Rings of land, longitude and latitude in deg.
 static LAND: LazyLock<Vec<Vec<(f64, f64)>>> =
     LazyLock::new(|| parse_rings(include_str!("coastline.txt")));
@@ -47,7 +50,15 @@ fn parse_ring(line: &str) -> Vec<(f64, f64)> {
 /// Returns the polygons of land within a view.
 pub(super) fn visible_land(view: &GeographicView) -> Vec<Vec<(f64, f64)>> {
     let clipped = LAND.iter().map(|ring| clip_ring(ring, view));
-    clipped.filter(|ring| ring.len() > 2).collect()
+    // Of land around a sea the clipping leaves lines along the sides.
+    clipped.filter(|ring| ring_area(ring).abs() > LEAST_AREA).collect()
+}
+
+/// Area of a polygon, deg²; positive anticlockwise.
+fn ring_area(ring: &[(f64, f64)]) -> f64 {
+    let next = ring.iter().cycle().skip(1);
+    let twice: f64 = ring.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum();
+    0.5 * twice
 }
 
 /// Clips a polygon at the four sides of a view (Sutherland and Hodgman 1974).
@@ -88,12 +99,7 @@ mod tests {
 
     /// Area of polygons, deg²; holes count negative.
     fn area(rings: &[Vec<(f64, f64)>]) -> f64 {
-        let of = |ring: &Vec<(f64, f64)>| {
-            let next = ring.iter().cycle().skip(1);
-            let twice: f64 = ring.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum();
-            0.5 * twice
-        };
-        rings.iter().map(of).sum::<f64>().abs()
+        rings.iter().map(|ring| ring_area(ring)).sum::<f64>().abs()
     }
 
     #[test]

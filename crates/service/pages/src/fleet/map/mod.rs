@@ -153,7 +153,9 @@ fn fleet_view(ships: &[ShipPosition]) -> GeographicView {
     let needed = (east - west) * shrink * SIZE.1 / SIZE.0;
     let height = (north - south).max(needed) * (1.0 + 2.0 * MARGIN);
     let height = height.max(LEAST_HEIGHT_DEG).min(2.0 * LAST_LATITUDE_DEG);
-    let width = (height * SIZE.0 / SIZE.1 / shrink).min(360.0);
+    // A fleet all around the earth fills the width whatever the proportions.
+    let widest = (height * SIZE.0 / SIZE.1 / shrink).max((east - west) * (1.0 + 2.0 * MARGIN));
+    let width = widest.min(360.0);
     // A view that reaches beyond the edges of the map is moved inside.
     let shift =
         |at: f64, half: f64, edge: f64| at.clamp(half - edge, (edge - half).max(half - edge));
