@@ -39,7 +39,7 @@ fn evidence_for_a_small_offset_adds_up() {
 /// A sound trial after those of a damaged ship is not unexplained, and the sequence begins again.
 #[test]
 fn trials_after_a_repair_are_diagnosed_by_themselves() {
-    let damaged = Uploads { count: 2, first: 1, offset_rad: 2.0_f64.to_radians() };
+    let damaged = Uploads { count: 2, first: 1, offset_rad: 1.5_f64.to_radians() };
     let before = diagnosed(&BASELINE, &damaged.trials(1), &Settings::default());
     assert_eq!(effect_names(&before), ["rudder-offset"]);
     let sound = Uploads { count: 1, first: 2, ..damaged }.trials(20);

@@ -5,7 +5,6 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use super::DiagnosisInputs;
-use super::constancy::is_last_inconstant;
 use super::discount::is_external;
 use super::effect_size::has_no_size;
 use super::evidence::DiscrepancyFactor;
@@ -136,11 +135,6 @@ impl EffectChoice {
     }
 
     fn accept_hypothesis(&mut self, found: Vec<JudgedHypothesis>, best: Option<usize>) {
-        if let Some(level) = best.map(|best| found[best].level) {
-            // What an effect explains is no part of the discrepancy: with further effects it is not
-            // larger.
-            self.levels.truncate(1 + level);
-        }
         self.taken = best.map(|best| self.tried.len() + best).or(self.taken);
         self.tried.extend(found);
     }
@@ -181,14 +175,14 @@ impl EffectChoice {
         let mut accepted: Vec<usize> = believed.into_iter().map(|(_, place)| place).collect();
         move_better_fits_forward(search, &found, &mut accepted);
         let mut better = None;
-        // Placebos and pieces are costly, so they are judged only for those that could be accepted,
-        // best first.
+        // Placebos are costly, so they are judged only for those that could be accepted, best
+        // first.
         for &place in &accepted {
-            found[place].refusal = refuse_by_trials(search, &found[place], base)?;
-            if found[place].refusal.is_none() {
+            if !is_placebo(search, &found[place], base)? {
                 better = Some(place);
                 break;
             }
+            found[place].refusal = found[place].last_effect().map(Refusal::Placebo);
         }
         base.release_gains();
         let ahead = better.and_then(|better| found[better].last_effect());
@@ -411,22 +405,6 @@ impl EffectChoice {
         let of = |other: usize| misfit_share(&judged.candidates[other]) * evidence[other].max(0.0);
         if sum > 0.0 { others().map(of).sum::<f64>() * explained / sum } else { 0.0 }
     }
-}
-
-/// Reason for which the last effect of a hypothesis is refused by other records, or by parts of the
-/// trials.
-fn refuse_by_trials(
-    search: &HypothesisSearch<'_>,
-    found: &JudgedHypothesis,
-    base: &FilteredBase<'_>,
-) -> Result<Option<Refusal>, RefineError> {
-    let Some(last) = found.last_effect() else { return Ok(None) };
-    if is_placebo(search, found, base)? {
-        return Ok(Some(Refusal::Placebo(last)));
-    }
-    let is_asked = search.steady.as_ref().is_some_and(|steady| !steady.contains(&last));
-    let varies = is_asked && is_last_inconstant(search, base, found)?;
-    Ok(varies.then_some(Refusal::NotConstant(last)))
 }
 
 /// Judges a set of effects with one removed.

@@ -55,9 +55,6 @@ pub(super) struct HypothesisSearch<'a> {
     pub states_odds: bool,
     /// Information of earlier trials on the effects.
     pub history: EffectHistory,
-    /// Effects that were found constant where something remained unexplained: any other one must
-    /// prove constant before it is accepted. None in the first search.
-    pub steady: Option<BTreeSet<String>>,
     /// Names of the effects that differ from day to day: they do not belong to the ship.
     pub daily: BTreeSet<String>,
 }

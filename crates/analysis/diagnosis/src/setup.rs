@@ -140,7 +140,6 @@ pub(super) fn prepare_search<'a>(
         log_priors: log_priors(request, &listed, &freed, &changing),
         states_odds: states_odds(request),
         history: request.settings.earlier.clone().unwrap_or_default(),
-        steady: None,
         daily: daily_effects(request.effects),
         listed,
         freed,

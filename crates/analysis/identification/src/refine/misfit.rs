@@ -130,7 +130,8 @@ mod tests {
 
     /// Adds noise without correlation, by a share of each channel's size, to all but the first sample.
     fn add_noise(trial: &mut Trial, share: f64) {
-        let white = |k: usize| 2.0 * (43_758.545_3 * (12.9898 * k as f64).sin()).rem_euclid(1.0) - 1.0;
+        let white =
+            |k: usize| 2.0 * (43_758.545_3 * (12.9898 * k as f64).sin()).rem_euclid(1.0) - 1.0;
         for (place, (channel, _)) in CHANNELS.into_iter().enumerate() {
             let column = trial.channels.get_mut(&channel).unwrap();
             let size = column.iter().map(|value| value.abs()).fold(0.0, f64::max);
@@ -156,6 +157,7 @@ mod tests {
     #[test]
     fn noise_of_single_readings_is_no_misfit() {
         let (clean, noisy) = (factor(0.02, 9, 0.0), factor(0.02, 9, 0.01));
-        assert!((noisy / clean - 1.0).abs() < 0.1, "{clean} {noisy}");
+        // Squares without a lag would be hundreds of times those of the error in surge.
+        assert!((noisy / clean - 1.0).abs() < 0.3, "{clean} {noisy}");
     }
 }
