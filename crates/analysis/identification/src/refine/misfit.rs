@@ -51,6 +51,7 @@ pub(super) fn misfit_factor(
         .filter_map(|(observed, predicted)| observed.zip(predicted.filter(|square| *square > 0.0)))
         .map(|(observed, predicted)| share * observed / predicted)
         .collect();
+    // The mean over channels: the sum would be that of the heading, whose errors grow with time.
     let mean = ratios.iter().sum::<f64>() / ratios.len().max(1) as f64;
     mean.max(1.0).sqrt()
 }
@@ -64,6 +65,7 @@ fn error_squares(problem: &RefinementProblem<'_>, left_out: &[Model]) -> Option<
         let each = trials.iter().zip(&runs).map(|(trial, run)| {
             let column = trial.channel(channel)?;
             let error = |k: usize| run.track.states[k][place] - column[run.samples[k]];
+            // Samples closer than the window share their readings.
             let lag = (LAG_WINDOWS * window_s / trial.interval_s()).ceil().max(1.0) as usize;
             mean_product(&error, run.samples.len().checked_sub(lag)?, lag)
         });
@@ -82,6 +84,7 @@ fn posterior_squares(problem: &RefinementProblem<'_>, model: &Model) -> Option<C
     let trials: Vec<&Trial> = problem.replayed.trials.iter().collect();
     let draws = draw_from_posterior(model, Sampling { samples: DRAWS, ..Sampling::default() })?;
     let own = simulate_runs(problem, &trials, std::slice::from_ref(model), &|_| 0)?;
+    // Every draw in every trial in lockstep: one simulation costs hardly more than its share.
     let repeated = trials.repeat(draws.len());
     let drawn = simulate_runs(problem, &repeated, &draws, &|run| run / trials.len())?;
     Some(CHANNELS.map(|(_, place)| {

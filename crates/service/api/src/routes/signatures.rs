@@ -153,6 +153,7 @@ pub(super) async fn sign_version(
     number: i64,
     asked: &SignatureRequest,
 ) -> Result<()> {
+    // Every engineer may have checked a version; approval has consequences.
     if asked.role == SignatureRole::Approved {
         check_approver(app, model, number).await?;
     }
@@ -166,6 +167,7 @@ async fn check_approver(app: &App, model: &str, number: i64) -> Result<()> {
     check_second_person(app.store(), model).await?;
     let required = app.store().settings().requires_second_person().await?;
     let author = app.store().versions().get_head(model, number).await?.author;
+    // The author is that of the audit, not the name that is printed.
     match required && author == Actor::current().name {
         true => {
             Err(Problem::invalid("role", "another person approves a version that you have made"))

@@ -71,6 +71,7 @@ impl ConditionsRequest {
             ("instruments", words(self.instruments)),
             ("remarks", words(self.remarks)),
         ];
+        // What was not stated is absent, so that a reader never takes an empty text for a statement.
         let stated = fields.into_iter().filter_map(|(name, text)| Some((name.to_owned(), text?)));
         stated.map(|(name, text)| (name, Value::from(text))).collect::<Map<_, _>>().into()
     }
@@ -93,6 +94,7 @@ async fn get(
     State(app): State<App>,
     PathParams(id): PathParams<Id>,
 ) -> Result<Json<ConditionsView>> {
+    // A trial that does not exist is an error, not one without conditions.
     app.store().trials().get(&id).await?;
     let stated = app.store().trials().stated_conditions(&id).await?;
     Ok(Json(ConditionsView { conditions: stated.unwrap_or_else(|| Map::new().into()) }))
@@ -112,6 +114,7 @@ async fn state(
     payload: DocumentBody,
 ) -> Result<Json<ConditionsView>> {
     let asked: ConditionsRequest = payload.parse_json()?;
+    // The audit of the ship has the statement, too.
     let ship = app.store().trials().get(&id).await?.ship;
     let conditions = asked.into_statement();
     app.store().trials().state_conditions(&ship, &[id.into_string()], &conditions).await?;

@@ -40,6 +40,7 @@ pub(super) async fn position_facts(
     let position = |manifest: &str| {
         serde_json::from_str::<PlacedManifest>(manifest).ok().and_then(|placed| placed.origin)
     };
+    // Later trials without fixes do not remove a ship from the map.
     let is_placed = |trial: &sistership_store::Trial| position(&trial.manifest).is_some();
     let newest = newest_trials(&archive.store, ship, 1, is_placed).await?;
     Ok(match newest.first().and_then(|trial| position(&trial.manifest)) {
@@ -59,11 +60,13 @@ pub async fn fleet_positions(
     archive: &Archive,
     most: i64,
 ) -> Result<Vec<ShipPosition>, DeriveError> {
+    // Ships of the library have no place of their own.
     let fleet = FactRange { fact: FLEET_FACT.to_owned(), ..UrgencyClass::full_range() };
     let search = ShipSearch { ranges: vec![fleet, placed_range()], ..ShipSearch::default() };
     let page = PageRequest { after: None, limit: most };
     let ships = archive.store.ships().search_ships(&search, &page).await?.items;
     let names: Vec<String> = ships.iter().map(|ship| ship.name.clone()).collect();
+    // Two queries for all ships, not two for each.
     let latitudes = archive.store.fact_values(&names, LATITUDE_FACT).await?;
     let longitudes = archive.store.fact_values(&names, LONGITUDE_FACT).await?;
     let placed = ships.into_iter().filter_map(|ship| {

@@ -1,16 +1,12 @@
 //! Catalogues of messages in Project Fluent's format, one file for each part of the pages.
 
-use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::LazyLock;
 
 use fluent_bundle::concurrent::FluentBundle;
 use fluent_bundle::{FluentArgs, FluentResource};
 
-use super::{Language, Message};
-
-/// Prefix of the keys of words that the script of charts writes.
-const CHART_PREFIX: &str = "chart-script-";
+use super::Language;
 
 /// Names and texts of the files of a language.
 macro_rules! catalogue_files {
@@ -84,28 +80,6 @@ pub(super) fn write_message(
         }
         None => out.write_str(key),
     }
-}
-
-/// Words of the script of charts in the present language by their English form, JSON that can stand
-/// in a script element; `None` in English, which the script speaks by itself.
-pub(crate) fn chart_words() -> Option<&'static str> {
-    static WORDS: LazyLock<[Option<String>; 3]> =
-        LazyLock::new(|| Language::ALL.map(|language| language.run_blocking(collect_chart_words)));
-    WORDS[Language::current() as usize].as_deref()
-}
-
-fn collect_chart_words() -> Option<String> {
-    let language = Language::current();
-    let text = |language: Language, key: &str| {
-        let message = Message::with_key(key.to_owned());
-        language.run_blocking(|| message.to_string())
-    };
-    let keys =
-        message_keys(Language::English).into_iter().filter(|key| key.starts_with(CHART_PREFIX));
-    let words: BTreeMap<String, String> =
-        keys.map(|key| (text(Language::English, &key), text(language, &key))).collect();
-    let json = || serde_json::to_string(&words).ok().map(|json| json.replace('<', "\\u003c"));
-    (language != Language::English).then(json).flatten()
 }
 
 /// Keys of the messages of a language, in the order of the files.

@@ -42,6 +42,7 @@ pub fn say_html(key: &'static str) -> MarkupMessage {
 /// lack it, as laws, effects and channels of ships may have any name.
 pub fn say_word(prefix: &str, name: &str) -> String {
     let key = word_key(prefix, name);
+    // A name that people have given is no key, and stays as it is.
     if has_message(&key) { Message::with_key(key).to_string() } else { name.to_owned() }
 }
 
@@ -73,6 +74,7 @@ impl MarkupMessage {
     /// Returns the message with an argument, which is escaped.
     #[must_use]
     pub fn with(mut self, name: &'static str, value: impl MessageArgument) -> Self {
+        // Numbers have no markup, and a text of a number would choose no plural.
         let value = match value.to_value() {
             ArgumentValue::Text(text) => ArgumentValue::Text(escape_text(&text)),
             number => number,
@@ -92,6 +94,7 @@ impl fmt::Display for Message {
             ArgumentValue::Text(text) => FluentValue::from(text.clone()),
             ArgumentValue::Number(number) => FluentValue::from(*number),
         };
+        // Written at last: only then is the language of the request known.
         let arguments = self.arguments.iter().map(|(name, of)| (*name, value(of)));
         write_message(out, &self.key, &FluentArgs::from_iter(arguments))
     }

@@ -2,6 +2,7 @@
 //! English; and the catalogues of messages in each.
 
 mod catalogue;
+mod chart_words;
 mod message;
 
 use std::future::Future;
@@ -10,7 +11,7 @@ pub use message::{
     ArgumentValue, MarkupMessage, Message, MessageArgument, say, say_html, say_word,
 };
 
-pub(crate) use catalogue::chart_words;
+pub(crate) use chart_words::chart_words;
 pub(crate) use message::has_word;
 
 tokio::task_local! {
@@ -69,6 +70,7 @@ impl Language {
         let ranges = accepted.split(',').filter_map(parse_range);
         let mut best: Option<(Self, f64)> = None;
         for (language, quality) in ranges {
+            // A quality of zero refuses a language.
             if quality > 0.0 && best.is_none_or(|(_, most)| quality > most) {
                 best = Some((language, quality));
             }
@@ -78,6 +80,7 @@ impl Language {
 
     /// Language of the present request; English outside of one.
     pub fn current() -> Self {
+        // Jobs and tests write outside of any request.
         CURRENT.try_with(|language| *language).unwrap_or_default()
     }
 
@@ -110,6 +113,7 @@ impl Language {
 /// Nynorsk, and those who name no written form of Norwegian, read Bokmål.
 fn parse_range(text: &str) -> Option<(Language, f64)> {
     let mut parts = text.split(';').map(str::trim);
+    // Regions do not differ in the catalogues.
     let primary = parts.next()?.split('-').next()?.to_ascii_lowercase();
     let language = match primary.as_str() {
         "no" | "nn" => Language::Norwegian,

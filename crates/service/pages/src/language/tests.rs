@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 use fluent_bundle::FluentResource;
 
-use super::catalogue::{catalogue_texts, chart_words, message_keys};
+use super::catalogue::{catalogue_texts, message_keys};
+use super::chart_words::chart_words;
 use super::{Language, say, say_html, say_word};
 
 /// Words of the text of templates that need no translation: names, standards, symbols and formats.

@@ -31,6 +31,7 @@ pub(super) async fn state_estimates(
     let (zoo, vessel) = (app.stored_laws().await?, parse_vessel(&ship.name, &ship.document)?);
     let estimate = move || {
         let manifest = &mut proposal.manifest;
+        // Before the revolutions, which are those of the speed through the water.
         manifest.declarations.currents = estimate_currents(&trials);
         let listed = &mut manifest.manifest.trials;
         let note = state_revolutions(&zoo, Some(&vessel), listed, &mut trials);
@@ -48,6 +49,7 @@ async fn read_trials(app: &App, upload: &TrialUpload) -> Vec<Trial> {
         // A file with errors is listed on the page, and corrected there.
         let Ok(read) = read_one(upload, app, at).await else { continue };
         samples += read.trial.len();
+        // Eight bytes for each sample of each channel, and of time.
         let bytes = 8 * read.trial.len() * (1 + read.trial.channels.len());
         if samples > MOST_SAMPLES || budget::reserve_for_request(bytes as u64).await.is_err() {
             return Vec::new();
