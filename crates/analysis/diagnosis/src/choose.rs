@@ -161,6 +161,7 @@ impl EffectChoice {
         count: usize,
     ) -> Result<bool, RefineError> {
         let mut found = judge_companions(search, base, count)?;
+        base.release_coefficients();
         let mut believed = Vec::new();
         for (place, hypothesis) in found.iter_mut().enumerate() {
             let evidence = self.last_evidence(search, hypothesis)?;
@@ -184,7 +185,6 @@ impl EffectChoice {
             }
             found[place].refusal = found[place].last_effect().map(Refusal::Placebo);
         }
-        base.release_gains();
         let ahead = better.and_then(|better| found[better].last_effect());
         for place in accepted.into_iter().filter(|place| Some(*place) != better) {
             let behind = ahead.clone().map(Refusal::Behind);
@@ -239,8 +239,7 @@ impl EffectChoice {
         search: &HypothesisSearch<'a>,
         request: &DiagnosisInputs<'_>,
     ) -> Result<ConvergedChoice<'a>, RefineError> {
-        let best = self.best_hypothesis().clone();
-        self.converge_from((best, self.levels.clone()), search, request)
+        self.converge_from(self.best_hypothesis().clone(), search, request)
     }
 
     /// Fits the coefficients of the model alone until they converge.
@@ -252,12 +251,12 @@ impl EffectChoice {
         search: &HypothesisSearch<'a>,
         request: &DiagnosisInputs<'_>,
     ) -> Result<ConvergedChoice<'a>, RefineError> {
-        self.converge_from((self.alone.clone(), search.levels.clone()), search, request)
+        self.converge_from(self.alone.clone(), search, request)
     }
 
     fn converge_from<'a>(
         &self,
-        (mut best, mut levels): (JudgedHypothesis, Vec<DiscrepancyFactor>),
+        mut best: JudgedHypothesis,
         search: &HypothesisSearch<'a>,
         request: &DiagnosisInputs<'_>,
     ) -> Result<ConvergedChoice<'a>, RefineError> {
@@ -267,7 +266,7 @@ impl EffectChoice {
             // Coefficients and effects are fitted in turn, each with the others at their last
             // values.
             search = search.calibrated_by(request, &best)?;
-            let base = search.filter_without_candidates(&best.candidates, &levels)?;
+            let base = search.filter_without_candidates(&best.candidates, &self.levels)?;
             best = search.judge_base(&base)?.1;
             rounds -= 1;
             if rounds > 0 {
@@ -278,8 +277,7 @@ impl EffectChoice {
                 return Ok(ConvergedChoice { search, base, best, removed });
             };
             removed.push((best.candidates[place].effect.clone(), refusal));
-            levels.clone_from(&search.levels);
-            best = judge_without(&search, &best, place)?;
+            best = self.judge_without(&search, &best, place)?;
             // After a removal one round suffices: the others are near their estimates.
             rounds = 1;
         }
@@ -299,6 +297,21 @@ impl EffectChoice {
         if let Some(taken) = self.taken {
             self.tried[taken].refusal = Some(refusal);
         }
+    }
+
+    /// Judges a set of effects with one removed.
+    ///
+    /// # Errors
+    /// Returns an error that names what a trial lacks.
+    fn judge_without(
+        &self,
+        search: &HypothesisSearch<'_>,
+        judged: &JudgedHypothesis,
+        place: usize,
+    ) -> Result<JudgedHypothesis, RefineError> {
+        let mut kept = judged.candidates.clone();
+        kept.remove(place);
+        Ok(search.judge_base(&search.filter_without_candidates(&kept, &self.levels)?)?.1)
     }
 
     pub(super) fn best_hypothesis(&self) -> &JudgedHypothesis {
@@ -405,20 +418,6 @@ impl EffectChoice {
         let of = |other: usize| misfit_share(&judged.candidates[other]) * evidence[other].max(0.0);
         if sum > 0.0 { others().map(of).sum::<f64>() * explained / sum } else { 0.0 }
     }
-}
-
-/// Judges a set of effects with one removed.
-///
-/// # Errors
-/// Returns an error that names what a trial lacks.
-fn judge_without(
-    search: &HypothesisSearch<'_>,
-    judged: &JudgedHypothesis,
-    place: usize,
-) -> Result<JudgedHypothesis, RefineError> {
-    let mut kept = judged.candidates.clone();
-    kept.remove(place);
-    Ok(search.judge_base(&search.filter_without_candidates(&kept, &search.levels)?)?.1)
 }
 
 /// Moves forward the candidates that fit better than the most evident one by so much that their

@@ -8,7 +8,10 @@ use super::hypothesis::candidate_priors;
 use super::search::HypothesisSearch;
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
-use sistership_model::sample_hash::sample_hash;
+
+/// Effects that differ from day to day: they do not belong to the ship, and no earlier trial says
+/// of them.
+const EFFECTS_OF_A_DAY: [&str; 4] = ["current", "wind", "wave-drift", "shallow-water"];
 
 /// Returns the history of the effects after the trials of a diagnosis. `base` is the one without
 /// effects, at one of whose levels the trials are read; `named` are the effects found.
@@ -45,7 +48,6 @@ pub(super) fn continue_history(
     }
     let (information, right) = (&new.information + before, &new.right + right);
     let rows = 0..right.len();
-    let hashes = search.trials.iter().map(|trial| sample_hash(trial));
     Ok(EffectHistory {
         model: search.model.name.clone(),
         forms,
@@ -54,7 +56,6 @@ pub(super) fn continue_history(
             .map(|at| information[at])
             .collect(),
         right: right.iter().copied().collect(),
-        samples: search.history.samples.iter().cloned().chain(hashes).collect(),
     })
 }
 
@@ -96,7 +97,7 @@ fn trial_information(
 ) -> Result<(Vec<EffectCandidate>, MarginalInformation), RefineError> {
     // An effect that follows an external record is judged by the record of its own day.
     let lasts = |candidate: &&EffectCandidate| {
-        !is_external(candidate) && !search.daily.contains(&candidate.effect)
+        !is_external(candidate) && !EFFECTS_OF_A_DAY.contains(&candidate.effect.as_str())
     };
     let candidates: Vec<EffectCandidate> = search.listed.iter().filter(lasts).cloned().collect();
     let columns = candidates.iter().flat_map(|one| base.workspace.columns().matching_columns(one));

@@ -26,9 +26,6 @@ pub struct EffectHistory {
     pub information: Vec<f64>,
     /// Information times the most probable distances of the parameters from the absence.
     pub right: Vec<f64>,
-    /// Hashes of the samples of all earlier trials, by which one that is given again is recognised.
-    #[serde(default)]
-    pub samples: Vec<String>,
 }
 
 /// Earlier trials that count for a form of an effect.
@@ -187,13 +184,7 @@ mod tests {
             last_seen: None,
         };
         let model = "a model".to_owned();
-        EffectHistory {
-            model,
-            forms: vec![form],
-            information: vec![100.0],
-            right: vec![2.0],
-            samples: Vec::new(),
-        }
+        EffectHistory { model, forms: vec![form], information: vec![100.0], right: vec![2.0] }
     }
 
     /// Likelihood of an offset `d` by the information `A` and the right side `b`: `b d - A d^2/2`,

@@ -40,7 +40,6 @@ mod run;
 mod screening;
 mod search;
 mod select;
-mod sequence;
 mod series;
 mod settings;
 mod setup;
@@ -59,7 +58,7 @@ pub use outcome::{
     RemainderDependence, RemainderOrigin, ResidualSeries, TrialErrors, UnexplainedSegment,
     ValueWithError, VariableDependence, Verdict,
 };
-pub use sequence::diagnose;
+pub use run::diagnose;
 pub use settings::Settings;
 use sistership_model::law::Law;
 use sistership_model::{Effect, Model, Trial};

@@ -67,11 +67,6 @@ impl WhitenedColumns {
         sum
     }
 
-    /// Strip after strip, by readings.
-    pub(super) fn strips(&self) -> &[StripValues] {
-        &self.strips
-    }
-
     fn strip_range(&self, readings: Range<usize>) -> StripRange<'_> {
         let readings = (readings.start, readings.end);
         StripRange { strips: &self.strips, count: self.readings, readings }
@@ -97,7 +92,7 @@ pub struct SegmentedColumns {
 /// stay in the cache.
 const SAMPLES: usize = 64;
 /// Number of strips in lockstep.
-pub(super) const GROUP: usize = 4;
+const GROUP: usize = 4;
 
 impl FilterGains {
     /// Returns the products of the residual and all columns of a part after the filter.

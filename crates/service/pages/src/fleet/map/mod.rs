@@ -152,7 +152,7 @@ fn fleet_view(ships: &[ShipPosition]) -> GeographicView {
     let shrink = middle.1.to_radians().cos().max(0.1);
     let needed = (east - west) * shrink * SIZE.1 / SIZE.0;
     let height = (north - south).max(needed) * (1.0 + 2.0 * MARGIN);
-    let height = height.max(LEAST_HEIGHT_DEG).min(2.0 * LAST_LATITUDE_DEG);
+    let height = height.clamp(LEAST_HEIGHT_DEG, 2.0 * LAST_LATITUDE_DEG);
     // A fleet all around the earth fills the width whatever the proportions.
     let widest = (height * SIZE.0 / SIZE.1 / shrink).max((east - west) * (1.0 + 2.0 * MARGIN));
     let width = widest.min(360.0);
