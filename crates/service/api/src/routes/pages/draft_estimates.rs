@@ -1,11 +1,10 @@
-//! Estimates for an upload in the browser, as `sistership import --ship` makes them: the current
-//! during each trial, and its revolutions where none are recorded.
+//! Revolutions of an upload in the browser where none are recorded, as `sistership import --ship`
+//! states them. A current is a person's to state: a diagnosis finds one that is not.
 
 use sistership_jobs::archive::parse_vessel;
 use sistership_jobs::budget;
 use sistership_jobs::stated_revolutions::state_revolutions;
 use sistership_model::trial::Trial;
-use sistership_trials::estimate_currents;
 use sistership_web_support::drafts::UploadDraft;
 use sistership_web_support::upload::TrialUpload;
 
@@ -16,7 +15,7 @@ use crate::upload::read_one;
 /// Largest number of samples that are read for the estimates.
 const MOST_SAMPLES: usize = 1_000_000;
 
-/// States currents and revolutions in the manifest of a draft; the form shows them for correction.
+/// States revolutions in the manifest of a draft; the form shows them for correction.
 pub(super) async fn state_estimates(
     app: &App,
     draft: &UploadDraft,
@@ -31,8 +30,6 @@ pub(super) async fn state_estimates(
     let (zoo, vessel) = (app.stored_laws().await?, parse_vessel(&ship.name, &ship.document)?);
     let estimate = move || {
         let manifest = &mut proposal.manifest;
-        // Before the revolutions, which are those of the speed through the water.
-        manifest.declarations.currents = estimate_currents(&trials);
         let listed = &mut manifest.manifest.trials;
         let note = state_revolutions(&zoo, Some(&vessel), listed, &mut trials);
         proposal.notes = note.into_iter().collect();
