@@ -192,7 +192,6 @@ mod tests {
             manifest,
             diagnose: true,
             template: None,
-            notes: Vec::new(),
         };
         (folder, of)
     }

@@ -107,7 +107,6 @@ mod tests {
             manifest,
             diagnose: true,
             template: None,
-            notes: Vec::new(),
         };
         let trial = Trial { t_s: vec![0.0, 1.0, 2.0, 3.0], ..Trial::default() };
         (of, TrialWithRows { trial, rows: vec![2, 3, 4, 5] })

@@ -58,8 +58,6 @@ pub struct UploadProposal {
     pub diagnose: bool,
     /// Name of the template by which the columns are read.
     pub template: Option<String>,
-    /// Notes on what was estimated.
-    pub notes: Vec<String>,
 }
 
 impl UploadProposal {

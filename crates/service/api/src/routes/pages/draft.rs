@@ -18,7 +18,6 @@ use sistership_trials::{
 };
 
 use super::answer::{page_response, redirect_to};
-use super::draft_estimates;
 use crate::app::App;
 use crate::problem::{Fault, Problem, Result};
 use crate::rights::check_server_role;
@@ -99,11 +98,9 @@ async fn propose_draft(
         manifest,
         diagnose: true,
         template: None,
-        notes: Vec::new(),
     };
     let draft = UploadDraft { folder, files, proposed: proposed.into() };
     exclude_faults(app, &draft).await?;
-    draft_estimates::state_estimates(app, &draft, draft_upload(&draft, app)?).await?;
     Ok(draft)
 }
 
@@ -251,8 +248,7 @@ async fn use_template(app: &App, draft: &UploadDraft, place: TemplatePlace) -> R
     let ManifestProposal { guesses, manifest, .. } =
         identify_files(app, &before.ship, folder, files, given).await?;
     draft.set_proposal(UploadProposal { guesses, manifest, template: Some(name), ..before });
-    exclude_faults(app, draft).await?;
-    draft_estimates::state_estimates(app, draft, draft_upload(draft, app)?).await
+    exclude_faults(app, draft).await
 }
 
 async fn save_template(app: &App, draft: &UploadDraft, place: &TemplatePlace) -> Result<()> {

@@ -2,7 +2,6 @@
 
 mod answer;
 mod draft;
-mod draft_estimates;
 mod example;
 mod form_actions;
 mod language;
