@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use super::DiagnosisInputs;
+use super::constancy::is_last_inconstant;
 use super::discount::is_external;
 use super::effect_size::has_no_size;
 use super::evidence::DiscrepancyFactor;
@@ -135,6 +136,11 @@ impl EffectChoice {
     }
 
     fn accept_hypothesis(&mut self, found: Vec<JudgedHypothesis>, best: Option<usize>) {
+        if let Some(level) = best.map(|best| found[best].level) {
+            // What an effect explains is no part of the discrepancy: with further effects it is not
+            // larger.
+            self.levels.truncate(1 + level);
+        }
         self.taken = best.map(|best| self.tried.len() + best).or(self.taken);
         self.tried.extend(found);
     }
@@ -161,7 +167,6 @@ impl EffectChoice {
         count: usize,
     ) -> Result<bool, RefineError> {
         let mut found = judge_companions(search, base, count)?;
-        base.release_coefficients();
         let mut believed = Vec::new();
         for (place, hypothesis) in found.iter_mut().enumerate() {
             let evidence = self.last_evidence(search, hypothesis)?;
@@ -176,15 +181,16 @@ impl EffectChoice {
         let mut accepted: Vec<usize> = believed.into_iter().map(|(_, place)| place).collect();
         move_better_fits_forward(search, &found, &mut accepted);
         let mut better = None;
-        // Placebos are costly, so they are judged only for those that could be accepted, best
-        // first.
+        // Placebos and pieces are costly, so they are judged only for those that could be accepted,
+        // best first.
         for &place in &accepted {
-            if !is_placebo(search, &found[place], base)? {
+            found[place].refusal = refuse_by_trials(search, &found[place], base)?;
+            if found[place].refusal.is_none() {
                 better = Some(place);
                 break;
             }
-            found[place].refusal = found[place].last_effect().map(Refusal::Placebo);
         }
+        base.release_gains();
         let ahead = better.and_then(|better| found[better].last_effect());
         for place in accepted.into_iter().filter(|place| Some(*place) != better) {
             let behind = ahead.clone().map(Refusal::Behind);
@@ -239,7 +245,8 @@ impl EffectChoice {
         search: &HypothesisSearch<'a>,
         request: &DiagnosisInputs<'_>,
     ) -> Result<ConvergedChoice<'a>, RefineError> {
-        self.converge_from(self.best_hypothesis().clone(), search, request)
+        let best = self.best_hypothesis().clone();
+        self.converge_from((best, self.levels.clone()), search, request)
     }
 
     /// Fits the coefficients of the model alone until they converge.
@@ -251,12 +258,12 @@ impl EffectChoice {
         search: &HypothesisSearch<'a>,
         request: &DiagnosisInputs<'_>,
     ) -> Result<ConvergedChoice<'a>, RefineError> {
-        self.converge_from(self.alone.clone(), search, request)
+        self.converge_from((self.alone.clone(), search.levels.clone()), search, request)
     }
 
     fn converge_from<'a>(
         &self,
-        mut best: JudgedHypothesis,
+        (mut best, mut levels): (JudgedHypothesis, Vec<DiscrepancyFactor>),
         search: &HypothesisSearch<'a>,
         request: &DiagnosisInputs<'_>,
     ) -> Result<ConvergedChoice<'a>, RefineError> {
@@ -266,7 +273,7 @@ impl EffectChoice {
             // Coefficients and effects are fitted in turn, each with the others at their last
             // values.
             search = search.calibrated_by(request, &best)?;
-            let base = search.filter_without_candidates(&best.candidates, &self.levels)?;
+            let base = search.filter_without_candidates(&best.candidates, &levels)?;
             best = search.judge_base(&base)?.1;
             rounds -= 1;
             if rounds > 0 {
@@ -277,7 +284,8 @@ impl EffectChoice {
                 return Ok(ConvergedChoice { search, base, best, removed });
             };
             removed.push((best.candidates[place].effect.clone(), refusal));
-            best = self.judge_without(&search, &best, place)?;
+            levels.clone_from(&search.levels);
+            best = judge_without(&search, &best, place)?;
             // After a removal one round suffices: the others are near their estimates.
             rounds = 1;
         }
@@ -297,21 +305,6 @@ impl EffectChoice {
         if let Some(taken) = self.taken {
             self.tried[taken].refusal = Some(refusal);
         }
-    }
-
-    /// Judges a set of effects with one removed.
-    ///
-    /// # Errors
-    /// Returns an error that names what a trial lacks.
-    fn judge_without(
-        &self,
-        search: &HypothesisSearch<'_>,
-        judged: &JudgedHypothesis,
-        place: usize,
-    ) -> Result<JudgedHypothesis, RefineError> {
-        let mut kept = judged.candidates.clone();
-        kept.remove(place);
-        Ok(search.judge_base(&search.filter_without_candidates(&kept, &self.levels)?)?.1)
     }
 
     pub(super) fn best_hypothesis(&self) -> &JudgedHypothesis {
@@ -418,6 +411,36 @@ impl EffectChoice {
         let of = |other: usize| misfit_share(&judged.candidates[other]) * evidence[other].max(0.0);
         if sum > 0.0 { others().map(of).sum::<f64>() * explained / sum } else { 0.0 }
     }
+}
+
+/// Reason for which the last effect of a hypothesis is refused by other records, or by parts of the
+/// trials.
+fn refuse_by_trials(
+    search: &HypothesisSearch<'_>,
+    found: &JudgedHypothesis,
+    base: &FilteredBase<'_>,
+) -> Result<Option<Refusal>, RefineError> {
+    let Some(last) = found.last_effect() else { return Ok(None) };
+    if is_placebo(search, found, base)? {
+        return Ok(Some(Refusal::Placebo(last)));
+    }
+    let is_asked = search.steady.as_ref().is_some_and(|steady| !steady.contains(&last));
+    let varies = is_asked && is_last_inconstant(search, base, found)?;
+    Ok(varies.then_some(Refusal::NotConstant(last)))
+}
+
+/// Judges a set of effects with one removed.
+///
+/// # Errors
+/// Returns an error that names what a trial lacks.
+fn judge_without(
+    search: &HypothesisSearch<'_>,
+    judged: &JudgedHypothesis,
+    place: usize,
+) -> Result<JudgedHypothesis, RefineError> {
+    let mut kept = judged.candidates.clone();
+    kept.remove(place);
+    Ok(search.judge_base(&search.filter_without_candidates(&kept, &search.levels)?)?.1)
 }
 
 /// Moves forward the candidates that fit better than the most evident one by so much that their

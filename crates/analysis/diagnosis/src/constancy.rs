@@ -27,6 +27,45 @@ pub(super) fn inconstant_effects(
     judged: &JudgedHypothesis,
     margin: f64,
 ) -> Result<Vec<usize>, RefineError> {
+    let varies = size_variations(search, base, judged)?;
+    let mut places: Vec<usize> =
+        (0..varies.len()).filter(|&place| varies[place] > variation_limit(judged, place)).collect();
+    let is_outside = |place: &usize| is_external(&judged.candidates[*place]);
+    if places.iter().any(is_outside) && follow_records(search, judged, margin)? {
+        places.retain(|place| !is_outside(place));
+    }
+    Ok(places)
+}
+
+/// Returns true if the effect that a hypothesis has added last is not constant. One of a recorded
+/// external signal is judged by its records instead.
+///
+/// # Errors
+/// Returns an error that names what a trial lacks.
+pub(super) fn is_last_inconstant(
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+    judged: &JudgedHypothesis,
+) -> Result<bool, RefineError> {
+    let last = judged.candidates.len() - 1;
+    if is_external(&judged.candidates[last]) {
+        return Ok(false);
+    }
+    Ok(size_variations(search, base, judged)?[last] > variation_limit(judged, last))
+}
+
+/// Largest variation of the size of an effect that is constant: a form that differs from the true
+/// one also needs another size in other motions.
+fn variation_limit(judged: &JudgedHypothesis, place: usize) -> f64 {
+    THRESHOLDS.constancy.limit.max(misfit_share(&judged.candidates[place]))
+}
+
+/// Variation of the size of each effect between the pieces of the trials.
+fn size_variations(
+    search: &HypothesisSearch<'_>,
+    base: &FilteredBase<'_>,
+    judged: &JudgedHypothesis,
+) -> Result<Vec<f64>, RefineError> {
     let pieces = base
         .linearise_hypothesis(&search.calibrated_model, &judged.linearised_at)?
         .products_per_piece(judged.level, THRESHOLDS.constancy.pieces)?;
@@ -37,24 +76,10 @@ pub(super) fn inconstant_effects(
         .map(|piece| MarginalInformation::new(piece, &known))
         .collect::<Result<_, _>>()?;
     let one = |place: usize| {
-        size_variation(
-            judged,
-            place,
-            &reduced,
-            search.candidate_discount(&judged.candidates[place]),
-        )
+        let discount = search.candidate_discount(&judged.candidates[place]);
+        size_variation(judged, place, &reduced, discount)
     };
-    let varies: Vec<f64> = (0..judged.linearised_at.len()).map(one).collect();
-    // A form that differs from the true one also needs another size in other motions.
-    let limit =
-        |place: usize| THRESHOLDS.constancy.limit.max(misfit_share(&judged.candidates[place]));
-    let mut places: Vec<usize> =
-        (0..varies.len()).filter(|&place| varies[place] > limit(place)).collect();
-    let is_outside = |place: &usize| is_external(&judged.candidates[*place]);
-    if places.iter().any(is_outside) && follow_records(search, judged, margin)? {
-        places.retain(|place| !is_outside(place));
-    }
-    Ok(places)
+    Ok((0..judged.linearised_at.len()).map(one).collect())
 }
 
 /// Prior of the coefficients after all trials, whose change has been fitted.

@@ -2,16 +2,13 @@
 
 use super::discount::is_external;
 use super::effect_history::{EffectHistory, FormHistory};
-use super::evidence::MarginalInformation;
+use super::evidence::{MarginalInformation, NormalPrior};
 use super::filtered_base::FilteredBase;
 use super::hypothesis::candidate_priors;
 use super::search::HypothesisSearch;
 use sistership_filtering::EffectCandidate;
 use sistership_identification::refine::RefineError;
-
-/// Effects that differ from day to day: they do not belong to the ship, and no earlier trial says
-/// of them.
-const EFFECTS_OF_A_DAY: [&str; 4] = ["current", "wind", "wave-drift", "shallow-water"];
+use sistership_model::sample_hash::sample_hash;
 
 /// Returns the history of the effects after the trials of a diagnosis. `base` is the one without
 /// effects, at one of whose levels the trials are read; `named` are the effects found.
@@ -22,32 +19,15 @@ pub(super) fn continue_history(
     search: &HypothesisSearch<'_>,
     (base, level): (&FilteredBase<'_>, usize),
     named: &[String],
+    least_evidence: f64,
 ) -> Result<EffectHistory, RefineError> {
-    let (candidates, new) = trial_information(search, base, level)?;
-    // Forms that the library has gained since have no information yet.
-    let (mut before, mut right) = search.history.candidate_information(&candidates);
-    let (mut forms, mut first) = (Vec::new(), 0);
-    for candidate in &candidates {
-        let own: Vec<usize> = (first..first + candidate.at.len()).collect();
-        first += candidate.at.len();
-        let all = MarginalInformation {
-            information: &new.information + &before,
-            right: &new.right + &right,
-            ..new.clone()
-        };
-        let begins = begins_now(search, candidate, (&all, &new), &own);
-        if begins {
-            // Its columns are zero on the earlier trials.
-            for &place in &own {
-                before.row_mut(place).fill(0.0);
-                before.column_mut(place).fill(0.0);
-                right[place] = 0.0;
-            }
-        }
-        forms.push(continue_form(search, candidate, begins, named));
-    }
-    let (information, right) = (&new.information + before, &new.right + right);
+    let WeighedHistory { candidates, new, before, begin } =
+        WeighedHistory::weigh(search, (base, level), least_evidence)?;
+    let each = candidates.iter().zip(&begin);
+    let forms = each.map(|(one, &begins)| continue_form(search, one, begins, named)).collect();
+    let (information, right) = (&new.information + before.information, &new.right + before.right);
     let rows = 0..right.len();
+    let hashes = search.trials.iter().map(|trial| sample_hash(trial));
     Ok(EffectHistory {
         model: search.model.name.clone(),
         forms,
@@ -56,37 +36,102 @@ pub(super) fn continue_history(
             .map(|at| information[at])
             .collect(),
         right: right.iter().copied().collect(),
+        samples: search.history.samples.iter().cloned().chain(hashes).collect(),
     })
 }
 
-/// Returns the history without the forms of which these trials say that their effects begin now.
+/// Returns the history without the forms of which these trials say that their effects begin or end
+/// now.
 ///
 /// # Errors
 /// Returns an error if the information is not positive.
 pub(super) fn history_before(
     search: &HypothesisSearch<'_>,
-    (base, level): (&FilteredBase<'_>, usize),
+    at: (&FilteredBase<'_>, usize),
+    least_evidence: f64,
 ) -> Result<EffectHistory, RefineError> {
     let mut history = search.history.clone();
     if history.forms.is_empty() {
         return Ok(history);
     }
-    let (candidates, new) = trial_information(search, base, level)?;
-    let (before, right) = history.candidate_information(&candidates);
-    let all = MarginalInformation {
-        information: &new.information + before,
-        right: &new.right + right,
-        ..new.clone()
-    };
-    let mut first = 0;
-    for candidate in &candidates {
-        let own: Vec<usize> = (first..first + candidate.at.len()).collect();
-        first += candidate.at.len();
-        if begins_now(search, candidate, (&all, &new), &own) {
-            history.clear_form(candidate);
+    let WeighedHistory { candidates, before, begin, .. } =
+        WeighedHistory::weigh(search, at, least_evidence)?;
+    // Forms of other libraries stay as they are.
+    history.set_information(&candidates, &before);
+    let begun = candidates.iter().zip(begin).filter(|(_, begins)| *begins);
+    begun.for_each(|(candidate, _)| history.forget_trials(candidate));
+    Ok(history)
+}
+
+/// Earlier information, weighed against that of new trials.
+struct WeighedHistory {
+    /// Lasting effects.
+    candidates: Vec<EffectCandidate>,
+    /// Information of the new trials.
+    new: MarginalInformation,
+    /// Information of the earlier trials, without effects that begin or end now.
+    before: MarginalInformation,
+    /// Of each candidate: true if its effect begins or ends with the new trials.
+    begin: Vec<bool>,
+}
+
+impl WeighedHistory {
+    fn weigh(
+        search: &HypothesisSearch<'_>,
+        (base, level): (&FilteredBase<'_>, usize),
+        least_evidence: f64,
+    ) -> Result<Self, RefineError> {
+        let (candidates, new) = trial_information(search, base, level)?;
+        // Forms that the library has gained since have no information yet.
+        let (information, right) = search.history.candidate_information(&candidates);
+        let before = MarginalInformation { information, right, ..new.clone() };
+        let all = MarginalInformation {
+            information: &new.information + &before.information,
+            right: &new.right + &before.right,
+            ..new.clone()
+        };
+        let (mut first, mut begin, mut kept) = (0, Vec::new(), before.clone());
+        for candidate in &candidates {
+            let own: Vec<usize> = (first..first + candidate.at.len()).collect();
+            first += candidate.at.len();
+            let gain = |says: &MarginalInformation| form_gain(search, candidate, says, &own);
+            let (of_new, of_all, of_before) = (gain(&new), gain(&all), gain(&before));
+            // Two sizes, or one and none, must be as much more evident than one size for all trials
+            // as an effect must be to be named.
+            let ends = of_before + of_new.max(0.0) > of_all + least_evidence;
+            let begins = ends || of_new >= of_all;
+            if begins {
+                leave_form_out(&mut kept, &own, ends.then(|| candidate_priors(candidate)));
+            }
+            begin.push(begins);
+        }
+        Ok(Self { candidates, new, before: kept, begin })
+    }
+}
+
+/// Leaves a form out of earlier information: its columns are zero on trials without its effect. An
+/// effect that has ended since is integrated out under its priors; otherwise another effect that
+/// resembles it would be seen in its place.
+fn leave_form_out(
+    before: &mut MarginalInformation,
+    own: &[usize],
+    present: Option<Vec<NormalPrior>>,
+) {
+    let others: Vec<usize> = (0..before.right.len()).filter(|place| !own.contains(place)).collect();
+    let left = present.and_then(|priors| before.marginalise_others(own, &priors, &others));
+    // The columns of an absent effect are zero.
+    for &place in own {
+        before.information.row_mut(place).fill(0.0);
+        before.information.column_mut(place).fill(0.0);
+        before.right[place] = 0.0;
+    }
+    let Some(left) = left else { return };
+    for (i, &row) in others.iter().enumerate() {
+        before.right[row] = left.right[i];
+        for (j, &column) in others.iter().enumerate() {
+            before.information[(row, column)] = left.information[(i, j)];
         }
     }
-    Ok(history)
 }
 
 /// Lasting effects, and the information of the trials on them at the absence of all.
@@ -97,7 +142,7 @@ fn trial_information(
 ) -> Result<(Vec<EffectCandidate>, MarginalInformation), RefineError> {
     // An effect that follows an external record is judged by the record of its own day.
     let lasts = |candidate: &&EffectCandidate| {
-        !is_external(candidate) && !EFFECTS_OF_A_DAY.contains(&candidate.effect.as_str())
+        !is_external(candidate) && !search.daily.contains(&candidate.effect)
     };
     let candidates: Vec<EffectCandidate> = search.listed.iter().filter(lasts).cloned().collect();
     let columns = candidates.iter().flat_map(|one| base.workspace.columns().matching_columns(one));
@@ -108,21 +153,18 @@ fn trial_information(
     Ok((candidates, new))
 }
 
-/// Returns true if the newest trials alone are at least as evident for an effect as all of them.
-fn begins_now(
+/// Logarithm of the evidence of information for a form; its priors count once, so that comparisons
+/// are of the trials alone.
+fn form_gain(
     search: &HypothesisSearch<'_>,
     candidate: &EffectCandidate,
-    (all, new): (&MarginalInformation, &MarginalInformation),
+    says: &MarginalInformation,
     own: &[usize],
-) -> bool {
-    // The prior counts once in either: the comparison is one of the trials alone.
-    let priors = candidate_priors(candidate);
-    let gain = |says: &MarginalInformation| {
-        let says = says.select_columns(own).divide_by(search.candidate_discount(candidate));
-        let places: Vec<usize> = (0..own.len()).collect();
-        says.estimate_parameters(&places, &priors).map_or(f64::NEG_INFINITY, |one| one.gain)
-    };
-    gain(new) >= gain(all)
+) -> f64 {
+    let says = says.select_columns(own).divide_by(search.candidate_discount(candidate));
+    let places: Vec<usize> = (0..own.len()).collect();
+    let estimate = says.estimate_parameters(&places, &candidate_priors(candidate));
+    estimate.map_or(f64::NEG_INFINITY, |one| one.gain)
 }
 
 fn continue_form(

@@ -5,7 +5,7 @@
 //! next diagnosis, so that many small uploads say as much as one large one, and its size does not
 //! grow. An effect may begin at any time: where the newest trials alone are at least as evident as
 //! all since an earlier start, its columns are zero on the earlier ones (Page 1954, Biometrika 41,
-//! 100-115).
+//! 100-115), or, if these show it, as before a repair, it is integrated out.
 
 use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
@@ -26,6 +26,9 @@ pub struct EffectHistory {
     pub information: Vec<f64>,
     /// Information times the most probable distances of the parameters from the absence.
     pub right: Vec<f64>,
+    /// Hashes of the samples of all earlier trials, by which one that is given again is recognised.
+    #[serde(default)]
+    pub samples: Vec<String>,
 }
 
 /// Earlier trials that count for a form of an effect.
@@ -110,15 +113,26 @@ impl EffectHistory {
         says.right += gram.view((1, 0), (size, 1)).column(0);
     }
 
-    /// Removes all information on a form: its effect is absent on all earlier trials.
-    pub fn clear_form(&mut self, candidate: &EffectCandidate) {
-        let key = candidate.candidate_key();
-        // Rows and columns go together: what remains must stay a positive information.
-        for place in self.parameter_places(candidate).into_iter().flatten() {
-            (0..self.right.len())
-                .for_each(|other| self.information[triangle_place(place, other)] = 0.0);
-            self.right[place] = 0.0;
+    /// Replaces the information on the parameters of candidates.
+    pub(super) fn set_information(
+        &mut self,
+        candidates: &[EffectCandidate],
+        says: &MarginalInformation,
+    ) {
+        let places: Vec<Option<usize>> =
+            candidates.iter().flat_map(|candidate| self.parameter_places(candidate)).collect();
+        for (i, own) in places.iter().enumerate() {
+            let Some(own) = *own else { continue };
+            self.right[own] = says.right[i];
+            for (j, other) in places.iter().enumerate().filter_map(|(j, one)| Some((j, (*one)?))) {
+                self.information[triangle_place(own, other)] = says.information[(i, j)];
+            }
         }
+    }
+
+    /// Counts no earlier trial for a form.
+    pub(super) fn forget_trials(&mut self, candidate: &EffectCandidate) {
+        let key = candidate.candidate_key();
         self.forms.iter_mut().filter(|form| form.key == key).for_each(|form| form.trials = 0);
     }
 
@@ -184,7 +198,13 @@ mod tests {
             last_seen: None,
         };
         let model = "a model".to_owned();
-        EffectHistory { model, forms: vec![form], information: vec![100.0], right: vec![2.0] }
+        EffectHistory {
+            model,
+            forms: vec![form],
+            information: vec![100.0],
+            right: vec![2.0],
+            samples: Vec::new(),
+        }
     }
 
     /// Likelihood of an offset `d` by the information `A` and the right side `b`: `b d - A d^2/2`,

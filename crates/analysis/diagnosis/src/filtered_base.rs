@@ -1,11 +1,12 @@
 //! A linearisation with all columns that may be needed, filtered at each level of the discrepancy.
-//! A nearby hypothesis is then judged by its own columns alone, which pass the same filter; those
-//! of the coefficients are already available.
+//! A nearby hypothesis is then judged by its own columns alone, which pass the same filter; their
+//! products with those of the coefficients come from the adjoint of it.
 
 use std::collections::BTreeMap;
 use std::ops::{AddAssign, Range};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use sistership_model::manifest::VelocityFrame;
 
@@ -15,7 +16,7 @@ use super::hypothesis::JudgedHypothesis;
 use super::linearised_trials::LinearisedTrials;
 use sistership_filtering::{
     AxisDiscrepancies, EffectCandidate, FilterColumns, FilterGains, GramMatrix,
-    LinearisationDetail, LinearisedPart, ResidualSystem, WhitenedColumns, linearise,
+    LinearisationDetail, LinearisedPart, ResidualSystem, linearise,
 };
 use sistership_identification::refine::RefineError;
 
@@ -35,19 +36,17 @@ pub(super) struct FilteredLevel {
     discrepancies: AxisDiscrepancies,
     /// Products of all columns, by trial.
     grams: Vec<GramMatrix>,
-    /// Computed when a hypothesis is first judged at this level: they are many times as large as
-    /// the trials.
-    coefficients: Mutex<Option<WhitenedCoefficients>>,
+    /// Computed when a hypothesis is first judged at this level: they are larger than the trials.
+    gains: Mutex<Option<TrialGains>>,
+    /// Products of the coefficients by pieces of each trial, computed when they are first needed.
+    pieces: Mutex<Option<TrialPieces>>,
 }
 
-/// Filter of a part, and the residual and the columns of the coefficients that have passed it.
-struct FilteredCoefficients {
-    gains: FilterGains,
-    columns: WhitenedColumns,
-}
+/// Filter of each part, by trial.
+type TrialGains = Arc<Vec<Vec<FilterGains>>>;
 
-/// Whitened residual and columns of the coefficients, by trial and part.
-type WhitenedCoefficients = Arc<Vec<Vec<FilteredCoefficients>>>;
+/// Products of the coefficients by trial and piece.
+type TrialPieces = Arc<Vec<Vec<DMatrix<f64>>>>;
 
 impl FilteredLevel {
     pub fn level_discrepancies(&self) -> &AxisDiscrepancies {
@@ -56,7 +55,7 @@ impl FilteredLevel {
 }
 
 impl<'a> FilteredBase<'a> {
-    /// Filters at each of some levels.
+    /// Filters trials, which are linearised here, at each of some levels.
     ///
     /// # Errors
     /// Returns an error if the noise of a channel is unknown.
@@ -66,28 +65,31 @@ impl<'a> FilteredBase<'a> {
         levels: Vec<(DiscrepancyFactor, AxisDiscrepancies)>,
     ) -> Result<Self, RefineError> {
         let coefficients = workspace.columns().nuisance.len();
-        let at = |(level, discrepancies): (DiscrepancyFactor, AxisDiscrepancies)| {
-            let one =
-                |parts: &Vec<LinearisedPart>| trial_products(&workspace, parts, &discrepancies);
-            let grams =
-                workspace.linearised_parts().par_iter().map(one).collect::<Result<_, _>>()?;
-            Ok(FilteredLevel { level, discrepancies, grams, coefficients: Mutex::default() })
-        };
-        let levels = levels.into_iter().map(at).collect::<Result<_, RefineError>>()?;
-        // Columns of the candidates are many times as large as their products.
-        // The products of the candidates suffice.
-        let mut workspace = workspace;
         let present: usize = taken.iter().map(|candidate| candidate.at.len()).sum();
-        workspace.truncate_columns(coefficients + present);
+        let products = |workspace: &LinearisedTrials<'_>, parts: &[LinearisedPart]| {
+            let at = |(_, discrepancies): &(DiscrepancyFactor, AxisDiscrepancies)| {
+                trial_products(workspace, parts, discrepancies)
+            };
+            levels.iter().map(at).collect::<Result<Vec<GramMatrix>, RefineError>>()
+        };
+        // Columns of the candidates are many times as large as their products, which suffice.
+        let (workspace, grams) = workspace.linearise_with(coefficients + present, products)?;
+        let mut each = grams.into_iter().map(Vec::into_iter).collect::<Vec<_>>();
+        let at = |(level, discrepancies)| {
+            let grams = each.iter_mut().filter_map(Iterator::next).collect();
+            let (gains, pieces) = (Mutex::default(), Mutex::default());
+            FilteredLevel { level, discrepancies, grams, gains, pieces }
+        };
+        let levels = levels.into_iter().map(at).collect();
         let (taken, judged) = (taken.to_vec(), Mutex::default());
         Ok(Self { taken, levels, coefficients, workspace, judged })
     }
 
-    /// Releases the whitened columns of the coefficients, which are many times as large as the
-    /// trials; they are computed again when a hypothesis is judged.
-    pub fn release_coefficients(&self) {
+    /// Releases the gains, which are larger than the trials; they are computed again when a
+    /// hypothesis is judged.
+    pub fn release_gains(&self) {
         for level in &self.levels {
-            *level.coefficients.lock().unwrap_or_else(PoisonError::into_inner) = None;
+            *level.gains.lock().unwrap_or_else(PoisonError::into_inner) = None;
         }
     }
 
@@ -129,32 +131,52 @@ impl<'a> FilteredBase<'a> {
         is_complete.then(|| (0..self.coefficients).chain(own.into_iter().flatten()).collect())
     }
 
-    /// Whitened columns of the coefficients at a level. Those of levels that are not neighbours are
-    /// released: hypotheses are judged at a level and the one below.
-    fn whitened_coefficients(&self, level: usize) -> Result<WhitenedCoefficients, RefineError> {
+    /// Gains of the filter at a level. Those of levels that are not neighbours are released:
+    /// hypotheses are judged at a level and the one below.
+    fn filter_gains(&self, level: usize) -> Result<TrialGains, RefineError> {
         for (_, far) in
             self.levels.iter().enumerate().filter(|(other, _)| other.abs_diff(level) > 1)
         {
-            *far.coefficients.lock().unwrap_or_else(PoisonError::into_inner) = None;
+            *far.gains.lock().unwrap_or_else(PoisonError::into_inner) = None;
         }
         let at = &self.levels[level];
         // Held during the computation: other threads wait for the result instead of repeating it.
-        let mut kept = at.coefficients.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(coefficients) = &*kept {
-            return Ok(Arc::clone(coefficients));
+        let mut kept = at.gains.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(gains) = &*kept {
+            return Ok(Arc::clone(gains));
         }
         let of_part = |part: &LinearisedPart| {
-            // Only the coefficients pass the filter: the candidates' columns are many more.
-            let gains = FilterGains::new(part, &self.workspace.noise, &at.discrepancies)?;
-            let columns = gains.whiten_columns(part, self.coefficients);
-            Ok(FilteredCoefficients { gains, columns })
+            FilterGains::new(part, &self.workspace.noise, &at.discrepancies)
         };
-        let one = |parts: &Vec<LinearisedPart>| {
-            parts.iter().map(of_part).collect::<Result<Vec<_>, RefineError>>()
+        let one = |parts: &Vec<LinearisedPart>| parts.iter().map(of_part).collect();
+        let each: Result<_, RefineError> =
+            self.workspace.linearised_parts().par_iter().map(one).collect();
+        let fresh: TrialGains = Arc::new(each?);
+        *kept = Some(Arc::clone(&fresh));
+        Ok(fresh)
+    }
+
+    /// Products of the coefficients at a level by pieces of equal duration of each trial.
+    fn coefficient_pieces(&self, level: usize, count: usize) -> Result<TrialPieces, RefineError> {
+        let gains = self.filter_gains(level)?;
+        let mut kept = self.levels[level].pieces.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(pieces) = kept.as_ref().filter(|kept| kept.iter().all(|k| k.len() == count)) {
+            return Ok(Arc::clone(pieces));
+        }
+        let c = self.coefficients;
+        let of_trial = |(parts, gains): (&Vec<LinearisedPart>, &Vec<FilterGains>)| {
+            let mut pieces = vec![DMatrix::zeros(c, c); count];
+            for (part, gains) in parts.iter().zip(gains) {
+                let known = gains.whiten_columns(part, c);
+                for (piece, sum) in pieces.iter_mut().enumerate() {
+                    let readings = piece_readings(piece, count, known.reading_count());
+                    sum.add_assign(&known.own_products(readings).view((1, 1), (c, c)));
+                }
+            }
+            pieces
         };
-        let each =
-            self.workspace.linearised_parts().par_iter().map(one).collect::<Result<_, _>>()?;
-        let fresh: WhitenedCoefficients = Arc::new(each);
+        let trials: Vec<_> = self.workspace.linearised_parts().iter().zip(gains.iter()).collect();
+        let fresh: TrialPieces = Arc::new(trials.into_par_iter().map(of_trial).collect());
         *kept = Some(Arc::clone(&fresh));
         Ok(fresh)
     }
@@ -253,11 +275,10 @@ impl LinearisedHypothesis<'_, '_> {
     /// # Errors
     /// Returns an error if the noise of a channel is unknown.
     fn products_per_trial(&self, level: usize) -> Result<Vec<GramMatrix>, RefineError> {
-        let (at, coefficients) =
-            (&self.base.levels[level], self.base.whitened_coefficients(level)?);
-        let trials: Vec<_> = self.linear.iter().zip(coefficients.iter().zip(&at.grams)).collect();
-        let of = |(parts, (known, all)): (&Vec<LinearisedPart>, (&Vec<_>, &GramMatrix))| {
-            self.hypothesis_products(parts, known, all)
+        let (at, gains) = (&self.base.levels[level], self.base.filter_gains(level)?);
+        let trials: Vec<_> = self.trial_parts().zip(gains.iter().zip(&at.grams)).collect();
+        let of = |(parts, (gains, all)): (TrialParts<'_>, (&Vec<FilterGains>, &GramMatrix))| {
+            self.hypothesis_products(parts, gains, all)
         };
         Ok(trials.into_par_iter().map(of).collect())
     }
@@ -271,34 +292,40 @@ impl LinearisedHypothesis<'_, '_> {
         level: usize,
         count: usize,
     ) -> Result<Vec<GramMatrix>, RefineError> {
-        let coefficients = self.base.whitened_coefficients(level)?;
-        let trials: Vec<_> = self.linear.iter().zip(coefficients.iter()).collect();
-        let of = |(parts, known): (&Vec<LinearisedPart>, &Vec<FilteredCoefficients>)| {
-            self.piecewise_products(parts, known, count)
+        let known = self.base.coefficient_pieces(level, count)?;
+        let gains = self.base.filter_gains(level)?;
+        let trials: Vec<_> = self.trial_parts().zip(gains.iter().zip(known.iter())).collect();
+        let of = |(parts, (gains, known)): (TrialParts<'_>, (&Vec<FilterGains>, &Vec<_>))| {
+            self.piecewise_products(parts, gains, known)
         };
         let each: Vec<Vec<GramMatrix>> = trials.into_par_iter().map(of).collect();
         Ok(each.into_iter().flatten().collect())
     }
 
+    /// Parts of each trial, of the hypothesis and of the base.
+    fn trial_parts(&self) -> impl Iterator<Item = TrialParts<'_>> {
+        let base = self.base.workspace.linearised_parts();
+        self.linear.iter().zip(base).map(|(own, base)| TrialParts { own, base })
+    }
+
     fn piecewise_products(
         &self,
-        parts: &[LinearisedPart],
-        known: &[FilteredCoefficients],
-        count: usize,
+        parts: TrialParts<'_>,
+        gains: &[FilterGains],
+        known: &[DMatrix<f64>],
     ) -> Vec<GramMatrix> {
         let c = self.base.coefficients;
-        let mut pieces = vec![GramMatrix::zeros(c + self.own_width()); count];
+        let mut pieces = vec![GramMatrix::zeros(c + self.own_width()); known.len()];
         // Only the columns' products are needed, so the likelihood terms stay zero.
-        for (part, known) in parts.iter().zip(known) {
-            let own = known.gains.whiten_columns(part, part.sizes.columns);
-            let readings = own.reading_count();
+        for (gram, known) in pieces.iter_mut().zip(known) {
+            gram.products.view_mut((1, 1), (c, c)).copy_from(known);
+        }
+        for ((part, base), gains) in parts.own.iter().zip(parts.base).zip(gains) {
+            let own = gains.whiten_columns(part, part.sizes.columns);
             for (piece, gram) in pieces.iter_mut().enumerate() {
-                // Readings are divided by their number, so that pieces have nearly equal durations.
-                let (from, to) = (piece * readings / count, (piece + 1) * readings / count);
-                let square = known.columns.own_products(from..to);
-                let square = square.view((1, 1), (c, c));
-                gram.products.view_mut((1, 1), (c, c)).add_assign(&square);
-                add_products(gram, (&known.columns, &own), from..to);
+                let readings = piece_readings(piece, known.len(), own.reading_count());
+                let cross = gains.column_products(base, &own, readings.clone());
+                add_products(gram, &cross.rows(0, c).into_owned(), &own.own_products(readings));
             }
         }
         pieces
@@ -306,8 +333,8 @@ impl LinearisedHypothesis<'_, '_> {
 
     fn hypothesis_products(
         &self,
-        parts: &[LinearisedPart],
-        known: &[FilteredCoefficients],
+        parts: TrialParts<'_>,
+        gains: &[FilterGains],
         all: &GramMatrix,
     ) -> GramMatrix {
         let c = self.base.coefficients;
@@ -315,9 +342,12 @@ impl LinearisedHypothesis<'_, '_> {
         // The coefficients' own products, and the terms of the filter, are those of the base.
         gram.products.view_mut((1, 1), (c, c)).copy_from(&all.products.view((1, 1), (c, c)));
         (gram.log_variance, gram.count) = (all.log_variance, all.count);
-        for (part, known) in parts.iter().zip(known) {
-            let own = known.gains.whiten_columns(part, part.sizes.columns);
-            add_products(&mut gram, (&known.columns, &own), 0..own.reading_count());
+        for ((part, base), gains) in parts.own.iter().zip(parts.base).zip(gains) {
+            let own = gains.whiten_columns(part, part.sizes.columns);
+            // Coefficients act by accelerations alone: they need not pass the filter.
+            let all = 0..own.reading_count();
+            let cross = gains.column_products(base, &own, all.clone());
+            add_products(&mut gram, &cross.rows(0, c).into_owned(), &own.own_products(all));
         }
         gram
     }
@@ -328,22 +358,28 @@ impl LinearisedHypothesis<'_, '_> {
     }
 }
 
-/// Adds products of coefficients with a hypothesis' own columns, and of these among themselves, over
-/// some readings. The first known column is the residual of the base.
-fn add_products(
-    gram: &mut GramMatrix,
-    (known, own): (&WhitenedColumns, &WhitenedColumns),
-    readings: Range<usize>,
-) {
-    let cross = known.products_with(own, readings.clone());
-    let square = own.own_products(readings);
-    let (c, own) = (cross.nrows() - 1, cross.ncols());
+/// Readings of a piece of a part, of equal numbers so that pieces have nearly equal durations.
+fn piece_readings(piece: usize, pieces: usize, readings: usize) -> Range<usize> {
+    piece * readings / pieces..(piece + 1) * readings / pieces
+}
+
+/// Parts of a trial, linearised at a hypothesis and at its base.
+#[derive(Clone, Copy)]
+struct TrialParts<'p> {
+    own: &'p [LinearisedPart],
+    base: &'p [LinearisedPart],
+}
+
+/// Adds products of coefficients with a hypothesis' own columns, and of these among themselves, of
+/// which the first is the residual.
+fn add_products(gram: &mut GramMatrix, cross: &DMatrix<f64>, square: &DMatrix<f64>) {
+    let (c, own) = cross.shape();
     // The residual is at index 0; own columns follow those of the coefficients.
     let place = |i: usize| if i == 0 { 0 } else { c + i };
     for i in 0..own {
-        for k in 1..=c {
-            gram.products[(k, place(i))] += cross[(k, i)];
-            gram.products[(place(i), k)] += cross[(k, i)];
+        for k in 0..c {
+            gram.products[(1 + k, place(i))] += cross[(k, i)];
+            gram.products[(place(i), 1 + k)] += cross[(k, i)];
         }
         (0..own).for_each(|j| gram.products[(place(i), place(j))] += square[(i, j)]);
     }

@@ -40,6 +40,7 @@ mod run;
 mod screening;
 mod search;
 mod select;
+mod sequence;
 mod series;
 mod settings;
 mod setup;
@@ -58,7 +59,7 @@ pub use outcome::{
     RemainderDependence, RemainderOrigin, ResidualSeries, TrialErrors, UnexplainedSegment,
     ValueWithError, VariableDependence, Verdict,
 };
-pub use run::diagnose;
+pub use sequence::diagnose;
 pub use settings::Settings;
 use sistership_model::law::Law;
 use sistership_model::{Effect, Model, Trial};

@@ -94,6 +94,29 @@ impl<'a> LinearisedTrials<'a> {
         Ok(self)
     }
 
+    /// Linearises each trial, derives something from it, and keeps it with its first columns only.
+    ///
+    /// # Errors
+    /// Returns an error that names what a trial lacks, or that of `derive`.
+    pub fn linearise_with<T: Send>(
+        mut self,
+        columns: usize,
+        derive: impl Fn(&Self, &[LinearisedPart]) -> Result<T, RefineError> + Sync,
+    ) -> Result<(Self, Vec<T>), RefineError> {
+        let of_trial = |record| {
+            let mut parts = linearise(&self.system, record, LinearisationDetail::Whole)?;
+            let derived = derive(&self, &parts)?;
+            parts.iter_mut().for_each(|part| part.truncate_columns(columns));
+            Ok((parts, derived))
+        };
+        // All columns of all trials at once would take most of the memory of a diagnosis.
+        let each: Vec<(Vec<LinearisedPart>, T)> =
+            self.records.par_iter().map(of_trial).collect::<Result<_, RefineError>>()?;
+        let derived;
+        (self.linear, derived) = each.into_iter().unzip();
+        Ok((self, derived))
+    }
+
     /// Sets the instruments; each recorded channel must have one.
     ///
     /// # Errors
@@ -233,11 +256,6 @@ impl<'a> LinearisedTrials<'a> {
     pub fn highest_revolutions(&self) -> f64 {
         let recorded = self.trials.iter().filter_map(|trial| trial.channel(Channel::N));
         recorded.flatten().fold(0.0, |most, n| n.abs().max(most))
-    }
-
-    /// Releases all linearised columns but the first.
-    pub fn truncate_columns(&mut self, count: usize) {
-        self.linear.par_iter_mut().flatten().for_each(|part| part.truncate_columns(count));
     }
 
     pub fn motion_scales(&self) -> MotionScales {

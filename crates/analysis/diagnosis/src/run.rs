@@ -28,32 +28,27 @@ use sistership_identification::refine::{Progress, RefineError};
 use sistership_model::Model;
 use sistership_model::trial::Channel;
 
-/// Diagnoses a model on trials.
+/// Diagnoses a model on trials that have been checked.
 ///
 /// # Errors
-/// Returns an error that names the setting, trial or channel at fault, or one if `progress`
-/// cancels.
-pub fn diagnose(
+/// Returns an error that names the trial or channel at fault, or one if `progress` cancels.
+pub(super) fn diagnose_trials(
     request: &DiagnosisInputs<'_>,
     progress: Progress<'_>,
 ) -> Result<Diagnosis, RefineError> {
-    request
-        .settings
-        .check_values()
-        .map_err(|(field, message)| RefineError::Setting { field, message })?;
-    check_inputs(request)?;
     report_progress(progress, 0.05, "selecting the effects that these trials can show")?;
     let mut search = with_level_below(prepare_search(request)?);
     report_progress(progress, 0.1, "evaluating effects, alone and in combination")?;
     let base = search.filter_with_candidates(&[], &search.levels)?;
-    search.history = history_before(&search, (&base, search.judge_base(&base)?.0))?;
+    let least = request.settings.least_evidence;
+    search.history = history_before(&search, (&base, search.judge_base(&base)?.0), least)?;
     let choice = choose_effects(&search, &base, request.settings)?;
     report_progress(progress, 0.8, "analysing the residual")?;
     let selected = select_effects(request, (&search, &base), choice, progress)?;
     let best = &selected.settled.best;
     let named: Vec<String> = best.candidates.iter().map(|one| one.effect.clone()).collect();
     let level = best.level.min(base.levels.len() - 1);
-    let history = continue_history(&search, (&base, level), &named)?;
+    let history = continue_history(&search, (&base, level), &named, least)?;
     // The filtered columns are large, and are not needed any more.
     drop(base);
     let diagnosis = assemble_answer(request, &search, selected, progress)?;
@@ -61,26 +56,6 @@ pub fn diagnose(
     // it would be judged by what they stood in for.
     let is_explained = diagnosis.verdict != Verdict::Unexplained;
     Ok(Diagnosis { history: is_explained.then_some(history), ..diagnosis })
-}
-
-/// Checks that a diagnosis has trials, and that earlier ones are of the same model.
-fn check_inputs(request: &DiagnosisInputs<'_>) -> Result<(), RefineError> {
-    if request.trials.is_empty() {
-        return Err(RefineError::Data(
-            "no trial is given; give one that the model was not fitted to".into(),
-        ));
-    }
-    let earlier = request.settings.earlier.as_ref();
-    match earlier.filter(|earlier| earlier.model != request.model.name) {
-        Some(earlier) => Err(RefineError::Setting {
-            field: "earlier".into(),
-            message: format!(
-                "is of the model `{}`; give the answer of a diagnosis of `{}`",
-                earlier.model, request.model.name
-            ),
-        }),
-        None => Ok(()),
-    }
 }
 
 fn report_progress(progress: Progress<'_>, fraction: f64, what: &str) -> Result<(), RefineError> {

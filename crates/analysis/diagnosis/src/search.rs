@@ -1,7 +1,7 @@
 //! Search for the most probable hypothesis: each effect alone, then sets of effects that improve on
 //! it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::DVector;
 use sistership_model::law::Law;
@@ -55,6 +55,11 @@ pub(super) struct HypothesisSearch<'a> {
     pub states_odds: bool,
     /// Information of earlier trials on the effects.
     pub history: EffectHistory,
+    /// Effects that were found constant where something remained unexplained: any other one must
+    /// prove constant before it is accepted. None in the first search.
+    pub steady: Option<BTreeSet<String>>,
+    /// Names of the effects that differ from day to day: they do not belong to the ship.
+    pub daily: BTreeSet<String>,
 }
 
 impl<'a> HypothesisSearch<'a> {
@@ -79,6 +84,21 @@ impl<'a> HypothesisSearch<'a> {
         LinearisedTrials::new(&self.calibrated_model, columns, self.trials, self.least_step_s)
     }
 
+    /// Filters trials at some of the levels, with columns for some candidates.
+    fn filter_candidates(
+        &self,
+        taken: &[EffectCandidate],
+        candidates: Vec<EffectCandidate>,
+        levels: &[DiscrepancyFactor],
+    ) -> Result<FilteredBase<'a>, RefineError> {
+        let columns = FilterColumns { nuisance: self.nuisance.clone(), candidates };
+        let (model, step_s) = (&self.calibrated_model, self.least_step_s);
+        let workspace =
+            LinearisedTrials::linearised_on_demand(model, columns, self.trials, step_s)?;
+        let levels = levels.iter().map(|&level| (level, self.level_discrepancies(level))).collect();
+        FilteredBase::new(taken, workspace, levels)
+    }
+
     /// Filters accepted effects with all others as candidates, at some of the levels.
     ///
     /// # Errors
@@ -93,9 +113,7 @@ impl<'a> HypothesisSearch<'a> {
             !self.nuisance.iter().any(|n| n.name == candidate.form.file.name)
         };
         let others = self.other_candidates(taken).into_iter().filter(has_column).cloned();
-        let workspace = self.prepare_trials(taken.iter().cloned().chain(others).collect())?;
-        let levels = levels.iter().map(|&level| (level, self.level_discrepancies(level))).collect();
-        FilteredBase::new(taken, workspace, levels)
+        self.filter_candidates(taken, taken.iter().cloned().chain(others).collect(), levels)
     }
 
     /// Filters accepted effects without candidates.
@@ -107,8 +125,7 @@ impl<'a> HypothesisSearch<'a> {
         taken: &[EffectCandidate],
         levels: &[DiscrepancyFactor],
     ) -> Result<FilteredBase<'a>, RefineError> {
-        let levels = levels.iter().map(|&level| (level, self.level_discrepancies(level))).collect();
-        FilteredBase::new(taken, self.prepare_trials(taken.to_vec())?, levels)
+        self.filter_candidates(taken, taken.to_vec(), levels)
     }
 
     /// Shift of the coefficients by the trials that are diagnosed.

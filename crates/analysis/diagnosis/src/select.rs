@@ -62,6 +62,10 @@ pub(super) fn select_effects<'a>(
             let changes = state.find_changes(request, first)?;
             return Ok(state.into_selection(choice, changes, refused));
         }
+        // What remains of the others is looked for among effects that are constant by themselves:
+        // one that only resembles the missing effect would be refused after the next search.
+        let steady = state.effect_names(|place| !varying.contains(&place));
+        search.steady.get_or_insert_default().extend(steady);
         // Refused effects are removed from the search before it is repeated.
         let names = state.effect_names(|place| varying.contains(&place)).into_iter();
         refused.extend(names.inspect(|name| search.remove_effect(name)));

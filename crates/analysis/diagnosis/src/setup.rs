@@ -1,6 +1,7 @@
 //! Preparation of a search from a request: candidate forms, prior of the coefficients, and expected
 //! discrepancy.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use sistership_model::effect::EffectForm;
@@ -63,6 +64,12 @@ fn changing_candidates(request: &DiagnosisInputs<'_>) -> Vec<EffectCandidate> {
         forms.map(|form| EffectCandidate::at_absence(&effect.name, form)).collect()
     };
     request.effects.iter().flat_map(of).collect()
+}
+
+/// Names of the effects that differ from day to day.
+fn daily_effects(effects: &[Arc<Effect>]) -> BTreeSet<String> {
+    let daily = effects.iter().filter(|effect| effect.differs_by_day);
+    daily.map(|effect| effect.name.clone()).collect()
 }
 
 /// Candidate terms of the library's grammars.
@@ -133,6 +140,8 @@ pub(super) fn prepare_search<'a>(
         log_priors: log_priors(request, &listed, &freed, &changing),
         states_odds: states_odds(request),
         history: request.settings.earlier.clone().unwrap_or_default(),
+        steady: None,
+        daily: daily_effects(request.effects),
         listed,
         freed,
         changing,

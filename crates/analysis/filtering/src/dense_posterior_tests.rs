@@ -261,6 +261,24 @@ fn innovations_and_columns_are_those_of_the_joint_distribution() {
     }
 }
 
+/// Products by the adjoint of the filter are those of columns that have passed it.
+#[test]
+fn products_by_the_adjoint_are_those_of_the_forward_pass() {
+    for part in records() {
+        // Columns of the adjoint act on no instrument.
+        let part = LinearisedPart { by_column: Vec::new(), measured: Vec::new(), ..part };
+        let gains = FilterGains::new(&part, &noise(), &discrepancies()).unwrap();
+        let whitened = gains.whiten_columns(&part, COLUMNS);
+        let all = whitened.reading_count();
+        for readings in [0..all, all / 3..all / 2 + 1] {
+            let forward = whitened.own_products(readings.clone());
+            let adjoint = gains.column_products(&part, &whitened, readings);
+            assert_eq!(adjoint.shape(), (COLUMNS, 1 + COLUMNS));
+            assert!((&adjoint - forward.rows(1, COLUMNS)).amax() < 1e-12 * forward.amax());
+        }
+    }
+}
+
 /// Minus twice the logarithm of a multivariate normal density, less `n ln 2 pi`; parts together in
 /// lanes and alone.
 #[test]

@@ -13,6 +13,7 @@
 //! of an effect is one more column that passes the same filter. Fitting, evidence and comparison
 //! need only the sums over samples of the products of these columns.
 
+mod adjoint_filter;
 mod columns;
 mod correction;
 mod discrepancies;

@@ -16,7 +16,7 @@ pub(super) const STRIP: usize = 8;
 pub(super) type StripValues = [f64; STRIP];
 
 /// Values of strips in lockstep.
-type GroupValues<const G: usize> = [StripValues; G];
+pub(super) type GroupValues<const G: usize> = [StripValues; G];
 
 /// Content of a lane of a strip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -356,7 +356,11 @@ impl<'a, const G: usize> StripGroup<'a, G> {
 /// Adds a multiple of strips to others. The lanes of each strip are added together, as an array, so
 /// that each is one vector.
 #[inline(always)]
-fn add_scaled<const G: usize>(weight: f64, from: &GroupValues<G>, to: &mut GroupValues<G>) {
+pub(super) fn add_scaled<const G: usize>(
+    weight: f64,
+    from: &GroupValues<G>,
+    to: &mut GroupValues<G>,
+) {
     for strip in 0..G {
         let (own, more) = (to[strip], from[strip]);
         to[strip] = std::array::from_fn(|lane| own[lane] + weight * more[lane]);

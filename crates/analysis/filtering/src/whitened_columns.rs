@@ -67,6 +67,11 @@ impl WhitenedColumns {
         sum
     }
 
+    /// Strip after strip, by readings.
+    pub(super) fn strips(&self) -> &[StripValues] {
+        &self.strips
+    }
+
     fn strip_range(&self, readings: Range<usize>) -> StripRange<'_> {
         let readings = (readings.start, readings.end);
         StripRange { strips: &self.strips, count: self.readings, readings }
@@ -92,7 +97,7 @@ pub struct SegmentedColumns {
 /// stay in the cache.
 const SAMPLES: usize = 64;
 /// Number of strips in lockstep.
-const GROUP: usize = 4;
+pub(super) const GROUP: usize = 4;
 
 impl FilterGains {
     /// Returns the products of the residual and all columns of a part after the filter.

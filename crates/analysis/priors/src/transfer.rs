@@ -22,7 +22,7 @@ use sistership_simulation::{PlantError, Ship};
 pub const TYPICAL_SOURCE: &str = "typical value of the law";
 
 /// Speeds within this share of the approach speed are on the approach.
-const NEAR_APPROACH: f64 = 0.1;
+pub(crate) const NEAR_APPROACH: f64 = 0.1;
 
 /// Returns the approach of a set of trials: the median speed at their first samples, with the typical
 /// revolutions of the trials that begin near that speed; where trials start from rest, the typical
@@ -70,7 +70,8 @@ fn typical_value(values: &mut [f64]) -> Option<f64> {
     Some(if median > 0.5 * rms { median } else { rms })
 }
 
-fn median_value(values: &mut [f64]) -> Option<f64> {
+/// Median; `None` of no values.
+pub(crate) fn median_value(values: &mut [f64]) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
@@ -227,6 +228,7 @@ fn fill_model(
             .map(|a| a.speed_m_s)
             .or_else(|| particulars::particular_value(particulars, "service_speed_m_s")),
         revolutions_rps: approach.and_then(|a| a.n_rps),
+        revolutions_loss: None,
         steering: Default::default(),
         particulars: particulars.clone(),
         parameters: law

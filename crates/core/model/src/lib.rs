@@ -22,6 +22,7 @@ pub mod particulars;
 pub mod posterior;
 pub mod propulsion;
 pub mod quantity;
+pub mod sample_hash;
 pub mod source;
 pub mod trial;
 pub mod trial_input;

@@ -48,6 +48,10 @@ pub struct Model {
     /// The propeller revolutions at that speed, 1/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub revolutions_rps: Option<f64>,
+    /// The share of these revolutions that the engine loses by the share of the speed that a
+    /// manoeuvre takes, at the same order: 0 for a governor, 1 at a constant advance ratio.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub revolutions_loss: Option<f64>,
     /// The steering gear.
     #[serde(default)]
     pub steering: Steering,
@@ -140,6 +144,7 @@ impl Model {
             sources: vessel.file.sources.clone(),
             speed_m_s: raw.speed_m_s,
             revolutions_rps: raw.revolutions_rps,
+            revolutions_loss: None,
             steering: raw.steering.clone(),
             particulars: vessel.particulars.clone(),
             parameters: section("parameters", &raw.parameters)?,
@@ -183,7 +188,7 @@ impl Model {
         // Effects and uncertainty belong to the trials of the source model.
         model.effects = Vec::new();
         (model.uncertainty, model.posterior, model.validity) = (None, None, None);
-        (model.propulsion, model.branch) = (None, None);
+        (model.propulsion, model.branch, model.revolutions_loss) = (None, None, None);
         for name in law.parameters.keys() {
             if let Some(value) = law.derived_parameter(name, particulars) {
                 model.parameters.insert(name.clone(), Quantity::new(value, DERIVED_SOURCE));
@@ -265,6 +270,9 @@ impl Model {
                 format!("parameters.values.{name}"),
                 missing_parameter_message(name, parameter),
             ));
+        }
+        if self.revolutions_loss.is_some_and(|loss| !(0.0..=1.0).contains(&loss)) {
+            return Err(("revolutions_loss".to_owned(), "give a share from 0 to 1".to_owned()));
         }
         if let Some(uncertainty) = &self.uncertainty {
             uncertainty.check_lists().map_err(|e| ("uncertainty".to_owned(), e.to_string()))?;

@@ -43,6 +43,7 @@ pub struct Ship {
     lpp_m: f64,
     approach_speed_m_s: f64,
     approach_n_rps: f64,
+    revolutions_loss: f64,
     /// Instruments for velocities over the ground, and through the water.
     instruments: [Option<InstrumentModel>; 2],
     /// Range covered by the model's trials.
@@ -133,6 +134,7 @@ impl Ship {
             lpp_m,
             approach_speed_m_s: speed,
             approach_n_rps,
+            revolutions_loss: model.revolutions_loss.unwrap_or(0.0),
             // If the range of the foundation's trials is unknown, the domain of the correction is
             // used, so that runs report where the correction fades out.
             validity: model.validity.as_ref().or(domain).cloned(),
@@ -165,6 +167,11 @@ impl Ship {
     /// Revolutions of a steady approach at a speed, proportional to those of the model, 1/s.
     pub fn revolutions_at(&self, speed_m_s: f64) -> f64 {
         self.approach_n_rps * speed_m_s / self.approach_speed_m_s
+    }
+
+    /// Share of the revolutions that the engine loses by the share of the speed that is lost.
+    pub fn revolutions_loss(&self) -> f64 {
+        self.revolutions_loss
     }
 
     /// Returns true if the law has revolutions as an input.

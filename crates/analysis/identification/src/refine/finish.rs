@@ -23,6 +23,7 @@ use crate::constraints::LimitError;
 use sistership_assessment::course::course_figures;
 use sistership_assessment::uncertainty::{fold_factor, uncertainty_bands};
 use sistership_numerics::RidgeChoice;
+use sistership_priors::engine_response::engine_response;
 use sistership_priors::transfer::TYPICAL_SOURCE;
 use sistership_propulsion::{PropulsionContext, PropulsionFault, SourcePropeller};
 
@@ -164,9 +165,9 @@ fn simulate_candidate(
         }
         fitted => fitted?,
     };
-    // Propulsion comes before the manoeuvres, which it affects.
-    let model =
-        propulsion_context(problem).with_propulsion(refined_model(problem, fitted.as_ref()));
+    // Engine and propulsion come before the manoeuvres, which they affect.
+    let refined = with_engine(refined_model(problem, fitted.as_ref()), problem);
+    let model = propulsion_context(problem).with_propulsion(refined);
     let manoeuvres = standard_manoeuvres(&model, problem.law);
     let faults = RangeFaults::simulate(&model, problem.law, &problem.whole, &manoeuvres);
     Ok(Ok(FittedCandidate { fit: fitted, model, manoeuvres, faults }))
@@ -181,6 +182,13 @@ fn propulsion_context<'a>(problem: &'a RefinementProblem<'_>) -> PropulsionConte
     let estimate = problem.target.and_then(of_ship).map(|(estimate, _)| estimate);
     let source = problem.propeller.as_ref().map(|(model, law)| SourcePropeller { model, law });
     PropulsionContext { law: problem.law, trials: &problem.whole, source, estimate }
+}
+
+/// The model with the response of the engine in its trials.
+fn with_engine(model: Model, problem: &RefinementProblem<'_>) -> Model {
+    let Some(engine) = engine_response(&problem.whole) else { return model };
+    let (n_rps, loss) = (Some(engine.n_rps), Some(engine.loss));
+    Model { revolutions_rps: n_rps, revolutions_loss: loss, ..model }
 }
 
 /// The refined model; the transferred source if nothing was fitted.

@@ -219,6 +219,7 @@ fn empty_model(library: &RegressionLibrary, vessel: &Vessel, speed_m_s: f64) -> 
         sources,
         speed_m_s: Some(speed_m_s),
         revolutions_rps: None,
+        revolutions_loss: None,
         steering: estimated_steering(vessel),
         particulars: Particulars::new(),
         parameters: BTreeMap::new(),

@@ -1,6 +1,7 @@
 //! Acceptance summary, the first page of a report: ship, conditions of the trials, verdict on the
 //! standards of IMO, model, and what is not stated with the place where it is added.
 
+use sistership_model::Model;
 use sistership_model::trial::{Channel, Trial};
 
 use super::content::RefinementContent;
@@ -95,7 +96,23 @@ fn ship_facts(input: &RefinementInput<'_>) -> Vec<SummaryFact> {
         fact("Trim", trim, "`draught_fore_m` and `draught_aft_m` in the ship's particulars"),
         fact("Displacement", volume, particulars),
         fact("Approach speed", speed, "`service_speed_m_s` in the ship's particulars"),
+        fact(
+            "Propeller revolutions",
+            engine_text(&input.refinement.model),
+            "column `n` of the trials",
+        ),
     ]
+}
+
+/// Revolutions on the approach, and what a turn takes of them.
+fn engine_text(model: &Model) -> Option<String> {
+    let approach =
+        format!("{} rpm on the approach", format_fixed(60.0 * model.revolutions_rps?, 1));
+    let lost = model.revolutions_loss.map(|loss| format_fixed(50.0 * loss, 0));
+    Some(lost.map_or_else(
+        || format!("{approach}, held in manoeuvres"),
+        |lost| format!("{approach}; {lost} % less at half the speed, as in the trials"),
+    ))
 }
 
 /// Conditions of the trials: what their channels tell.

@@ -153,7 +153,11 @@ fn diagnosis_settings(zoo: &Zoo, arguments: &DiagnoseArguments) -> Result<Settin
         prior_odds: arguments.prior_odds.iter().cloned().collect(),
         earlier: arguments.after.as_deref().map(read_history).transpose()?,
     };
-    let flag = |field: String| field.replace('_', "-");
+    // The setting holds what the file of the flag says.
+    let flag = |field: String| match field.as_str() {
+        "earlier" => "after".to_owned(),
+        _ => field.replace('_', "-"),
+    };
     settings
         .check_values()
         .map_err(|(field, message)| Failure::Call(format!("--{}: {message}", flag(field))))?;

@@ -30,6 +30,10 @@ pub struct EffectFile {
     /// Prior odds of the effect, before any trial is considered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beforehand: Option<PriorOddsFile>,
+    /// True if it differs from day to day, as weather does: earlier trials of the ship do not
+    /// inform on it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub differs_by_day: bool,
     /// The forms in which it may appear; each is fitted to trials that have the channels it needs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub forms: Vec<FormFile>,

@@ -25,6 +25,8 @@ pub struct Effect {
     pub note: Option<String>,
     /// Prior odds of the effect, before any trial is considered.
     pub beforehand: Option<PriorOddsFile>,
+    /// True if it differs from day to day: earlier trials of the ship do not inform on it.
+    pub differs_by_day: bool,
     /// The forms in which it may appear; empty if terms are searched.
     pub forms: Vec<Arc<EffectForm>>,
     /// Grammar of the terms that are searched.
@@ -65,6 +67,7 @@ fn read_effect(file: &str, text: &str) -> Result<Effect, FileError> {
         sources: raw.sources,
         note: raw.note,
         beforehand: raw.beforehand,
+        differs_by_day: raw.differs_by_day,
     })
 }
 

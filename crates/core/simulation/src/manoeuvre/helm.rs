@@ -1,6 +1,7 @@
 //! Orders to the rudder during a manoeuvre, and the simulation of many manoeuvres at once.
 
 use super::ManoeuvreSettings;
+use super::engine::EngineOrder;
 use crate::envelope::SimulationStop;
 use crate::ordered_runs::{HeldOrder, OrderedRun, simulate_runs};
 use crate::ship::{HelmOrder, Ship};
@@ -86,7 +87,7 @@ const SMALLEST_STEP_PART: f64 = 1e-3;
 /// Controller that carries out a manoeuvre.
 struct ManoeuvreHelm {
     manoeuvre: Manoeuvre,
-    n_rps: f64,
+    engine: EngineOrder,
     run_in_s: f64,
     /// True if the run continues after the manoeuvre is complete.
     goes_on: bool,
@@ -100,11 +101,10 @@ struct ManoeuvreHelm {
 
 impl ManoeuvreHelm {
     fn new(ship: &Ship, manoeuvre: Manoeuvre, settings: &ManoeuvreSettings) -> Self {
-        let (n_rps, run_in_s) = (settings.propeller_revolutions(ship), settings.run_in_s);
         Self {
             manoeuvre,
-            n_rps,
-            run_in_s,
+            engine: settings.engine_order(ship),
+            run_in_s: settings.run_in_s,
             goes_on: settings.duration_s.is_some(),
             at_heading: settings.reversals_within_steps,
             figures_only: settings.figures_only,
@@ -118,7 +118,8 @@ impl ManoeuvreHelm {
         let since_s = t_s - self.run_in_s;
         // The tolerance absorbs the rounding of the sum of steps.
         let rudder_deg = if since_s < -1e-9 { 0.0 } else { self.rudder_deg(since_s, state) };
-        let order = HelmOrder { delta_rad: rudder_deg.to_radians(), n_rps: self.n_rps };
+        let n_rps = self.engine.revolutions(state);
+        let order = HelmOrder { delta_rad: rudder_deg.to_radians(), n_rps };
         let held = HeldOrder { order, lasts_s: self.order_duration_s(state) };
         // A given duration continues the run after the manoeuvre is complete.
         (self.goes_on || !self.is_done(state)).then_some(held)

@@ -1,5 +1,6 @@
 //! Simulation of the standard manoeuvres.
 
+mod engine;
 mod figures;
 mod further;
 mod helm;
@@ -26,6 +27,8 @@ pub use standard::{
 };
 pub use stopping::{AsternOrder, StoppingError, StoppingTest, simulate_stop};
 
+use engine::EngineOrder;
+
 use crate::envelope::SimulationStop;
 use crate::integrate::Method;
 use crate::ship::{RunSettings, Ship};
@@ -36,7 +39,7 @@ use crate::state::StateVector;
 pub struct ManoeuvreSettings {
     /// Approach speed, m/s; default: that of the model.
     pub speed_m_s: Option<f64>,
-    /// Propeller revolutions, 1/s; default: those of steady running at the approach speed.
+    /// Propeller revolutions on the approach, 1/s; default: those of steady running at its speed.
     pub n_rps: Option<f64>,
     /// Longest duration, s; default: enough for a turn of three full circles.
     pub duration_s: Option<f64>,
@@ -74,8 +77,10 @@ impl ManoeuvreSettings {
         self.speed_m_s.unwrap_or(ship.approach_speed_m_s())
     }
 
-    fn propeller_revolutions(&self, ship: &Ship) -> f64 {
-        self.n_rps.unwrap_or_else(|| ship.revolutions_at(self.approach_speed(ship)))
+    fn engine_order(&self, ship: &Ship) -> EngineOrder {
+        let speed_m_s = self.approach_speed(ship);
+        let n_rps = self.n_rps.unwrap_or_else(|| ship.revolutions_at(speed_m_s));
+        EngineOrder { n_rps, speed_m_s, loss: ship.revolutions_loss() }
     }
 
     /// Duration, s, scaled with length and speed so that a small model and a large ship cover the

@@ -38,12 +38,13 @@ pub fn simulate_pull_out(
         released: None,
         ended: None,
     };
-    let (mut track, n_rps) = (Trajectory::default(), settings.propeller_revolutions(ship));
+    let (mut track, engine) = (Trajectory::default(), settings.engine_order(ship));
     ship.simulate_orders(
         whole.run_settings(ship, straight_state(approach)),
         &mut track,
         |t_s, state| {
             let delta_deg = helm.rudder_deg(t_s, state, rudder_deg)?;
+            let n_rps = engine.revolutions(state);
             Some(HelmOrder { delta_rad: delta_deg.to_radians(), n_rps })
         },
     )?;

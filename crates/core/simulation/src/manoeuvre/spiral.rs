@@ -50,7 +50,7 @@ fn simulate_orders(
     orders: &[f64],
     mut rudder_deg: impl FnMut(f64, &StateVector) -> f64,
 ) -> Result<Vec<SpiralPoint>, SimulationStop> {
-    let (approach, n_rps) = (settings.approach_speed(ship), settings.propeller_revolutions(ship));
+    let (approach, engine) = (settings.approach_speed(ship), settings.engine_order(ship));
     let most_s = settings.duration_s.unwrap_or(MAX_LENGTHS * ship.lpp_m() / approach);
     let whole = steady_settings(settings, ship, most_s * orders.len() as f64);
     let mut steady = SteadyDetector::new(ship, approach, whole.step_length_s(ship));
@@ -66,7 +66,8 @@ fn simulate_orders(
         }
         // After the last order there is none, which ends the run.
         let order = orders.get(points.len())?;
-        Some(HelmOrder { delta_rad: rudder_deg(*order, state).to_radians(), n_rps })
+        let delta_rad = rudder_deg(*order, state).to_radians();
+        Some(HelmOrder { delta_rad, n_rps: engine.revolutions(state) })
     })?;
     Ok(points)
 }

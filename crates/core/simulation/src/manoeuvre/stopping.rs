@@ -55,7 +55,7 @@ pub fn simulate_stop(
     order: AsternOrder,
 ) -> Result<StoppingTest, StoppingError> {
     check_reversing(model, law, ship)?;
-    let ahead_rps = settings.propeller_revolutions(ship);
+    let ahead_rps = settings.engine_order(ship).n_rps;
     let astern_rps = -order.astern_rps.unwrap_or(ahead_rps);
     let speed = settings.approach_speed(ship);
     let longest_s = MAX_LENGTHS * ship.lpp_m() / speed + order.reversal_s;

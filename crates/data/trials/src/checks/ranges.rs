@@ -66,6 +66,7 @@ pub(crate) fn check_ranges(recording: &Recording, findings: &mut Findings) {
     );
     tiny_rudder(recording, findings);
     fast_propeller(recording, findings);
+    idle_propeller(recording, findings);
 }
 
 fn report_beyond(
@@ -123,6 +124,26 @@ fn fast_propeller(recording: &Recording, findings: &mut Findings) {
     }
 }
 
+/// Warns of revolutions that are zero throughout while the ship keeps its way: a recorder that does
+/// not get them often writes zeros. A ship whose propeller is stopped slows down.
+fn idle_propeller(recording: &Recording, findings: &mut Findings) {
+    let shafts = [Channel::N, Channel::NS, Channel::NP];
+    let recorded: Vec<_> =
+        shafts.into_iter().filter(|&one| recording.channel(one).is_some()).collect();
+    let values = recorded.iter().flat_map(|&shaft| recording.channel(shaft).into_iter().flatten());
+    let is_idle = !recorded.is_empty() && values.copied().all(|n| n == 0.0);
+    let Some(u) = recording.channel(Channel::U).filter(|u| is_idle && u.len() >= 4) else { return };
+    // Single readings may be faults, hence medians of the first and the last quarter.
+    let quarter = u.len() / 4;
+    let typical = |part: &[f64]| nearest_quantile(part.iter().copied(), 0.5);
+    let (first, last) = (typical(&u[..quarter]), typical(&u[u.len() - quarter..]));
+    if first > 0.0 && last > 0.5 * first {
+        let message = "all revolutions are 0 while the ship keeps its way; if they were not recorded leave the \
+                       column out, or state them as `n_rps` of the trial";
+        findings.warning(None, Some(recording.column_header(recorded[0])), message);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -151,6 +172,18 @@ mod tests {
         assert!(of(Channel::WindSpeed, &[-1.0]).contains("cannot be negative"));
         assert!(of(Channel::Depth, &[0.0]).contains("positive"));
         assert!(of(Channel::N, &[80.0, 80.0]).starts_with("warning"));
+    }
+
+    #[test]
+    fn revolutions_of_a_recorder_that_does_not_get_them_are_remarked() {
+        let with = |speeds: [f64; 4], n: f64| {
+            let channels = [(Channel::U, speeds.to_vec()), (Channel::N, vec![n; 4])];
+            check_messages(&test_recording(&channels), check_ranges)
+        };
+        assert!(with([5.0, 4.0, 3.5, 4.0], 0.0).contains("all revolutions are 0"));
+        // A ship that coasts loses its way.
+        assert_eq!(with([5.0, 4.0, 3.0, 2.0], 0.0), "");
+        assert_eq!(with([5.0, 4.0, 3.5, 4.0], 2.0), "");
     }
 
     #[test]

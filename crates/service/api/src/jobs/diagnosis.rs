@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use sistership_diagnosis::Verdict;
 use sistership_model::version::SourceVersion;
 use sistership_store::{Job, Version};
 
@@ -38,16 +37,6 @@ pub(super) async fn run_diagnosis_job(app: &App, job: &Job, progress: JobProgres
     let new =
         diagnose_part(app, &in_sequence, (&version, &asked.trials), (&progress, begin, middle))
             .await?;
-    // What earlier trials say may contradict new ones, as after a repair: these then speak for
-    // themselves, and the sequence begins again with them.
-    let is_unexplained = new.diagnosed.diagnosis.verdict == Verdict::Unexplained;
-    let new = match sequence.earlier.is_some() && is_unexplained {
-        true => {
-            diagnose_part(app, &asked, (&version, &asked.trials), (&progress, begin, middle))
-                .await?
-        }
-        false => new,
-    };
     // Trials that were diagnosed before do not count again.
     let new = if sequence.is_new { new } else { without_history(new) };
     let (all, of_new) = match whole {

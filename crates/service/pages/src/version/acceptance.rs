@@ -149,7 +149,20 @@ impl SummaryInputs {
                 self.stated_words("displacement").or(volume),
             ),
             fact(say("acceptance-speed").into(), speed),
+            fact(say("acceptance-revolutions").into(), self.engine_words()),
         ]
+    }
+
+    /// Revolutions on the approach, and what a turn takes of them.
+    fn engine_words(&self) -> Option<String> {
+        let model = &self.of.document.model;
+        let revolutions = format_fixed(60.0 * model.revolutions_rps?, 1);
+        let lost = model.revolutions_loss.map(|loss| format_fixed(50.0 * loss, 0));
+        let message = match lost {
+            None => say("acceptance-engine-held"),
+            Some(lost) => say("acceptance-engine-loses").with("lost", lost),
+        };
+        Some(message.with("revolutions", revolutions).to_string())
     }
 
     /// Conditions of the trials; remarks only where there are any.
