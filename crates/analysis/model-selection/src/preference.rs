@@ -34,7 +34,7 @@ impl Preference {
 }
 
 /// Returns the place of the physical model that replaces the selected one: of those with fewer
-/// coefficients whose error, and its sum with a multiple of the variance elsewhere, are no greater
+/// fitted coefficients, a source as it is among them, whose error, and its sum with a multiple of the variance elsewhere, are no greater
 /// than a ratio ([`SEARCH`]`.defensible`) times those of the selected one, the one with the least
 /// error. `None` if there is none. `all` has the evaluations, `true` for a physical model.
 pub(crate) fn defensible_place(
@@ -52,8 +52,7 @@ pub(crate) fn defensible_place(
     };
     let [error, anywhere] = figures(chosen)?;
     let is_as_good = |one: &CandidateEvaluation| {
-        let is_smaller = (1..chosen.coefficients).contains(&one.coefficients);
-        let own = figures(one).filter(|_| is_smaller)?;
+        let own = figures(one).filter(|_| one.coefficients < chosen.coefficients)?;
         let ratio = SEARCH.defensible;
         (own[0] <= ratio * error && own[1] <= ratio * anywhere).then_some(own[0])
     };
@@ -88,6 +87,11 @@ mod tests {
         assert_eq!(defensible_place(&[(&many, false), (&tied, false)], 0), None);
         assert_eq!(defensible_place(&[(&many, false), (&worse, true)], 0), None);
         assert_eq!(defensible_place(&[(&tied, true), (&many, false)], 0), None);
+        let as_published = evaluation(0, &[0.7, 1.2, 0.7, 1.1]);
+        assert_eq!(
+            defensible_place(&[(&many, false), (&tied, true), (&as_published, true)], 0),
+            Some(2)
+        );
         let scattered = CandidateEvaluation { variance: Some(1.0), ..tied };
         assert_eq!(defensible_place(&[(&many, false), (&scattered, true)], 0), None);
     }

@@ -191,6 +191,9 @@ fn refine_candidate(
     refine(&candidate_request(search, entrant, settings), &told)
 }
 
+/// Reason against a fit whose refinement keeps the source.
+const SOURCE_KEPT: &str = "no fit to all trials has less error than the source as it is";
+
 /// Returns a refinement in which something was fitted, or the reason (inner error) why there is
 /// none; a transferred source need not be fitted.
 fn require_fitted(
@@ -199,7 +202,8 @@ fn require_fitted(
 ) -> Result<Result<Refinement, String>, RefineError> {
     match made {
         Ok(made) if rung != SelectionStage::CarriedOver && made.is_source_kept() => {
-            Ok(Err(made.refusal_reasons()))
+            let reasons = made.refusal_reasons();
+            Ok(Err(if reasons.is_empty() { SOURCE_KEPT.to_owned() } else { reasons }))
         }
         Ok(made) => Ok(Ok(made)),
         Err(error @ (RefineError::Cancelled | RefineError::Setting { .. })) => Err(error),
