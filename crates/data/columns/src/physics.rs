@@ -199,17 +199,19 @@ impl<'a> PhysicalEvidence<'a> {
         Some(ColumnRelation { roles, odds: turned + sized, figure })
     }
 
-    /// Relation of surge with yaw rate: a turning ship loses speed.
+    /// Relation of surge, or of the speed over ground where there is none, with yaw rate: a turning
+    /// ship loses speed.
     fn turning_loss(&self, of: &Assignment) -> Option<ColumnRelation> {
-        let ((i, fi), (j, _)) = (of.find(Role::U)?, of.find(Role::R)?);
+        let ahead = [Role::U, Role::Speed].into_iter().find(|&role| of.find(role).is_some())?;
+        let ((i, fi), (j, _)) = (of.find(ahead)?, of.find(Role::R)?);
         let scale = self.observed.signals.scales.first()?;
         let turning: Vec<f64> = scale.columns[j].mean.iter().map(|rate| rate.abs()).collect();
-        let ahead = &scale.columns[i].mean;
-        let correlation = -rudder::pearson_correlation(ahead, &turning) * fi.signum();
+        let speeds = &scale.columns[i].mean;
+        let correlation = -rudder::pearson_correlation(speeds, &turning) * fi.signum();
         let odds = (4.0 * (correlation - 0.25)).clamp(-1.5, 2.5);
         let figure =
             self.observed.format_figure(|| format!("falls as the ship turns, by {correlation:.2}"));
-        Some(ColumnRelation { roles: [Role::U, Role::R, Role::Other], odds, figure })
+        Some(ColumnRelation { roles: [ahead, Role::R, Role::Other], odds, figure })
     }
 
     /// Relation of the speed over ground with the speed ahead, which is a part of it.
@@ -236,6 +238,7 @@ impl<'a> PhysicalEvidence<'a> {
     fn twin_relations(&self, of: &Assignment) -> Vec<ColumnRelation> {
         let pairs = [
             (Role::U, Role::UWater, 0.01),
+            (Role::Speed, Role::UWater, 0.01),
             (Role::V, Role::VWater, 0.05),
             (Role::Speed, Role::U, 0.01),
             (Role::DeltaS, Role::DeltaP, 0.02),

@@ -67,6 +67,13 @@ fn a_decimal_comma_is_recognised() {
 }
 
 #[test]
+fn a_rudder_has_its_side_and_a_latitude_its_hemisphere() {
+    let table = accepted("t_s;delta_rad;u_m_s\n0;StB 0,5;7\n1;BB 0,2;7\n2;0,0;7\n");
+    assert_eq!(table.values[1], [0.5, -0.2, 0.0]);
+    assert!(said("t_s,latitude_deg\n0,33.5 S\n").contains("`33.5 S` is not a number"));
+}
+
+#[test]
 fn separators_that_close_lines_are_passed_over_only_where_nothing_can_shift() {
     assert_eq!(accepted("t_s,u_m_s,\n0,1,\n1,2,\n").values[1], [1.0, 2.0]);
     assert_eq!(accepted("t_s,u_m_s\n0,1.5,\n1,2.5,\n").values[1], [1.5, 2.5]);

@@ -86,6 +86,36 @@ fn parse_degrees(cell: &[u8]) -> Option<f64> {
     Some(if is_negative { -size } else { size })
 }
 
+/// Words for the starboard side in logs of several languages, and for the port side.
+const SIDES: [(&[&str], f64); 2] = [
+    (&["S", "SB", "STB", "STBD", "STARBOARD", "R", "RIGHT"], 1.0),
+    (&["P", "PS", "PT", "PORT", "BB", "L", "LEFT"], -1.0),
+];
+
+/// Parses a number with its side, such as `StB 12,5` or `5.0° P`: positive to starboard. A single
+/// comma is a decimal mark. `None` without exactly one side and one number without a sign.
+pub(crate) fn parse_sided(cell: &[u8]) -> Option<f64> {
+    let is_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '.' | ',');
+    // Bytes that are not UTF-8 are Latin-1, as in degrees.
+    let text: String = std::str::from_utf8(cell)
+        .map_or_else(|_| cell.iter().map(|&byte| char::from(byte)).collect(), str::to_owned);
+    let text = text.trim();
+    let (first, last) = (text.find(is_number)?, text.rfind(is_number)?);
+    let (before, after) = (&text[..first], &text[last + 1..]);
+    let word = |part: &str| part.trim_matches(|at: char| !at.is_ascii_alphabetic()).to_uppercase();
+    let has_other = |part: &str| part.contains(['+', '-', '/', ':']);
+    let (before, after) = match has_other(before) || has_other(after) {
+        true => return None,
+        false => (word(before), word(after)),
+    };
+    let side = if before.is_empty() { &after } else { &before };
+    let is_twofold = !before.is_empty() && !after.is_empty();
+    let (_, sign) =
+        SIDES.iter().find(|(words, _)| words.contains(&side.as_str()) && !is_twofold)?;
+    let value: f64 = text[first..=last].replacen(',', ".", 1).parse().ok()?;
+    Some(sign * value)
+}
+
 /// Number of decimal digits that an f64 holds exactly.
 const EXACT: usize = 15;
 const TENS: [f64; EXACT + 1] =
@@ -238,6 +268,26 @@ mod tests {
         }
         for text in ["1d", "1.0f", "#N/A", "NULL", "--1", "1e", "1/2", "%"] {
             assert!(parse_number(text.as_bytes()).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn sides_of_a_rudder_are_signs() {
+        let read = |text: &str| parse_sided(text.as_bytes());
+        for (text, value) in [
+            ("StB 12,5", 12.5),
+            ("BB 3", -3.0),
+            ("5.0 P", -5.0),
+            ("S07.5", 7.5),
+            ("10° stbd", 10.0),
+        ] {
+            assert_eq!(read(text), Some(value), "{text}");
+        }
+        assert_eq!(parse_sided(b"4,0\xb0 BB"), Some(-4.0), "Latin-1");
+        for text in
+            ["12", "N 12", "P -5", "P 5 S", "P 1,2,3", "P 1.2,3", "amidships", "", "5/P", "STB"]
+        {
+            assert_eq!(read(text), None, "{text}");
         }
     }
 }

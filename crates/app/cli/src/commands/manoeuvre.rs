@@ -93,6 +93,7 @@ pub fn run(zoo: &Zoo, manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
     let inputs = [PathBuf::from(&manoeuvre.model)];
     let file = manoeuvre.out.as_ref().map(|path| OutputFile::new(path, &inputs)).transpose()?;
     let mut remarks = adapt_to_speed(manoeuvre, &mut model, &law);
+    remarks.extend(engine_remark(&model));
     let environment =
         PredictionEnvironment { depth_m: manoeuvre.depth_m, ..PredictionEnvironment::default() };
     remarks.extend(environment.uncovered_inputs(&model).into_iter().map(|one| one.message));
@@ -133,6 +134,14 @@ fn check_single(manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
         ));
     }
     Ok(())
+}
+
+/// Remark on revolutions that fall in a manoeuvre.
+fn engine_remark(model: &Model) -> Option<String> {
+    let percent = 50.0 * model.revolutions_loss?;
+    Some(format!(
+        "revolutions fall with the speed as in the trials of the model: by {percent:.0} % at half the speed"
+    ))
 }
 
 /// Moves a law that is expanded about an approach speed to the requested speed; returns remarks on
