@@ -252,6 +252,8 @@ impl<'a> PhysicalEvidence<'a> {
                 let (a, b) = (&scale.columns[i].mean, &scale.columns[j].mean);
                 let fit = SeriesFit::new(a, fi, b, fj)?;
                 let odds = match other {
+                    // A current may part them.
+                    Role::UWater if one == Role::Speed => fit.instrument_odds(floor).max(0.0),
                     Role::UWater | Role::VWater => fit.instrument_odds(floor),
                     _ => fit.capped_odds(floor),
                 };

@@ -53,8 +53,8 @@ pub(crate) fn parse_number(cell: &[u8]) -> Result<f64, CellFault> {
     }
 }
 
-/// Parses an angle in degrees, minutes and seconds, such as `34°41.5'N` or `135 11 24.0 E`, to
-/// degrees; south and west are negative. `None` without a sign of degrees, or several numbers and a
+/// Parses an angle in degrees, minutes and seconds, such as `34°41.5'N`, `135 11 24.0 E` or
+/// `33-54.0S`, to degrees; south and west are negative. `None` without a sign of degrees, or several numbers and a
 /// point of the compass.
 fn parse_degrees(cell: &[u8]) -> Option<f64> {
     // Bytes that are not UTF-8 are Latin-1, where 0xb0 is the sign of degrees.
@@ -67,6 +67,11 @@ fn parse_degrees(cell: &[u8]) -> Option<f64> {
         [] => None,
         [letter] if compass(letter) => Some(letter),
         _ => return None,
+    };
+    // Between the digits of `33-54.0S` a dash is no sign.
+    let text = match (point, text.split_at_checked(1)) {
+        (Some(_), Some((first, rest))) => format!("{first}{}", rest.replace('-', " ")),
+        _ => text,
     };
     let is_sign = |letter: char| matches!(letter, '°' | 'º' | '˚');
     let signed = text.contains(is_sign);
@@ -232,6 +237,8 @@ mod tests {
             ("34° 41' 30.0\" S", -(34.0 + 41.5 / 60.0)),
             ("135 11 24.0 E", 135.19),
             ("W005°30.0", -5.5),
+            ("33-54.0S", -33.9),
+            ("018-18.0 E", 18.3),
             ("-0°30'", -0.5),
             ("312.5°", 312.5),
         ] {
