@@ -11,13 +11,13 @@ import numpy as np
 
 from trials import DataSet, Ship, Task, Trial, track
 
-KINDS = ("cargo", "azimuth", "water_jet", "outboard", "catamaran")
+KINDS = ("cargo", "azimuth", "water-jet", "outboard", "catamaran")
 NAMES = tuple(f"made-{kind}-{seed}" for kind in KINDS for seed in (1, 2))
-CATEGORIES = {"cargo": "general-cargo", "azimuth": "offshore", "water_jet": "patrol",
+CATEGORIES = {"cargo": "general-cargo", "azimuth": "offshore", "water-jet": "patrol",
               "outboard": "boat", "catamaran": "usv"}
-SIZES = {"cargo": (95, 130), "azimuth": (30, 37), "water_jet": (18, 26), "outboard": (7, 9),
+SIZES = {"cargo": (95, 130), "azimuth": (30, 37), "water-jet": (18, 26), "outboard": (7, 9),
          "catamaran": (2, 6)}
-FROUDE = {"cargo": 0.22, "azimuth": 0.28, "water_jet": 0.5, "outboard": 0.55, "catamaran": 0.3}
+FROUDE = {"cargo": 0.22, "azimuth": 0.28, "water-jet": 0.5, "outboard": 0.55, "catamaran": 0.3}
 RHO, GRAVITY = 1000.0, 9.81
 STRIPS = np.linspace(-0.475, 0.475, 20)
 NOISE = {"u": 0.003, "v": 0.003, "r": 0.003, "psi": 0.002}
@@ -33,15 +33,15 @@ OFFSET, THRUST_LOSS, RATE_BIAS = np.radians(2.5), 0.85, 0.02
 
 
 def load(name, _folder):
-    kind, seed = name.split("-")[1], int(name.split("-")[2])
-    craft = Craft(kind, np.random.default_rng(1000 * seed + KINDS.index(kind)))
+    kind, seed = name.removeprefix("made-").rsplit("-", 1)
+    craft = Craft(kind, np.random.default_rng(1000 * int(seed) + KINDS.index(kind)))
     runs = FITTED + ZIGZAGS + JUDGED + SLOW
     trials = [craft.record(run, np.random.default_rng(zlib.crc32(repr((name, run)).encode())))
               for run in runs]
     fitted, judged = [title(run) for run in FITTED], [title(run) for run in JUDGED]
     zigzags = [title(run) for run in ZIGZAGS + FITTED if run[0] == "zigzag" and run[2] == 1.0]
     full = [title(run) for run in FITTED if run[2] == 1.0]
-    restart = 10 * craft.length / craft.speed
+    restart = float(10 * craft.length / craft.speed)
     few = [Task(f"trials-{k}", "few trials", fitted[:k], judged, restart if k == 8 else 0.0)
            for k in (1, 2, 4, 8)]
     further = [Task("zigzags-to-turns", "extrapolation", zigzags, judged[:2]),
@@ -100,7 +100,7 @@ class Craft:
         return self.sound_push(k, a)
 
     def sound_push(self, k, a):
-        if self.kind == "water_jet":
+        if self.kind == "water-jet":
             return self.thrust * k * (k - self.advance * a)
         return self.thrust * (k * abs(k) - self.advance * a * (0.8 * abs(k) + 0.2 * a))
 
@@ -123,7 +123,7 @@ class Craft:
         if self.kind == "outboard":
             push = push * (1 - 0.25 * np.sin(angle)**2) * (1 - 0.1 * abs(inflow) / self.speed)
         attack = angle + np.arctan2(inflow, max(abs(u), 0.1 * self.speed))
-        legs = 0.0 if self.kind == "water_jet" else stalled(attack)
+        legs = 0.0 if self.kind == "water-jet" else stalled(attack)
         foil = 0.35 * RHO * self.area * (u * u + 0.3 * self.speed**2) * legs
         side = self.walk * push - push * np.sin(angle) - foil
         return push * np.cos(angle) - abs(foil * np.sin(angle)), side, -half * side
@@ -197,7 +197,7 @@ class Craft:
         if self.kind == "catamaran":
             aft, out = -0.45 * self.length, 0.4 * self.beam
             sides = "".join(f"  {side}: {{ kind: thruster, x_m: {aft:.3f}, y_m: {y:.3f}, "
-                            f"channels: {{ {channel}: [{channel}_rps] }}, source: maker }}\n"
+                            f"channels: {{ {channel}: [{channel}_rps] }}, source: owner }}\n"
                             for side, y, channel in (("port", -out, "n_p"),
                                                      ("starboard", out, "n_s")))
         return Ship(name, CATEGORIES[self.kind],
