@@ -34,8 +34,8 @@ impl Preference {
 }
 
 /// Returns the place of the physical model that replaces the selected one: of those with fewer
-/// fitted coefficients, a source as it is among them, whose error, and its sum with a multiple of the variance elsewhere, are no greater
-/// than a ratio ([`SEARCH`]`.defensible`) times those of the selected one, the one with the least
+/// fitted coefficients, a source as it is among them, whose error, and its sum with a multiple of the
+/// variance elsewhere, are no greater than a ratio ([`SEARCH`]`.defensible`) times those of the selected one, the one with the least
 /// error. `None` if there is none. `all` has the evaluations, `true` for a physical model.
 pub(crate) fn defensible_place(
     all: &[(&CandidateEvaluation, bool)],

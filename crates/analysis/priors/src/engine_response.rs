@@ -1,5 +1,5 @@
-//! What an engine makes of its order while a ship loses speed: the revolutions of trials fall where
-//! torque or power is limited, and stay where a governor holds them.
+//! Response of an engine to a constant order while a ship loses speed: the revolutions of trials
+//! fall where torque or power is limited, and stay where a governor holds them.
 
 use sistership_model::trial::{Channel, Trial};
 
@@ -8,8 +8,8 @@ use crate::transfer::{NEAR_APPROACH, median_value, trial_approach};
 /// Root mean square about the line, in units of the approach revolutions, above which revolutions
 /// were ordered during a trial: half of what still counts as the approach.
 const ORDERED: f64 = 0.5 * NEAR_APPROACH;
-/// Smallest loss: a ship that loses half of its speed then loses a hundredth of its revolutions, about
-/// what they are recorded to.
+/// Smallest loss: a ship that loses half of its speed then loses a hundredth of its revolutions,
+/// about what they are recorded to.
 const LEAST_LOSS: f64 = 0.02;
 
 /// Revolutions of an engine at a constant order, `n = n_0 (1 - e (1 - U/U_0))`.
@@ -27,9 +27,9 @@ struct RevolutionsLine {
     at_approach: f64,
 }
 
-/// Response of the engine by the trials that begin near the approach speed, lose at least a tenth of
-/// it, and order no other revolutions: medians over them. `None` if there are none, or if the engine
-/// holds its revolutions.
+/// Response of the engine by the trials that begin near the approach speed, lose at least a tenth
+/// of it, and order no other revolutions: medians over them. `None` if there are none, or if the
+/// engine holds its revolutions.
 pub fn engine_response(trials: &[&Trial]) -> Option<EngineResponse> {
     let approach = trial_approach(trials)?;
     let n_rps = approach.n_rps?;
@@ -45,7 +45,8 @@ pub fn engine_response(trials: &[&Trial]) -> Option<EngineResponse> {
 }
 
 impl RevolutionsLine {
-    /// Least-squares line; `None` if the trial begins elsewhere, keeps its speed, or has other orders.
+    /// Least-squares line; `None` if the trial begins elsewhere, keeps its speed, or has other
+    /// orders.
     fn of_trial(trial: &Trial, speed_m_s: f64, n_rps: f64) -> Option<Self> {
         let (u, v) = (trial.channel(Channel::U)?, trial.channel(Channel::V)?);
         let speeds: Vec<f64> = u.iter().zip(v).map(|(u, v)| u.hypot(*v) / speed_m_s).collect();
@@ -76,8 +77,8 @@ impl RevolutionsLine {
 
 /// Mean revolutions of the recorded shafts, 1/s.
 fn mean_revolutions(trial: &Trial) -> Option<Vec<f64>> {
-    let shafts = [Channel::N, Channel::NS, Channel::NP].map(|shaft| trial.channel(shaft));
-    let recorded: Vec<_> = shafts.into_iter().flatten().collect();
+    let shafts = Channel::SHAFTS.into_iter();
+    let recorded: Vec<_> = shafts.filter_map(|shaft| trial.channel(shaft)).collect();
     let mean = |k: usize| recorded.iter().map(|n| n[k]).sum::<f64>() / recorded.len() as f64;
     (!recorded.is_empty()).then(|| (0..trial.len()).map(mean).collect())
 }

@@ -20,8 +20,8 @@ const APPROACH_QUANTILE: f64 = 0.95;
 /// Revolutions of each trial, 1/s, if no trial records any; `None` if one does, or if the ship's
 /// particulars do not suffice for an estimate.
 pub fn assume_revolutions(zoo: &Zoo, vessel: &Vessel, trials: &[&Trial]) -> Option<Vec<f64>> {
-    let shafts = [Channel::N, Channel::NS, Channel::NP];
-    let is_recorded = |trial: &&Trial| shafts.iter().any(|&one| trial.channel(one).is_some());
+    let is_recorded =
+        |trial: &&Trial| Channel::SHAFTS.iter().any(|&one| trial.channel(one).is_some());
     if trials.iter().any(is_recorded) {
         return None;
     }
@@ -75,7 +75,7 @@ mod tests {
     fn recorded_revolutions_are_kept() {
         let zoo = Zoo::load_embedded().unwrap();
         let vessel = zoo.vessel("kvlcc2").unwrap();
-        for shaft in [Channel::N, Channel::NS, Channel::NP] {
+        for shaft in Channel::SHAFTS {
             let trials = [turn(7.97, None), turn(7.97, Some(shaft))];
             assert_eq!(assume_revolutions(&zoo, vessel, &[&trials[0], &trials[1]]), None);
         }

@@ -57,8 +57,9 @@ fn start_speed(trial: &Trial) -> Option<f64> {
 
 /// Revolutions of every shaft at every sample, 1/s.
 fn shaft_revolutions(trial: &Trial) -> impl Iterator<Item = f64> {
-    let shafts = [Channel::N, Channel::NS, Channel::NP].into_iter();
-    shafts.flat_map(|shaft| trial.channel(shaft).into_iter().flatten().copied())
+    Channel::SHAFTS
+        .into_iter()
+        .flat_map(|shaft| trial.channel(shaft).into_iter().flatten().copied())
 }
 
 /// Median; the root mean square where trials stop, go astern or turn on the spot, so that the median
@@ -369,7 +370,7 @@ mod tests {
             ..Trial::default()
         };
         let motion = |shaft| trial([(Channel::U, 1.5), (Channel::V, 0.0), (shaft, 18.0)]);
-        for shaft in [Channel::N, Channel::NS, Channel::NP] {
+        for shaft in Channel::SHAFTS {
             let approach = trial_approach(&[&motion(shaft)]);
             assert_eq!(approach, Some(TrialApproach { speed_m_s: 1.5, n_rps: Some(18.0) }));
         }

@@ -92,6 +92,9 @@ const CHANNELS: [(Channel, &str, &str, Dimension); 21] = [
 ];
 
 impl Channel {
+    /// Channels of propeller revolutions: of one shaft or all, of starboard, of port.
+    pub const SHAFTS: [Self; 3] = [Self::N, Self::NS, Self::NP];
+
     /// Every channel.
     pub fn all_channels() -> impl Iterator<Item = Self> {
         CHANNELS.iter().map(|&(channel, ..)| channel)

@@ -60,8 +60,7 @@ pub(crate) fn convert_table(
 
 /// Adds the revolutions that a trial held; an error if they were recorded.
 fn hold_revolutions(trial: &mut Trial, n_rps: f64, findings: &mut Findings) {
-    let shafts = [Channel::N, Channel::NS, Channel::NP];
-    if shafts.iter().any(|&shaft| trial.channel(shaft).is_some()) {
+    if Channel::SHAFTS.iter().any(|&shaft| trial.channel(shaft).is_some()) {
         let message = "`n_rps` is given, but the file records revolutions; remove one of the two";
         return findings.error(None, None, message);
     }

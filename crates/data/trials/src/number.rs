@@ -54,8 +54,8 @@ pub(crate) fn parse_number(cell: &[u8]) -> Result<f64, CellFault> {
 }
 
 /// Parses an angle in degrees, minutes and seconds, such as `34°41.5'N`, `135 11 24.0 E` or
-/// `33-54.0S`, to degrees; south and west are negative. `None` without a sign of degrees, or several numbers and a
-/// point of the compass.
+/// `33-54.0S`, to degrees; south and west are negative. `None` without a sign of degrees, or several
+/// numbers and a point of the compass.
 fn parse_degrees(cell: &[u8]) -> Option<f64> {
     // Bytes that are not UTF-8 are Latin-1, where 0xb0 is the sign of degrees.
     let text = std::str::from_utf8(cell)

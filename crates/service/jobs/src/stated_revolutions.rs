@@ -13,8 +13,8 @@ pub fn state_revolutions(
     listed: &mut [ManifestTrial],
     trials: &mut [Trial],
 ) -> Option<String> {
-    let shafts = [Channel::N, Channel::NS, Channel::NP];
-    let is_recorded = |trial: &Trial| shafts.iter().any(|&one| trial.channel(one).is_some());
+    let is_recorded =
+        |trial: &Trial| Channel::SHAFTS.iter().any(|&one| trial.channel(one).is_some());
     if trials.is_empty() || trials.iter().any(is_recorded) {
         return None;
     }

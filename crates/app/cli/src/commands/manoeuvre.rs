@@ -140,7 +140,8 @@ fn check_single(manoeuvre: &ManoeuvreArguments) -> Result<(), Failure> {
 fn engine_remark(model: &Model) -> Option<String> {
     let percent = 50.0 * model.revolutions_loss?;
     Some(format!(
-        "revolutions fall with the speed as in the trials of the model: by {percent:.0} % at half the speed"
+        "revolutions fall with the speed as in the trials of the model: by {percent:.0} % at half \
+         the speed"
     ))
 }
 

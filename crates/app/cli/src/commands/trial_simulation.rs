@@ -107,8 +107,7 @@ impl TrialSimulator<'_> {
 
     /// Returns a trial with the model's own revolutions if none were recorded.
     fn with_revolutions<'t>(&self, trial: &'t Trial) -> Cow<'t, Trial> {
-        let shafts = [Channel::N, Channel::NS, Channel::NP];
-        let is_recorded = shafts.iter().any(|&shaft| trial.channel(shaft).is_some());
+        let is_recorded = Channel::SHAFTS.iter().any(|&shaft| trial.channel(shaft).is_some());
         // A law with a default of its own needs none.
         let input = self.law.inputs.get(Channel::N.name()).filter(|input| input.default.is_none());
         let Some(n_rps) = self.model.revolutions_rps.filter(|_| !is_recorded && input.is_some())

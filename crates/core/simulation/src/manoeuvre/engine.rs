@@ -2,7 +2,7 @@
 
 use crate::state::{StateVector, horizontal_speed};
 
-/// Order that gives the revolutions of an approach, and what the engine makes of it at other speeds.
+/// Order that gives the revolutions of an approach, and the engine's loss at other speeds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct EngineOrder {
     /// Revolutions on the approach, 1/s.

@@ -127,9 +127,8 @@ fn fast_propeller(recording: &Recording, findings: &mut Findings) {
 /// Warns of revolutions that are zero throughout while the ship keeps its way: a recorder that does
 /// not get them often writes zeros. A ship whose propeller is stopped slows down.
 fn idle_propeller(recording: &Recording, findings: &mut Findings) {
-    let shafts = [Channel::N, Channel::NS, Channel::NP];
     let recorded: Vec<_> =
-        shafts.into_iter().filter(|&one| recording.channel(one).is_some()).collect();
+        Channel::SHAFTS.into_iter().filter(|&one| recording.channel(one).is_some()).collect();
     let values = recorded.iter().flat_map(|&shaft| recording.channel(shaft).into_iter().flatten());
     let is_idle = !recorded.is_empty() && values.copied().all(|n| n == 0.0);
     let Some(u) = recording.channel(Channel::U).filter(|u| is_idle && u.len() >= 4) else { return };
@@ -138,8 +137,8 @@ fn idle_propeller(recording: &Recording, findings: &mut Findings) {
     let typical = |part: &[f64]| nearest_quantile(part.iter().copied(), 0.5);
     let (first, last) = (typical(&u[..quarter]), typical(&u[u.len() - quarter..]));
     if first > 0.0 && last > 0.5 * first {
-        let message = "all revolutions are 0 while the ship keeps its way; if they were not recorded leave the \
-                       column out, or state them as `n_rps` of the trial";
+        let message = "all revolutions are 0 while the ship keeps its way; if they were not \
+                       recorded leave the column out, or state them as `n_rps` of the trial";
         findings.warning(None, Some(recording.column_header(recorded[0])), message);
     }
 }
