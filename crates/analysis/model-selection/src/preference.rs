@@ -9,8 +9,8 @@ use crate::thresholds::SEARCH;
 pub enum Preference {
     /// The model that the errors select.
     Accurate,
-    /// A model of few physical parameters where both its error and its variance elsewhere are no
-    /// greater than those of the model that the errors select.
+    /// A model of few physical parameters where it is as good as the model that the errors select, or
+    /// far surer where no trial reaches.
     #[default]
     Defensible,
 }
@@ -34,31 +34,56 @@ impl Preference {
 }
 
 /// Returns the place of the physical model that replaces the selected one: of those with fewer
-/// fitted coefficients, a source as it is among them, whose error, and its sum with a multiple of the
-/// variance elsewhere, are no greater than a ratio ([`SEARCH`]`.defensible`) times those of the selected one, the one with the least
-/// error. `None` if there is none. `all` has the evaluations, `true` for a physical model.
+/// fitted coefficients, a source as it is among them, that are as good or far surer elsewhere, the
+/// one with the least error. `None` if there is none. `all` has the evaluations, `true` for a
+/// physical model.
+///
+/// As good is one whose error, and its sum with a multiple ([`SEARCH`]`.elsewhere`) of the variance
+/// where no trial reaches, are no greater. Far surer is one whose error plus that variance is less by
+/// a ratio ([`SEARCH`]`.surer`).
 pub(crate) fn defensible_place(
     all: &[(&CandidateEvaluation, bool)],
     selected: usize,
 ) -> Option<usize> {
     let (chosen, is_physical) = all[selected];
-    if is_physical {
-        return None;
-    }
-    // Error, and its sum with the variance elsewhere.
-    let figures = |one: &CandidateEvaluation| {
-        let error = one.error.filter(|error| error.is_finite())?;
-        Some([error, error + SEARCH.elsewhere * one.variance.unwrap_or(f64::INFINITY)])
+    let chosen = match is_physical {
+        true => return None,
+        false => (chosen.coefficients, ExpectedErrors::from_evaluation(chosen)?),
     };
-    let [error, anywhere] = figures(chosen)?;
-    let is_as_good = |one: &CandidateEvaluation| {
-        let own = figures(one).filter(|_| one.coefficients < chosen.coefficients)?;
-        let ratio = SEARCH.defensible;
-        (own[0] <= ratio * error && own[1] <= ratio * anywhere).then_some(own[0])
+    let replacing = |one: &CandidateEvaluation| {
+        let own = ExpectedErrors::from_evaluation(one).filter(|_| one.coefficients < chosen.0)?;
+        (own.is_as_good(&chosen.1) || own.is_far_surer(&chosen.1)).then_some(own.held_out)
     };
     let physical = all.iter().enumerate().filter(|(_, (_, is_physical))| *is_physical);
-    let as_good = physical.filter_map(|(place, (one, _))| Some((place, is_as_good(one)?)));
+    let as_good = physical.filter_map(|(place, (one, _))| Some((place, replacing(one)?)));
     as_good.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
+}
+
+/// Error on held-out trials, and its variance where no trial reaches.
+struct ExpectedErrors {
+    held_out: f64,
+    elsewhere: f64,
+}
+
+impl ExpectedErrors {
+    fn from_evaluation(one: &CandidateEvaluation) -> Option<Self> {
+        let held_out = one.error.filter(|error| error.is_finite())?;
+        Some(Self { held_out, elsewhere: one.variance.unwrap_or(f64::INFINITY) })
+    }
+
+    fn sum(&self, weight: f64) -> f64 {
+        self.held_out + weight * self.elsewhere
+    }
+
+    fn is_as_good(&self, other: &Self) -> bool {
+        let sums = [self, other].map(|one| one.sum(SEARCH.elsewhere));
+        self.held_out <= other.held_out && sums[0] <= sums[1]
+    }
+
+    fn is_far_surer(&self, other: &Self) -> bool {
+        // A model that does not complete the random orders gives way by its error (`choice`).
+        other.elsewhere.is_finite() && SEARCH.surer * self.sum(1.0) <= other.sum(1.0)
+    }
 }
 
 #[cfg(test)]
@@ -92,6 +117,12 @@ mod tests {
             defensible_place(&[(&many, false), (&tied, true), (&as_published, true)], 0),
             Some(2)
         );
+        let unsure = CandidateEvaluation { variance: Some(5.3), ..many.clone() };
+        assert_eq!(defensible_place(&[(&unsure, false), (&worse, true)], 0), None);
+        let sure = CandidateEvaluation { variance: Some(0.01), ..evaluation(28, &[2.0; 4]) };
+        assert_eq!(defensible_place(&[(&unsure, false), (&sure, true)], 0), Some(1));
+        let stops = CandidateEvaluation { variance: Some(f64::INFINITY), ..many.clone() };
+        assert_eq!(defensible_place(&[(&stops, false), (&worse, true)], 0), None);
         let scattered = CandidateEvaluation { variance: Some(1.0), ..tied };
         assert_eq!(defensible_place(&[(&many, false), (&scattered, true)], 0), None);
     }

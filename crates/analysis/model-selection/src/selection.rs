@@ -3,7 +3,8 @@
 use sistership_model::Law;
 
 use sistership_identification::refine::{
-    FoldModel, Progress, RefineError, Refinement, RefinementSettings, SourceEnvelopes, refine,
+    CandidateEvaluation, FoldModel, Progress, RefineError, Refinement, RefinementSettings,
+    SourceEnvelopes, refine,
 };
 
 use crate::candidate::CandidatePrior;
@@ -241,13 +242,17 @@ const MOST_ACCURATE: &str = "what the errors select; `--prefer accurate` uses it
 
 /// Reason for a model of few parameters at a place, with what it costs and buys.
 fn price(tried: &[EvaluatedCandidate], accurate: usize, best: usize) -> String {
-    let error = |place: usize| tried[place].weighed.error.unwrap_or(f64::INFINITY);
+    let ratio = |of: &dyn Fn(&CandidateEvaluation) -> Option<f64>| {
+        let [own, other] = [best, accurate].map(|place| of(&tried[place].weighed));
+        own.zip(other).map_or(f64::NAN, |(own, other)| own / other)
+    };
     format!(
-        "as good as what the errors select, with {} physical coefficients and parameters in place \
-         of {}: {:.2} times its error",
+        "selected: {} physical coefficients and parameters in place of {}, {:.2} times its error and \
+         {:.2} times its variance elsewhere",
         tried[best].weighed.coefficients,
         tried[accurate].weighed.coefficients,
-        error(best) / error(accurate)
+        ratio(&|one| one.error),
+        ratio(&|one| one.variance)
     )
 }
 
@@ -298,9 +303,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::candidate::SelectionCandidate;
-    use sistership_identification::refine::{
-        CandidateEvaluation, EstimationMethod, RefinementSpec, TermFamily,
-    };
+    use sistership_identification::refine::{EstimationMethod, RefinementSpec, TermFamily};
     use sistership_identification::testing::{
         mariner_model, simulated_trials, with_scaled_coefficients,
     };

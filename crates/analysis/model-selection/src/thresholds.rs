@@ -41,9 +41,10 @@ pub(super) struct SearchThresholds {
     /// Largest number of ships of a population, by rank of similarity, a count. Source: chosen,
     /// more than the zoo has; each is evaluated at every state.
     pub population: usize,
-    /// Ratio of errors up to which a model of few physical parameters replaces the selected one,
-    /// dimensionless. Source: derived: at 1 nothing is paid for it; `docs/evidence/physical_law.md`.
-    pub defensible: f64,
+    /// Ratio by which the error plus the variance elsewhere of a model of few physical parameters is
+    /// less than that of the selected one where it replaces it, dimensionless. Source:
+    /// `docs/evidence/physical_law.md`, which has half and double.
+    pub surer: f64,
     /// `k_v`: weight of the variance where no trial reaches, relative to the error on held-out
     /// trials, dimensionless. Source: `docs/evidence/plain.md`, which has half and double.
     pub elsewhere: f64,
@@ -84,7 +85,7 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     kept: 1e9,
     sources: 5,
     population: 48,
-    defensible: 1.0,
+    surer: 3.0,
     elsewhere: 5.0,
     unsafe_ratio: 3.0,
     restart: 5.0,

@@ -13,7 +13,9 @@ use sistership_model::propulsion::Propulsion;
 use sistership_model::quantity::Quantity;
 use sistership_model::{Law, Model, Trial, particulars};
 
-use crate::covered::{CoveredRange, covered_revolutions, covered_speed_ratios, covered_speeds};
+use crate::covered::{
+    CoveredRange, covered_revolutions, covered_speed_ratios, covered_speeds, covered_turning,
+};
 use crate::slope::{UncertainValue, surge_derivative};
 use crate::straight_surge::StraightSurge;
 use crate::thresholds::BALANCE;
@@ -77,19 +79,18 @@ pub fn model_balance(of: &PropulsionEvidence<'_>) -> Option<Propulsion> {
     let hump = known_particular(of, "lpp_m").map_or(0.0, |length_m| hump_ratio(length_m, speed));
     add("hump", Quantity::new(hump, CHOSEN));
     add("backing", Quantity::new(BALANCE.backing, CHOSEN));
-    // A law that takes revolutions holds for ratios of revolutions to speed; another one for the
-    // revolutions of the trials.
     let range = covered_revolutions(of.trials, n_rps);
-    let takes_them = of.law.inputs.contains_key("n");
-    let seen = if takes_them {
-        covered_speed_ratios(of.trials, [speed, n_rps])
-    } else {
-        [range[1], range[2]]
-    };
-    let proportional = f64::from(u8::from(takes_them));
-    for (name, value) in
-        [("seen_from", seen[0]), ("seen_to", seen[1]), ("proportional", proportional)]
-    {
+    let [seen_from, seen_to] = covered_speed_ratios(of.trials, [speed, n_rps]);
+    let [v_to, r_to] = covered_turning(of.trials, speed);
+    let takes = f64::from(u8::from(of.law.inputs.contains_key("n")));
+    let covered = [
+        ("seen_from", seen_from),
+        ("seen_to", seen_to),
+        ("v_to", v_to),
+        ("r_to", r_to),
+        ("takes_revolutions", takes),
+    ];
+    for (name, value) in covered {
         add(name, Quantity::new(value, RANGE));
     }
     add_range(&mut parameters, 'n', range);

@@ -16,14 +16,15 @@ pub(crate) fn covered_revolutions(trials: &[&Trial], approach_rps: f64) -> Cover
     [least - width, least, greatest, greatest + width]
 }
 
-/// Returns the least and greatest ratio of revolutions to speed, times the speed of the approach;
-/// those of the approach if none were recorded. Samples near rest have no such ratio; the width
+/// Returns the least and greatest ratio of revolutions to speed, times the speed of the approach,
+/// with the revolutions of the approach where none were recorded. Samples near rest have no such ratio; the width
 /// over which a law's weight falls is added on either side, so that it has full weight at every
 /// sample.
 pub(crate) fn covered_speed_ratios(trials: &[&Trial], [speed_m_s, n_rps]: [f64; 2]) -> [f64; 2] {
     let least = BALANCE.rest * speed_m_s;
     let of = |trial: &&Trial| {
-        let (u, n) = (trial.channel(Channel::U)?, trial.channel(Channel::N)?);
+        let u = trial.channel(Channel::U)?;
+        let n = trial.channel(Channel::N).map_or_else(|| vec![n_rps; u.len()], <[f64]>::to_vec);
         let under_way = u.iter().zip(n).filter(|(u, _)| u.abs() > least);
         Some(under_way.map(|(u, n)| n / u.abs() * speed_m_s).collect::<Vec<f64>>())
     };
@@ -31,6 +32,17 @@ pub(crate) fn covered_speed_ratios(trials: &[&Trial], [speed_m_s, n_rps]: [f64; 
     let [least, greatest] = between_tails(ratios).unwrap_or([n_rps; 2]);
     let width = BALANCE.revolutions * n_rps;
     [least - width, greatest + width]
+}
+
+/// Returns the greatest sway speed, m/s, and yaw rate, rad/s, at which a law is evaluated at another
+/// speed; the speed of the approach and as many radians per second if none were recorded.
+pub(crate) fn covered_turning(trials: &[&Trial], speed_m_s: f64) -> [f64; 2] {
+    [Channel::V, Channel::R].map(|channel| {
+        let range = central_range(trials, channel);
+        let greatest = range.map(|[least, most]| most.max(-least));
+        let recorded = greatest.filter(|greatest| *greatest > 0.0);
+        recorded.map_or(speed_m_s, |greatest| BALANCE.turning * greatest)
+    })
 }
 
 /// Returns the range of speeds ahead, m/s.

@@ -37,6 +37,9 @@ pub(crate) struct BalanceThresholds {
     pub slow: [f64; 2],
     /// The same above the greatest speed, dimensionless.
     pub fast: [f64; 2],
+    /// Greatest sway speed and yaw rate at which a law is evaluated at another speed, by those of its
+    /// trials, dimensionless. Source: derived: turns at 35 deg after trials at 20 deg.
+    pub turning: f64,
     /// Speed by that of the approach below which trials reach rest, dimensionless. Source: derived:
     /// less than any turn leaves.
     pub rest: f64,
@@ -57,6 +60,7 @@ pub(crate) const BALANCE: BalanceThresholds = BalanceThresholds {
     revolutions: 0.2,
     slow: [0.5, 0.25],
     fast: [1.25, 1.5],
+    turning: 2.0,
     rest: 0.1,
     tails: 0.01,
 };

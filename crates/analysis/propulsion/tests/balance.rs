@@ -36,9 +36,12 @@ fn models(zoo: &Zoo) -> Vec<(Model, Law)> {
 }
 
 fn balanced(model: &Model, law: &Law) -> Model {
-    let trial = trial(model);
+    balanced_by(model, law, &trial(model))
+}
+
+fn balanced_by(model: &Model, law: &Law, trial: &Trial) -> Model {
     let evidence =
-        PropulsionEvidence { model, law, source: None, estimate: None, trials: &[&trial] };
+        PropulsionEvidence { model, law, source: None, estimate: None, trials: &[trial] };
     Model { propulsion: model_balance(&evidence), ..model.clone() }
 }
 
@@ -89,6 +92,43 @@ fn within_its_trials_a_model_stays_what_it_was() {
             assert!((old - new).amax() < 1e-9 * size, "{} at {state}: {old} {new}", model.name);
         }
     }
+}
+
+#[test]
+fn at_half_of_its_revolutions_a_ship_turns_half_as_fast() {
+    let zoo = Zoo::load_embedded().unwrap();
+    let without_roll = models(&zoo).into_iter().filter(|(_, law)| !law.has_roll());
+    let mut tried = 0;
+    for (model, law) in without_roll {
+        let Ok(ship) = Ship::new(&balanced(&model, &law), &law) else { continue };
+        let (speed, n_rps) = (model.speed_m_s.unwrap(), model.revolutions_rps.unwrap());
+        let at_share = |share: f64| {
+            let mut state = straight_state(0.8 * share * speed);
+            state[at::V] = 0.1 * share * speed;
+            state[at::R] = -0.3 * share * speed / ship.lpp_m();
+            rate(&ship, &state, 0.2, share * n_rps)
+        };
+        for axis in [at::U, at::V, at::R] {
+            let (whole, half) = (at_share(1.0)[axis], at_share(0.5)[axis]);
+            assert!((half - 0.25 * whole).abs() < 1e-6 * whole.abs(), "{}: {axis}", model.name);
+        }
+        tried += 1;
+    }
+    assert!(tried >= 15, "{tried}");
+}
+
+#[test]
+fn trials_whose_revolutions_are_all_zero_scale_nothing() {
+    let zoo = Zoo::load_embedded().unwrap();
+    let model = Model { revolutions_rps: Some(1.5), ..zoo.find_model("mariner").unwrap() };
+    let law = zoo.law(&model.law).unwrap();
+    let mut trial = trial(&model);
+    trial.channels.insert(Channel::N, vec![0.0; 100]);
+    let ship = Ship::new(&balanced_by(&model, law, &trial), law).unwrap();
+    let mut state = straight_state(0.8 * ship.approach_speed_m_s());
+    state[at::V] = 0.3;
+    let ahead = rate(&ship, &state, 0.2, 1.5);
+    assert!(ahead.iter().all(|value| value.is_finite()), "{ahead}");
 }
 
 #[test]

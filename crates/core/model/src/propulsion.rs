@@ -2,8 +2,10 @@
 //! open-water thrust in place of the law's extrapolation straight ahead.
 //!
 //! The formulas are data (`models/propulsion/open-water.yaml`). Within the speeds and revolutions
-//! of the trials the law is unchanged. Outside of them its revolutions are limited to those of its
-//! trials, and its forces straight ahead are replaced by the balance. With `F_s` for the law's
+//! of the trials the law is unchanged. At other revolutions it is evaluated at the motion by a ratio
+//! that brings them to those of the trials, and its forces by the square of that, as forces are
+//! alike at the same advance ratio. Beyond the advance ratios of the trials its revolutions are
+//! limited to these, and its forces straight ahead are replaced by the balance. With `F_s` for the law's
 //! force straight ahead, rudder amidships and in still air, `P` for the balance, `n'` for the
 //! limited revolutions and `w` for the law's share, surge becomes `F - (1 - w) F_s + P(u, n) - w
 //! P(u, n')`; sway, yaw and roll the same without `P`. Terms that are linear in the coefficients
@@ -133,6 +135,10 @@ const LATERAL_STATES: [&str; 4] = ["v", "r", "p", "phi"];
 /// amidships.
 const WIND_INPUTS: [&str; 2] = ["wind_speed", "apparent_wind_speed"];
 const RUDDER_PREFIX: &str = "delta";
+/// States that the law sees by the ratio. Roll is not among them.
+const SCALED_STATES: [&str; 3] = ["u", "v", "r"];
+/// Name of the value by which the law's motion is scaled.
+const RATIO_VALUE: &str = "ratio";
 /// Name of the value that is the share of the balance.
 const SHARE_VALUE: &str = "beyond";
 
@@ -179,21 +185,9 @@ impl Law {
         let balance = surge_balance()?;
         let mut law = self.clone();
         add_inputs(&mut law, balance, propulsion);
-        for (name, _) in &balance.sees {
-            law.rename_in_forces(name, &qualified_own_name(&format!("seen.{name}")));
-        }
-        // The values straight ahead are copied after the renaming, so that they use the limited
-        // revolutions.
+        scale_forces(&mut law, balance);
+        // The values straight ahead are copied after the scaling, so that they are of scaled motions.
         let renamed = add_straight_values(&mut law);
-        for (name, expr) in &balance.sees {
-            law.add_value(
-                qualified_own_name(&format!("seen.{name}")),
-                qualify_names(expr, balance),
-            );
-        }
-        for (name, expr) in &balance.values {
-            law.add_value(qualified_own_name(name), qualify_names(expr, balance));
-        }
         law.add_value(qualified_own_name("weight"), qualify_names(&balance.weight, balance));
         let one = Box::new(Expr::Number(1.0));
         let beyond = Expr::Subtract(one, Box::new(Expr::Name(qualified_own_name("weight"))));
@@ -223,6 +217,51 @@ fn add_inputs(law: &mut Law, balance: &SurgeBalance, propulsion: &Propulsion) {
         let value = propulsion.value(name).unwrap_or(0.0);
         law.dressing.parameters.insert(qualified_own_name(name), value);
     }
+}
+
+/// Replaces the law's forces by those of the scaled motion, times the square of the ratio.
+fn scale_forces(law: &mut Law, balance: &SurgeBalance) {
+    let ratio = Expr::Name(qualified_own_name(RATIO_VALUE));
+    let seen = seen_motion(law, balance, &ratio);
+    for name in seen.keys() {
+        law.rename_in_forces(name, &seen_name(name));
+    }
+    for axis in law.axes.values_mut() {
+        for expr in [&mut axis.scale, &mut axis.rest] {
+            *expr = expr.clone().times(ratio.clone()).times(ratio.clone());
+        }
+    }
+    // Names propagate in the order of the values, in which those of the law come last.
+    let own = std::mem::take(&mut law.values);
+    for (name, expr) in &balance.values {
+        // Heel has a righting moment of its own, which does not go with the square of the speed.
+        let is_unscaled = name == RATIO_VALUE && law.has_roll();
+        let expr = if is_unscaled { Expr::Number(1.0) } else { qualify_names(expr, balance) };
+        law.add_value(qualified_own_name(name), expr);
+    }
+    seen.into_iter().for_each(|(name, expr)| law.add_value(seen_name(&name), expr));
+    law.values.extend(own);
+}
+
+/// States and inputs at which the law is evaluated, by the names that they replace.
+fn seen_motion(law: &Law, balance: &SurgeBalance, ratio: &Expr) -> IndexMap<String, Expr> {
+    let by_ratio = |name: &str| {
+        let own = Box::new(Expr::Name(name.to_owned()));
+        (name.to_owned(), Expr::Divide(own, Box::new(ratio.clone())))
+    };
+    let wind = WIND_INPUTS.into_iter().filter(|name| law.inputs.contains_key(*name));
+    let limited = balance.sees.iter();
+    SCALED_STATES
+        .into_iter()
+        .chain(wind)
+        .map(by_ratio)
+        .chain(limited.map(|(name, expr)| (name.clone(), qualify_names(expr, balance))))
+        .collect()
+}
+
+/// Name of the value of a state or input at which the law is evaluated.
+fn seen_name(name: &str) -> String {
+    qualified_own_name(&format!("seen.{name}"))
 }
 
 /// Returns a formula of the balance with its names in a law.
