@@ -46,13 +46,14 @@ pub(crate) fn defensible_place(
     selected: usize,
 ) -> Option<usize> {
     let (chosen, is_physical) = all[selected];
-    let chosen = match is_physical {
-        true => return None,
-        false => (chosen.coefficients, ExpectedErrors::from_evaluation(chosen)?),
-    };
+    if is_physical {
+        return None;
+    }
+    let to_replace = ExpectedErrors::from_evaluation(chosen)?;
     let replacing = |one: &CandidateEvaluation| {
-        let own = ExpectedErrors::from_evaluation(one).filter(|_| one.coefficients < chosen.0)?;
-        (own.is_as_good(&chosen.1) || own.is_far_surer(&chosen.1)).then_some(own.held_out)
+        let is_smaller = one.coefficients < chosen.coefficients;
+        let own = ExpectedErrors::from_evaluation(one).filter(|_| is_smaller)?;
+        (own.is_as_good(&to_replace) || own.is_far_surer(&to_replace)).then_some(own.held_out)
     };
     let physical = all.iter().enumerate().filter(|(_, (_, is_physical))| *is_physical);
     let as_good = physical.filter_map(|(place, (one, _))| Some((place, replacing(one)?)));

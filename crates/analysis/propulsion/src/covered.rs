@@ -17,9 +17,9 @@ pub(crate) fn covered_revolutions(trials: &[&Trial], approach_rps: f64) -> Cover
 }
 
 /// Returns the least and greatest ratio of revolutions to speed, times the speed of the approach,
-/// with the revolutions of the approach where none were recorded. Samples near rest have no such ratio; the width
-/// over which a law's weight falls is added on either side, so that it has full weight at every
-/// sample.
+/// with the revolutions of the approach where none were recorded. Samples near rest have no such
+/// ratio; the width over which a law's weight falls is added on either side, so that it has full
+/// weight at every sample.
 pub(crate) fn covered_speed_ratios(trials: &[&Trial], [speed_m_s, n_rps]: [f64; 2]) -> [f64; 2] {
     let least = BALANCE.rest * speed_m_s;
     let of = |trial: &&Trial| {

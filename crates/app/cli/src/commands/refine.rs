@@ -42,8 +42,9 @@ source model (or the estimate from particulars, a population of published ships,
 a law of motion and an estimator. Each candidate is fitted with whole manoeuvres held out and
 simulated on those; the one with the least error is selected. Among statistically tied candidates,
 the one whose predictions vary least outside the trials is preferred, and a physical model of few
-coefficients before one that varies far more there. The selection report lists all candidates. With enough trials, learned corrections are compared as well; the weights of a
-correction are written next to the model (m.weights.json for m.yaml).
+coefficients before one that varies far more there. The selection report lists all candidates. With
+enough trials, learned corrections are compared as well; the weights of a correction are written
+next to the model (m.weights.json for m.yaml).
 
 With --source, --law or --method, there is no selection: the coefficients of the source are the mean
 of a Gaussian (l2) prior whose strength is chosen by the error on held-out manoeuvres. Give several
