@@ -40,7 +40,8 @@ impl Preference {
 ///
 /// As good is one whose error, and its sum with a multiple ([`SEARCH`]`.elsewhere`) of the variance
 /// where no trial reaches, are no greater. Far surer is one whose error plus that variance is less by
-/// a ratio ([`SEARCH`]`.surer`).
+/// a ratio ([`SEARCH`]`.surer`), and whose error is within another one ([`SEARCH`]`.unsafe_ratio`):
+/// what held-out trials clearly tell is not outweighed.
 pub(crate) fn defensible_place(
     all: &[(&CandidateEvaluation, bool)],
     selected: usize,
@@ -83,7 +84,9 @@ impl ExpectedErrors {
 
     fn is_far_surer(&self, other: &Self) -> bool {
         // A model that does not complete the random orders gives way by its error (`choice`).
-        other.elsewhere.is_finite() && SEARCH.surer * self.sum(1.0) <= other.sum(1.0)
+        other.elsewhere.is_finite()
+            && SEARCH.surer * self.sum(1.0) <= other.sum(1.0)
+            && self.held_out <= SEARCH.unsafe_ratio * other.held_out
     }
 }
 
@@ -122,6 +125,9 @@ mod tests {
         assert_eq!(defensible_place(&[(&unsure, false), (&worse, true)], 0), None);
         let sure = CandidateEvaluation { variance: Some(0.01), ..evaluation(28, &[2.0; 4]) };
         assert_eq!(defensible_place(&[(&unsure, false), (&sure, true)], 0), Some(1));
+        let far = CandidateEvaluation { variance: Some(0.01), ..evaluation(28, &[3.1; 4]) };
+        let unsurest = CandidateEvaluation { variance: Some(50.0), ..many.clone() };
+        assert_eq!(defensible_place(&[(&unsurest, false), (&far, true)], 0), None);
         let stops = CandidateEvaluation { variance: Some(f64::INFINITY), ..many.clone() };
         assert_eq!(defensible_place(&[(&stops, false), (&worse, true)], 0), None);
         let scattered = CandidateEvaluation { variance: Some(1.0), ..tied };
