@@ -40,6 +40,13 @@ impl LogError {
         let squares = differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>();
         (differences.len() > 1).then(|| ((count - 1.0) / count * squares).sqrt())
     }
+
+    /// Returns true if it is greater than another one by less than a multiple of the standard error
+    /// of the difference.
+    fn is_within(&self, multiple: f64, other: &Self) -> bool {
+        let scatter = self.standard_error(&other.without);
+        scatter.is_some_and(|scatter| self.all - other.all < multiple * scatter)
+    }
 }
 
 /// Standard error of a mean error over its trials; `None` for fewer than two.
@@ -48,6 +55,13 @@ pub fn standard_error(weighed: &CandidateEvaluation) -> Option<f64> {
     let relative = LogError::from_errors(&weighed.each).standard_error(&zeros)?;
     // The error of a logarithm is relative.
     Some(relative * weighed.error?)
+}
+
+/// Returns true if a candidate's error is not significantly greater than that of another on the same
+/// trials (95 %, Student's quantile); false for a single trial, which has no scatter.
+pub(crate) fn is_tied(one: &CandidateEvaluation, other: &CandidateEvaluation) -> bool {
+    let [one, other] = [one, other].map(|one| LogError::from_errors(&one.each));
+    one.is_within(student_quantile(other.without.len().max(2) - 1), &other)
 }
 
 /// Returns the place of the chosen candidate: of all within one standard error of the least error,
@@ -78,9 +92,7 @@ pub fn choose_candidate(all: &[(&CandidateEvaluation, bool)]) -> Option<usize> {
         // Student's distribution.
         let within =
             if held[*place] { student_quantile(logs[best].without.len().max(2) - 1) } else { 1.0 };
-        let scatter = logs[*place].standard_error(&logs[best].without);
-        let apart = logs[*place].all - logs[best].all;
-        *place == best || scatter.is_some_and(|scatter| apart < within * scatter)
+        *place == best || logs[*place].is_within(within, &logs[best])
     };
     let anywhere = |place: &usize| {
         let variance = tried[*place].variance.unwrap_or(f64::INFINITY);

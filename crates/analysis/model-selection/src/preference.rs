@@ -2,6 +2,7 @@
 
 use sistership_identification::refine::CandidateEvaluation;
 
+use crate::choice::is_tied;
 use crate::thresholds::SEARCH;
 
 /// Preference among models whose errors are nearly the same.
@@ -40,8 +41,7 @@ impl Preference {
 ///
 /// As good is one whose error, and its sum with a multiple ([`SEARCH`]`.elsewhere`) of the variance
 /// where no trial reaches, are no greater. Far surer is one whose error plus that variance is less by
-/// a ratio ([`SEARCH`]`.surer`), and whose error is within another one ([`SEARCH`]`.unsafe_ratio`):
-/// what held-out trials clearly tell is not outweighed.
+/// a ratio ([`SEARCH`]`.surer`), and whose error is not significantly greater.
 pub(crate) fn defensible_place(
     all: &[(&CandidateEvaluation, bool)],
     selected: usize,
@@ -54,7 +54,9 @@ pub(crate) fn defensible_place(
     let replacing = |one: &CandidateEvaluation| {
         let is_smaller = one.coefficients < chosen.coefficients;
         let own = ExpectedErrors::from_evaluation(one).filter(|_| is_smaller)?;
-        (own.is_as_good(&to_replace) || own.is_far_surer(&to_replace)).then_some(own.held_out)
+        // What held-out trials clearly tell is not outweighed.
+        let is_surer = || own.is_far_surer(&to_replace) && is_tied(one, chosen);
+        (own.is_as_good(&to_replace) || is_surer()).then_some(own.held_out)
     };
     let physical = all.iter().enumerate().filter(|(_, (_, is_physical))| *is_physical);
     let as_good = physical.filter_map(|(place, (one, _))| Some((place, replacing(one)?)));
@@ -84,9 +86,7 @@ impl ExpectedErrors {
 
     fn is_far_surer(&self, other: &Self) -> bool {
         // A model that does not complete the random orders gives way by its error (`choice`).
-        other.elsewhere.is_finite()
-            && SEARCH.surer * self.sum(1.0) <= other.sum(1.0)
-            && self.held_out <= SEARCH.unsafe_ratio * other.held_out
+        other.elsewhere.is_finite() && SEARCH.surer * self.sum(1.0) <= other.sum(1.0)
     }
 }
 
@@ -121,13 +121,14 @@ mod tests {
             defensible_place(&[(&many, false), (&tied, true), (&as_published, true)], 0),
             Some(2)
         );
+        let scattering = evaluation(28, &[0.9, 4.1, 0.8, 2.2]);
         let unsure = CandidateEvaluation { variance: Some(5.3), ..many.clone() };
-        assert_eq!(defensible_place(&[(&unsure, false), (&worse, true)], 0), None);
-        let sure = CandidateEvaluation { variance: Some(0.01), ..evaluation(28, &[2.0; 4]) };
-        assert_eq!(defensible_place(&[(&unsure, false), (&sure, true)], 0), Some(1));
-        let far = CandidateEvaluation { variance: Some(0.01), ..evaluation(28, &[3.1; 4]) };
+        assert_eq!(defensible_place(&[(&unsure, false), (&scattering, true)], 0), Some(1));
+        let surer = CandidateEvaluation { variance: Some(4.0), ..many.clone() };
+        assert_eq!(defensible_place(&[(&surer, false), (&scattering, true)], 0), None);
+        // Significantly greater on held-out trials.
         let unsurest = CandidateEvaluation { variance: Some(50.0), ..many.clone() };
-        assert_eq!(defensible_place(&[(&unsurest, false), (&far, true)], 0), None);
+        assert_eq!(defensible_place(&[(&unsurest, false), (&worse, true)], 0), None);
         let stops = CandidateEvaluation { variance: Some(f64::INFINITY), ..many.clone() };
         assert_eq!(defensible_place(&[(&stops, false), (&worse, true)], 0), None);
         let scattered = CandidateEvaluation { variance: Some(1.0), ..tied };
