@@ -204,9 +204,9 @@ impl TestServer {
     /// Follows a job to its end and gives it.
     ///
     /// # Panics
-    /// Where it takes more than two minutes.
+    /// Where it takes more than ten minutes: on two busy cores a refinement takes two.
     pub async fn finished(&self, job: &str) -> Value {
-        for _ in 0..600 {
+        for _ in 0..3000 {
             let state = self.get(&format!("/v1/jobs/{job}")).await;
             if matches!(state["state"].as_str(), Some("succeeded" | "failed" | "cancelled")) {
                 return state;
