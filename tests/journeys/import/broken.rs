@@ -28,5 +28,8 @@ fn what_cannot_be_read_says_why() {
             + &String::from_utf8_lossy(&output.stdout);
         assert_eq!(output.status.code(), Some(1), "{name}: {said}");
         assert!(said.contains(wanted), "{name}: {said}");
+        // With columns the manifest stays, to be put right.
+        let has_columns = ["text.csv", "no_time.csv", "days.csv"].contains(&name);
+        assert_eq!(folder.path().join("trials.yaml").exists(), has_columns, "{name}");
     }
 }

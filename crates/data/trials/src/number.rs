@@ -54,8 +54,8 @@ pub(crate) fn parse_number(cell: &[u8]) -> Result<f64, CellFault> {
 }
 
 /// Parses an angle in degrees, minutes and seconds, such as `34°41.5'N`, `135 11 24.0 E` or
-/// `33-54.0S`, to degrees; south and west are negative. `None` without a sign of degrees, or several
-/// numbers and a point of the compass.
+/// `33-54.0S`, to degrees; south and west are negative, a comma is a decimal mark. `None` without a
+/// sign of degrees, or several numbers and a point of the compass.
 fn parse_degrees(cell: &[u8]) -> Option<f64> {
     // Bytes that are not UTF-8 are Latin-1, where 0xb0 is the sign of degrees.
     let text = std::str::from_utf8(cell)
@@ -79,7 +79,8 @@ fn parse_degrees(cell: &[u8]) -> Option<f64> {
         is_sign(letter) || compass(letter) || letter.is_whitespace() || "'\"′″’”".contains(letter)
     };
     let parts = text.split(marks).filter(|part| !part.is_empty());
-    let parts: Vec<f64> = parts.map(|part| part.parse().ok()).collect::<Option<_>>()?;
+    let number = |part: &str| part.replacen(',', ".", 1).parse().ok();
+    let parts: Vec<f64> = parts.map(number).collect::<Option<_>>()?;
     let (&degrees, smaller) = parts.split_first()?;
     let is_whole = smaller.len() <= 2 && smaller.iter().all(|part| (0.0..60.0).contains(part));
     if !is_whole || !(signed || (point.is_some() && !smaller.is_empty())) || !degrees.is_finite() {
@@ -238,6 +239,8 @@ mod tests {
             ("135 11 24.0 E", 135.19),
             ("W005°30.0", -5.5),
             ("33-54.0S", -33.9),
+            ("43°06,3000'N", 43.105),
+            ("W 5°30'18,0\"", -5.505),
             ("018-18.0 E", 18.3),
             ("-0°30'", -0.5),
             ("312.5°", 312.5),
@@ -246,7 +249,7 @@ mod tests {
             assert!((read - degrees).abs() < 1e-12, "{text}: {read}");
         }
         assert!((parse_number(b"312.5\xb0").unwrap() - 312.5).abs() < 1e-12, "Latin-1");
-        for text in ["10.5S", "12 N 5 E", "34°75'N", "5 kn", "N/A", "°"] {
+        for text in ["10.5S", "12 N 5 E", "34°75'N", "1,234.5°", "5 kn", "N/A", "°"] {
             assert!(parse_number(text.as_bytes()).is_err(), "{text}");
         }
     }

@@ -164,6 +164,10 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
         with_draft(&proposal.manifest, folder, |draft| Ok(load_cleaned(draft)?))?;
     proposal.manifest.declarations.exclude.clone_from(&excluded);
     let (mut trials, errors) = accepted_trials(trials);
+    // With columns a manifest helps to put the files right, even if none is accepted yet.
+    if proposal.guesses.is_empty() && trials.is_empty() {
+        return Err(Failure::Refused(errors.join("\n")));
+    }
     let currents = estimate_currents(&trials);
     proposal.manifest.declarations.currents.clone_from(&currents);
     let listed = &mut proposal.manifest.manifest.trials;
