@@ -161,9 +161,21 @@ fn a_decomposition_gives_the_covariance_back() {
     assert_eq!((strategy.covariance.clone(), strategy.decomposed), (symmetric, 7));
     let root = &strategy.vectors * DMatrix::from_diagonal(&strategy.roots);
     assert!((root - &strategy.axes).amax() < 1e-12);
-    strategy.covariance = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, -1.0]));
+    strategy.covariance = DMatrix::from_diagonal(&DVector::from_vec(vec![4.0, -1.0]));
     strategy.decompose_covariance();
-    assert!((strategy.roots.min() - 1e-7).abs() < 1e-12, "{}", strategy.roots);
+    assert!((strategy.roots.min() - 2e-7).abs() < 1e-12, "{}", strategy.roots);
+}
+
+/// After one step the path is that step by `sqrt(c(2 - c))`: h_sigma compares its own length.
+#[test]
+fn a_path_of_one_step_is_judged_by_its_length() {
+    let mut strategy = EvolutionStrategy::new(&[0.0; N], 1.0, POPULATION, 3);
+    strategy.generation = 1;
+    let longest = (1.4 + 2.0 / (N as f64 + 1.0)) * strategy.weights.expected_length;
+    let length = longest / strategy.selection_mass().sqrt();
+    let step = |share: f64| DVector::from_vec(vec![share * length, 0.0, 0.0]);
+    assert!(strategy.clone().extend_paths(&step(0.95), &step(0.95)));
+    assert!(!strategy.extend_paths(&step(1.05), &step(1.05)));
 }
 
 #[test]
