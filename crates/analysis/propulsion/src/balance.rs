@@ -14,7 +14,8 @@ use sistership_model::quantity::Quantity;
 use sistership_model::{Law, Model, Trial, particulars};
 
 use crate::covered::{
-    CoveredRange, covered_revolutions, covered_speed_ratios, covered_speeds, covered_turning,
+    ApproachEngine, CoveredRange, covered_orders, covered_speed_ratios, covered_speeds,
+    covered_turning,
 };
 use crate::slope::{UncertainValue, surge_derivative};
 use crate::straight_surge::StraightSurge;
@@ -79,7 +80,10 @@ pub fn model_balance(of: &PropulsionEvidence<'_>) -> Option<Propulsion> {
     let hump = known_particular(of, "lpp_m").map_or(0.0, |length_m| hump_ratio(length_m, speed));
     add("hump", Quantity::new(hump, CHOSEN));
     add("backing", Quantity::new(BALANCE.backing, CHOSEN));
-    let range = covered_revolutions(of.trials, n_rps);
+    // The engine's response is by the speed of the approach.
+    let loss = of.model.revolutions_loss.unwrap_or(0.0) * speed / approach;
+    add("loss", Quantity::new(loss, TRIALS));
+    let engine = ApproachEngine { speed_m_s: speed, n_rps, loss };
     let [seen_from, seen_to] = covered_speed_ratios(of.trials, [speed, n_rps]);
     let [v_to, r_to] = covered_turning(of.trials, speed);
     let takes = f64::from(u8::from(of.law.inputs.contains_key("n")));
@@ -93,8 +97,8 @@ pub fn model_balance(of: &PropulsionEvidence<'_>) -> Option<Propulsion> {
     for (name, value) in covered {
         add(name, Quantity::new(value, RANGE));
     }
-    add_range(&mut parameters, 'n', range);
-    add_range(&mut parameters, 'u', covered_speeds(of.trials, approach));
+    add_range(&mut parameters, "order", covered_orders(of.trials, engine));
+    add_range(&mut parameters, "u", covered_speeds(of.trials, approach));
     Some(Propulsion { parameters })
 }
 
@@ -127,7 +131,7 @@ pub fn needs_balance(law: &Law) -> bool {
     is_one && (law.factors.contains_key("n") || !law.inputs.contains_key("n"))
 }
 
-fn add_range(parameters: &mut BTreeMap<String, Quantity>, of: char, range: CoveredRange) {
+fn add_range(parameters: &mut BTreeMap<String, Quantity>, of: &str, range: CoveredRange) {
     let names = ["none_below", "full_from", "full_to", "none_above"];
     for (name, value) in names.into_iter().zip(range) {
         parameters.insert(format!("{of}_{name}"), Quantity::new(value, RANGE));

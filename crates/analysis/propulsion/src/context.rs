@@ -86,11 +86,12 @@ pub fn describe_balance(propulsion: &Propulsion) -> String {
     let of = |name: &str| propulsion.value(name).unwrap_or(f64::NAN);
     let resistance = propulsion.parameters.get("resistance");
     let deviation = resistance.and_then(|one| one.standard_error).unwrap_or(f64::NAN);
+    let on_approach = of("loss") * of("revolutions");
     format!(
-        "outside {:.2} to {:.2} 1/s and {:.2} to {:.2} m/s the surge force is open-water thrust \
-         minus resistance: {:.4} kN (standard error {:.4}) at {:.2} m/s and {:.2} 1/s",
-        of("n_full_from"),
-        of("n_full_to"),
+        "outside {:.2} to {:.2} 1/s on the approach and {:.2} to {:.2} m/s the surge force is \
+         open-water thrust minus resistance: {:.4} kN (standard error {:.4}) at {:.2} m/s and {:.2} 1/s",
+        of("order_full_from") + on_approach,
+        of("order_full_to") + on_approach,
         of("u_full_from"),
         of("u_full_to"),
         of("resistance") / 1e3,

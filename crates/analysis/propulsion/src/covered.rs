@@ -9,10 +9,30 @@ use crate::thresholds::BALANCE;
 /// full to, none above.
 pub(crate) type CoveredRange = [f64; 4];
 
-/// Returns the range of revolutions, 1/s; that of the approach if none were recorded.
-pub(crate) fn covered_revolutions(trials: &[&Trial], approach_rps: f64) -> CoveredRange {
-    let [least, greatest] = central_range(trials, Channel::N).unwrap_or([approach_rps; 2]);
-    let width = BALANCE.revolutions * approach_rps;
+/// An engine on the approach.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ApproachEngine {
+    /// Speed, m/s.
+    pub speed_m_s: f64,
+    /// Revolutions, 1/s.
+    pub n_rps: f64,
+    /// Share of them that it loses as the ship comes to rest, at a constant order.
+    pub loss: f64,
+}
+
+/// Returns the range of orders, the revolutions at rest by the engine's response, 1/s; that of the
+/// approach if no revolutions were recorded.
+pub(crate) fn covered_orders(trials: &[&Trial], engine: ApproachEngine) -> CoveredRange {
+    let lost_by_speed = engine.loss * engine.n_rps / engine.speed_m_s;
+    let order = |(n, u): (&f64, &f64)| n - lost_by_speed * u.abs();
+    let of = |trial: &&Trial| {
+        let (n, u) = (trial.channel(Channel::N)?, trial.channel(Channel::U)?);
+        Some(n.iter().zip(u).map(order).collect::<Vec<f64>>())
+    };
+    let orders = trials.iter().filter_map(of).flatten().collect();
+    let approach = order((&engine.n_rps, &engine.speed_m_s));
+    let [least, greatest] = between_tails(orders).unwrap_or([approach; 2]);
+    let width = BALANCE.revolutions * engine.n_rps;
     [least - width, least, greatest, greatest + width]
 }
 

@@ -1,15 +1,15 @@
 //! Propulsion outside the range covered by a model's trials: a surge balance of resistance and
 //! open-water thrust in place of the law's extrapolation straight ahead.
 //!
-//! The formulas are data (`models/propulsion/open-water.yaml`). Within the speeds and revolutions
-//! of the trials the law is unchanged. At other revolutions it is evaluated at the motion by a
-//! ratio that brings them to those of the trials, and its forces by the square of that, as forces
-//! are alike at the same advance ratio. Beyond the advance ratios of the trials its revolutions are
-//! limited to these, and its forces straight ahead are replaced by the balance. With `F_s` for the
-//! law's force straight ahead, rudder amidships and in still air, `P` for the balance, `n'` for the
-//! limited revolutions and `w` for the law's share, surge becomes `F - (1 - w) F_s + P(u, n) - w
-//! P(u, n')`; sway, yaw and roll the same without `P`. Terms that are linear in the coefficients
-//! remain so.
+//! The formulas are data (`models/propulsion/open-water.yaml`). Within the speeds of the trials and
+//! their orders to the engine (its revolutions at rest, by its response) the law is unchanged. At
+//! other orders it is evaluated at the motion by a ratio that brings them to those of the trials,
+//! and its forces by the square of that, as forces are alike at the same advance ratio. Beyond the
+//! advance ratios of the trials its revolutions are limited to these, and its forces straight ahead
+//! are replaced by the balance. With `F_s` for the law's force straight ahead, rudder amidships and
+//! in still air, `P` for the balance, `n'` for the limited revolutions and `w` for the law's share,
+//! surge becomes `F - (1 - w) F_s + P(u, n) - w P(u, n')`; sway, yaw and roll the same without `P`.
+//! Terms that are linear in the coefficients remain so.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
