@@ -7,7 +7,6 @@ import argparse
 import datetime
 import hashlib
 import importlib.metadata
-import json
 import os
 import pathlib
 import platform
@@ -43,7 +42,7 @@ def main():
     options.seconds = options.seconds or (QUICK_SECONDS if options.quick else SECONDS)
     options.deadline = time.monotonic() + QUICK_LIMIT_S if options.quick else float("inf")
     options.identity = identity(options.program)
-    rows = read_previous(options.out) if options.add else []
+    rows = results.read_rows(options.out) if options.add else []
     done = {(row["data"], row["task"], row["peer"]) for row in rows}
     jobs = [(name, task, peer) for name in names for task in tasks_of(name, options)
             for peer in peers if (name, task.name, peer) not in done]
@@ -111,11 +110,6 @@ def tasks_of(name, options):
         sys.exit(f"error: {name}: {reason}")
     wanted = options.tasks.split(",") if options.tasks else QUICK_TASKS if options.quick else None
     return [task for task in data.tasks if wanted is None or task.name in wanted]
-
-
-def read_previous(folder):
-    path = pathlib.Path(folder, "results.json")
-    return json.loads(path.read_text())["rows"] if path.exists() else []
 
 
 def announced(rows):

@@ -1,7 +1,7 @@
 """Results as CSV, JSON and Markdown; docs/benchmark.md describes the columns.
 
 `python3 results.py FOLDER PAGE` puts the tables of a folder of results into a page, between its
-lines `<!-- results -->` and `<!-- end of results -->`.
+lines `<!-- results -->` and `<!-- end of results -->`, and the rows as CSV beside it.
 """
 
 import csv
@@ -9,12 +9,14 @@ import io
 import json
 import math
 import os
+import shutil
 import sys
 
 COLUMNS = ("data", "task", "kind", "prediction", "restart_s", "peer", "standardised_error",
            "heading_deg", "u_m_s", "v_m_s", "r_deg_s", "runs", "diverged",
            "imo_percent", "coverage", "named", "parameters", "seconds", "memory_mb",
-           "ratio_to_best", "cannot", "settings", "program")
+           "ratio_to_best", "reference", "cannot", "settings", "program")
+TEXTS = ("data", "task", "kind", "prediction", "peer", "named", "cannot", "settings", "program")
 
 
 def with_ratios(rows):
@@ -51,6 +53,24 @@ def write(folder, rows, about):
         with open(f"{path}.new", "w", newline="") as file:
             file.write(text)
         os.replace(f"{path}.new", path)
+
+
+def read_rows(folder):
+    """Rows of a folder's `results.csv`, empty cells left out; none without that file."""
+    path = os.path.join(folder, "results.csv")
+    if not os.path.exists(path):
+        return []
+    with open(path, newline="") as file:
+        return [{name: cell_value(name, text) for name, text in row.items() if text}
+                for row in csv.DictReader(file)]
+
+
+def cell_value(name, text):
+    if name in TEXTS:
+        return text
+    if name == "reference":
+        return text == "True"
+    return float(text) if "." in text or "e" in text else int(text)
 
 
 def markdown(rows, about):
@@ -180,17 +200,18 @@ def machine(rows, about):
 
 
 def write_page(folder, page):
-    """Replaces the tables of a page by those of a folder of results."""
+    """Replaces the tables of a page by those of a folder of results, and puts its CSV beside it."""
     with open(os.path.join(folder, "results.json")) as file:
-        document = json.load(file)
+        about = json.load(file)["about"]
     with open(page) as file:
         head, _, rest = file.read().partition("<!-- results -->\n")
     _, end, tail = rest.partition("<!-- end of results -->")
     if not end:
         raise SystemExit(f"error: {page}: no lines <!-- results --> and <!-- end of results -->")
-    tables = markdown(with_ratios(document["rows"]), document["about"])
+    tables = markdown(with_ratios(read_rows(folder)), about)
     with open(page, "w") as file:
         file.write(f"{head}<!-- results -->\n{tables}{end}{tail}")
+    shutil.copy(os.path.join(folder, "results.csv"), os.path.splitext(page)[0] + ".csv")
 
 
 if __name__ == "__main__":
