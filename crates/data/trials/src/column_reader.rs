@@ -1,4 +1,5 @@
-//! Reading of files of columns (MATLAB, HDF5, NetCDF, GPX, NMEA 2000, MCAP) into a table.
+//! Reading of files of columns (MATLAB, HDF5, NetCDF, GPX, NMEA 2000, MCAP, tables of ROS messages)
+//! into a table.
 
 use std::io::{self, SeekFrom};
 

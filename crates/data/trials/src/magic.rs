@@ -1,6 +1,6 @@
 //! Detection of the format of a file by its first bytes, independent of its name.
 
-use crate::column_formats::{ColumnFormat, is_log_line};
+use crate::column_formats::{ColumnFormat, is_log_line, is_ros_header};
 
 /// Format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,6 +74,9 @@ pub(crate) fn detect_format(start: &[u8]) -> FormatKind {
     }
     if is_nmea2000(start) {
         return FormatKind::Columns(ColumnFormat::Nmea2000);
+    }
+    if is_ros_header(start) {
+        return FormatKind::Columns(ColumnFormat::RosCsv);
     }
     FormatKind::Csv
 }

@@ -12,6 +12,7 @@ mod message_log;
 mod netcdf;
 mod nmea2000;
 mod nmea2000_messages;
+mod ros_csv;
 mod ros_schema;
 mod ros_topics;
 
@@ -20,6 +21,8 @@ use std::io::{self, Read};
 use crate::column_source::ColumnSource;
 use crate::limits::FileLimits;
 use crate::workbook::ReadSeek;
+
+pub(crate) use ros_csv::is_ros_header;
 
 /// Returns true if a line is a frame or a message of NMEA 2000.
 pub(crate) fn is_log_line(text: &str) -> bool {
@@ -39,6 +42,8 @@ pub(crate) enum ColumnFormat {
     /// Logs of NMEA 2000 frames as text.
     Nmea2000,
     Mcap,
+    /// CSV with the fields of ROS messages.
+    RosCsv,
 }
 
 impl ColumnFormat {
@@ -51,6 +56,7 @@ impl ColumnFormat {
             Self::Gpx => "GPX track",
             Self::Nmea2000 => "NMEA 2000 log",
             Self::Mcap => "MCAP log",
+            Self::RosCsv => "table of ROS messages",
         }
     }
 }
@@ -75,6 +81,9 @@ pub(crate) fn open_columns<'a>(
         ColumnFormat::Gpx => Box::new(gpx::read_gpx(input, limits)?),
         ColumnFormat::Nmea2000 => Box::new(nmea2000::read_nmea2000(input, limits)?),
         ColumnFormat::Mcap => Box::new(mcap::read_mcap(input, limits)?),
+        ColumnFormat::RosCsv => {
+            Box::new(ros_csv::read_ros_csv(&read_bounded(input, limits)?, limits)?)
+        }
     })
 }
 

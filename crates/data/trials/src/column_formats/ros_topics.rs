@@ -18,12 +18,12 @@ pub(crate) struct TopicMessage {
 
 /// Paths of the parts of a type.
 #[derive(Debug, Clone, Copy, Default)]
-struct TypeParts {
-    kind: &'static str,
-    position: Option<&'static str>,
-    orientation: Option<&'static str>,
-    linear: Option<&'static str>,
-    angular: Option<&'static str>,
+pub(crate) struct TypeParts {
+    pub kind: &'static str,
+    pub position: Option<&'static str>,
+    pub orientation: Option<&'static str>,
+    pub linear: Option<&'static str>,
+    pub angular: Option<&'static str>,
 }
 
 const fn pose_type(
@@ -109,7 +109,8 @@ fn place_values(message: &TopicMessage) -> Vec<MessageValue> {
     latitude.into_iter().chain(longitude).collect()
 }
 
-fn motion_values(parts: &TypeParts, message: &TopicMessage) -> Vec<MessageValue> {
+/// Returns the channels of a pose or a twist.
+pub(crate) fn motion_values(parts: &TypeParts, message: &TopicMessage) -> Vec<MessageValue> {
     let is_down = message.has_frame(&["ned", "frd"]);
     let axis =
         |part: Option<&str>, axis: &str| part.and_then(|part| message.axis_number(part, axis));
