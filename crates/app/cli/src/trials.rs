@@ -83,7 +83,7 @@ fn files_of(path: &Path, loaded: &LoadedTrials) -> Vec<(String, PathBuf, bool)> 
         Some(manifest) => manifest
             .trials
             .iter()
-            .map(|trial| (trial.trial_label(), folder.join(&trial.file), trial.is_segment()))
+            .map(|trial| (trial.trial_label(), folder.join(trial.file_path()), trial.is_segment()))
             .collect(),
         None => vec![(path.display().to_string(), path.to_path_buf(), false)],
     }

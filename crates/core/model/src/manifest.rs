@@ -64,7 +64,7 @@ fn is_false(value: &bool) -> bool {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ManifestTrial {
-    /// Path, relative to the manifest.
+    /// Path, relative to the manifest; of a workbook with several sheets `log.xlsx#sheet=NAME`.
     pub file: String,
     /// Start of the segment to read; default: the file's first row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -110,10 +110,24 @@ impl ManifestTrial {
     /// (W3C 2012), `log.csv#t=3600,5400`.
     pub fn trial_label(&self) -> String {
         let text = |time: &Option<FileTime>| time.as_ref().map_or(String::new(), |t| t.to_string());
+        let mark = if split_sheet(&self.file).1.is_some() { '&' } else { '#' };
         match self.is_segment() {
-            true => format!("{}#t={},{}", self.file, text(&self.from), text(&self.to)),
+            true => format!("{}{mark}t={},{}", self.file, text(&self.from), text(&self.to)),
             false => self.file.clone(),
         }
+    }
+
+    /// Returns the path of the file itself.
+    pub fn file_path(&self) -> &str {
+        split_sheet(&self.file).0
+    }
+}
+
+/// Separates a file from the sheet of a workbook, `log.xlsx#sheet=NAME`.
+pub fn split_sheet(file: &str) -> (&str, Option<&str>) {
+    match file.split_once("#sheet=") {
+        Some((path, sheet)) => (path, Some(sheet)),
+        None => (file, None),
     }
 }
 

@@ -5,6 +5,7 @@ use std::io::{Chain, Cursor, Read};
 use csv::{ByteRecord, ReaderBuilder};
 
 use crate::blanks::TabbedReader;
+use crate::cell_value::read_value;
 use crate::cells::{CellCount, CellCounter};
 use crate::clock::ColumnClock;
 use crate::decimals::DecimalMarks;
@@ -13,7 +14,7 @@ use crate::layout::{self, TableLayout};
 use crate::limits::too_many_rows;
 use crate::mapping::Mapping;
 use crate::metered::{MeteredReader, RowMeter};
-use crate::number::{CellFault, parse_number, parse_sided};
+use crate::number::CellFault;
 use crate::resolve::{HeaderRows, resolve_heading};
 use crate::row_sink::{RowSink, RowSource, time_column};
 use crate::stream;
@@ -289,9 +290,7 @@ impl RowReader {
         let cell = self.decimals.with_point(row, cell);
         match column.target {
             ColumnTarget::Time => self.clock.read_cell(row, &cell),
-            // A letter after a latitude is a point of the compass.
-            ColumnTarget::Raw(_) => parse_number(&cell),
-            _ => parse_number(&cell).or_else(|fault| parse_sided(&cell).ok_or(fault)),
+            _ => read_value(&cell, record.get(column.index + 1), column),
         }
     }
 }

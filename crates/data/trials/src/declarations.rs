@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use sistership_model::manifest::ColumnMapping;
+use sistership_model::manifest::{ColumnMapping, split_sheet};
 
 use crate::currents::TrialCurrent;
 use crate::exclusion::Exclusion;
@@ -14,8 +14,6 @@ use crate::exclusion::Exclusion;
 pub struct Declarations {
     /// Columns that are not needed, and not reported as unused.
     pub ignore: Vec<String>,
-    /// Sheet of a workbook; by default the first that contains a table.
-    pub sheet: Option<String>,
     /// North reference of headings and courses.
     pub heading: North,
     /// Magnetic variation, deg, positive to the east; it is added to a magnetic heading.
@@ -99,7 +97,7 @@ pub enum Derivable {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SensorFile {
-    /// Path, relative to the manifest.
+    /// Path, relative to the manifest; of a workbook with several sheets `log.xlsx#sheet=NAME`.
     pub file: String,
     /// Columns of the file, as in the manifest.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -107,4 +105,11 @@ pub struct SensorFile {
     /// Offset, s, added to the time of the sensor to obtain the time of the trial's first file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clock_offset_s: Option<f64>,
+}
+
+impl SensorFile {
+    /// Returns the path of the file itself.
+    pub fn file_path(&self) -> &str {
+        split_sheet(&self.file).0
+    }
 }

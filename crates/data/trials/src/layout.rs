@@ -2,6 +2,7 @@
 
 use csv::{ByteRecord, ReaderBuilder};
 
+use crate::cell_value::split_unit;
 use crate::decimals::DecimalMarks;
 use crate::mapping::Mapping;
 use crate::names;
@@ -219,7 +220,7 @@ pub(crate) fn guess_layout(start: &[u8]) -> TableLayout {
 
 /// Returns the likely separator of a line; a comma may be a decimal mark if something else
 /// separates.
-fn likely_separator(line: &[u8]) -> u8 {
+pub(crate) fn likely_separator(line: &[u8]) -> u8 {
     let found = [b'\t', b';', b','].into_iter().find(|byte| line.contains(byte));
     let by_blanks = || {
         let mut cells =
@@ -245,12 +246,13 @@ fn is_data(line: &[u8]) -> bool {
     values >= 2 && 2 * values > written
 }
 
-fn is_value(cell: &str, separator: u8) -> bool {
+/// Returns true if a cell is a number, one with a unit, or a time.
+pub(crate) fn is_value(cell: &str, separator: u8) -> bool {
     let cell = DecimalMarks::new(separator).with_point(0, cell.as_bytes()).into_owned();
     let is_time = || {
         std::str::from_utf8(&cell).is_ok_and(|cell| parse_stamp(cell, DateOrder::Open).is_some())
     };
-    parse_number(&cell).is_ok() || is_time()
+    parse_number(&cell).is_ok() || split_unit(&cell).is_some() || is_time()
 }
 
 /// Returns true if more of the file could not change the result of [`find_table`].

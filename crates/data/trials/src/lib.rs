@@ -13,6 +13,7 @@
 mod blanks;
 mod bridge;
 mod calendar;
+mod cell_value;
 mod cells;
 mod checks;
 mod clock;
@@ -70,6 +71,7 @@ mod scan;
 mod segment_tables;
 pub mod segmentation;
 mod series;
+mod side_by_side;
 mod smoother;
 pub mod smoothing;
 mod stamp;

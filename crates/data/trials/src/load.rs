@@ -119,7 +119,8 @@ impl ListedFile {
     /// Returns true if both are segments of one file, which is then read once.
     fn shares_file(&self, other: &Self) -> bool {
         let both = self.mapping.stretch.is_some() && other.mapping.stretch.is_some();
-        both && self.path.components().eq(other.path.components())
+        let same = self.mapping.sheet == other.mapping.sheet;
+        both && same && self.path.components().eq(other.path.components())
     }
 }
 
@@ -204,9 +205,12 @@ fn list_files(path: &Path) -> Result<(Option<Manifest>, Vec<ListedFile>), FileEr
     let listed =
         written.manifest.trials.iter().zip(&written.sensors).map(|(trial, sensors)| ListedFile {
             name: trial.trial_label(),
-            path: folder.join(&trial.file),
+            path: folder.join(trial.file_path()),
             mapping: written.trial_mapping(trial),
-            sensors: sensors.iter().map(|one| (one.clone(), folder.join(&one.file))).collect(),
+            sensors: sensors
+                .iter()
+                .map(|one| (one.clone(), folder.join(one.file_path())))
+                .collect(),
         });
     let listed = listed.collect();
     Ok((Some(written.manifest), listed))

@@ -60,9 +60,6 @@ pub(crate) struct Written {
     /// Channels to be derived from position and heading where they were not measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     derive: Vec<Derivable>,
-    /// Sheet of a workbook; by default the first that contains a table.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    sheet: Option<String>,
     /// Channel (`t`, `x`, `psi`, ...) to column; canonical column names need no mapping. `#3` is
     /// the third column of a file without a header.
     #[serde(default)]
@@ -85,7 +82,7 @@ pub(crate) struct Written {
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct WrittenTrial {
-    /// Path, relative to the manifest.
+    /// Path, relative to the manifest; of a workbook with several sheets `log.xlsx#sheet=NAME`.
     file: String,
     /// Start of the segment that is read; by default the first row of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -197,7 +194,6 @@ impl From<Written> for ManifestFile {
         };
         let declarations = Declarations {
             ignore: written.ignore,
-            sheet: written.sheet,
             heading: written.heading,
             variation_deg: written.variation_deg,
             maximum: written.maximum,
@@ -230,7 +226,6 @@ impl From<ManifestFile> for Written {
             antenna: declarations.antenna,
             origin: declarations.origin,
             derive: declarations.derive,
-            sheet: declarations.sheet,
             columns: manifest.columns,
             ignore: declarations.ignore,
             exclude: declarations.exclude,

@@ -1,6 +1,8 @@
 //! Knowledge of a file before it is opened.
 
-use sistership_model::manifest::{ColumnMapping, Manifest, ManifestTrial, TrialConventions};
+use sistership_model::manifest::{
+    ColumnMapping, Manifest, ManifestTrial, TrialConventions, split_sheet,
+};
 
 use crate::currents::TrialCurrent;
 use crate::declarations::{Declarations, SensorFile};
@@ -23,6 +25,8 @@ pub struct Mapping {
     pub depth_m: Option<f64>,
     /// Revolutions held throughout where they were not recorded, 1/s.
     pub n_rps: Option<f64>,
+    /// Sheet of a workbook; by default the one with most known names.
+    pub sheet: Option<String>,
     /// Further declarations on the file.
     pub declared: Declarations,
     /// Segment of the file that is read; `None` for the whole file.
@@ -79,6 +83,7 @@ impl Mapping {
             manoeuvre: trial.manoeuvre.clone(),
             depth_m: trial.depth_m,
             n_rps: trial.n_rps,
+            sheet: split_sheet(&trial.file).1.map(str::to_owned),
             declared: Declarations::default(),
             stretch: FileSegment::from_trial(trial),
             limits: FileLimits::default(),
@@ -95,6 +100,7 @@ impl Mapping {
         let columns = sensor.columns.iter();
         Self {
             columns: columns.map(|(name, column)| (name.clone(), column.clone())).collect(),
+            sheet: split_sheet(&sensor.file).1.map(str::to_owned),
             room: 0,
             stretch: None,
             exclude: Vec::new(),

@@ -16,6 +16,8 @@ pub(crate) enum CellFault {
     /// Text that is no time, in a column of dates or times of day.
     NoTime(String),
     OtherTime(String),
+    /// A number with the unit of another quantity.
+    OtherUnit(String),
 }
 
 impl fmt::Display for CellFault {
@@ -28,6 +30,9 @@ impl fmt::Display for CellFault {
             Self::NoTime(text) => write!(out, "`{text}` is not a date or time"),
             Self::OtherTime(text) => {
                 write!(out, "`{text}` has another form than the times before it")
+            }
+            Self::OtherUnit(text) => {
+                write!(out, "the unit of `{text}` does not fit the quantity of its column")
             }
             Self::Text(text) => write!(out, "`{text}` is not a number{}", number_remedy(text)),
         }
@@ -56,7 +61,7 @@ pub(crate) fn parse_number(cell: &[u8]) -> Result<f64, CellFault> {
 /// Parses an angle in degrees, minutes and seconds, such as `34°41.5'N`, `135 11 24.0 E` or
 /// `33-54.0S`, to degrees; south and west are negative, a comma is a decimal mark. `None` without a
 /// sign of degrees, or several numbers and a point of the compass.
-fn parse_degrees(cell: &[u8]) -> Option<f64> {
+pub(crate) fn parse_degrees(cell: &[u8]) -> Option<f64> {
     // Bytes that are not UTF-8 are Latin-1, where 0xb0 is the sign of degrees.
     let text = std::str::from_utf8(cell)
         .map_or_else(|_| cell.iter().map(|&byte| char::from(byte)).collect(), str::to_owned);

@@ -12,7 +12,7 @@ use crate::nmea_file;
 use crate::parquet_footer;
 use crate::table::ColumnTarget;
 use crate::trial_file::{InputContent, TrialFile};
-use crate::workbook;
+use crate::workbook::{self, ReadSeek};
 
 /// Largest number of bytes and of rows that are examined.
 const START: u64 = 64 << 10;
@@ -32,26 +32,49 @@ pub(crate) struct FilePreview {
     pub sentences: Vec<(String, ColumnTarget)>,
 }
 
-/// Reads the preview of a file.
+/// Reads the preview of each table of a file: of each sheet of a workbook that has the rows of a
+/// trial, and of the only table of any other file.
 ///
 /// # Errors
 /// Returns an error if the file cannot be read or its format contains no table.
-pub(crate) fn preview_file(name: &str, path: &Path) -> io::Result<FilePreview> {
-    let limits = FileLimits::default();
+pub(crate) fn preview_tables(name: &str, path: &Path) -> io::Result<Vec<FilePreview>> {
     match TrialFile::open(name, path)?.content {
+        InputContent::Workbook(input) => preview_sheets(input),
+        other => Ok(vec![preview_content(other)?]),
+    }
+}
+
+/// Fewest rows with so many values of a sheet that is read beside others.
+const SHEET_ROWS: usize = 20;
+const SHEET_VALUES: usize = 3;
+
+fn preview_sheets(input: Box<dyn ReadSeek + '_>) -> io::Result<Vec<FilePreview>> {
+    let sheets = workbook::sheet_starts(input, FileLimits::default()).map_err(io::Error::other)?;
+    let several = sheets.len() > 1;
+    let seen = sheets.into_iter().map(|(sheet, start)| FilePreview {
+        sheet: several.then_some(sheet),
+        ..preview_text(&start)
+    });
+    let seen: Vec<FilePreview> = seen.collect();
+    let has_values = |row: &&Vec<String>| {
+        row.iter().filter(|cell| layout::is_value(cell, b'\t')).count() >= SHEET_VALUES
+    };
+    let is_table = |one: &FilePreview| one.rows.iter().filter(has_values).count() >= SHEET_ROWS;
+    if seen.iter().any(is_table) {
+        return Ok(seen.into_iter().filter(is_table).collect());
+    }
+    // `max_by_key` returns the last of equals: reversed, it is the first.
+    let best = seen.into_iter().rev().max_by_key(|preview| preview.rows.len());
+    Ok(vec![best.ok_or_else(|| io::Error::other("it has no sheet"))?])
+}
+
+fn preview_content(content: InputContent) -> io::Result<FilePreview> {
+    let limits = FileLimits::default();
+    match content {
         InputContent::Csv(input) => {
             let mut start = Vec::new();
             input.take(START).read_to_end(&mut start)?;
             Ok(preview_text(&normalise_text(start)))
-        }
-        InputContent::Workbook(input) => {
-            let sheets = workbook::sheet_starts(input, limits).map_err(io::Error::other)?;
-            let several = sheets.len() > 1;
-            let seen = sheets.into_iter().map(|(sheet, start)| (sheet, preview_text(&start)));
-            // `max_by_key` returns the last of equals: reversed, it is the first.
-            let best = seen.rev().max_by_key(|(_, preview)| preview.rows.len());
-            let (sheet, preview) = best.ok_or_else(|| io::Error::other("it has no sheet"))?;
-            Ok(FilePreview { sheet: several.then_some(sheet), ..preview })
         }
         InputContent::Columns(file) => {
             let (names, units) = file.read_header(limits)?;
@@ -73,7 +96,7 @@ pub(crate) fn preview_file(name: &str, path: &Path) -> io::Result<FilePreview> {
             Ok(FilePreview { sentences, ..FilePreview::default() })
         }
         InputContent::Other(what) => Err(io::Error::other(format!("the file is {what}"))),
-        InputContent::ParquetBytes(_) => {
+        InputContent::Workbook(_) | InputContent::ParquetBytes(_) => {
             Err(io::Error::other("the content is not a file that can be read"))
         }
     }

@@ -13,8 +13,9 @@ use crate::declarations::{Declarations, Derivable, Maximum, SensorFile};
 use crate::file_set::{ClockSpan, FileRole, SetFile, classify_files};
 use crate::guess::ColumnGuess;
 use crate::manifest_file::ManifestFile;
-use crate::preview::preview_file;
+use crate::preview::{FilePreview, preview_tables};
 use crate::sampling::{FileSample, sample_file};
+use crate::side_by_side::find_groups;
 use crate::thruster_guess::FULL_COMMAND_RPS;
 
 /// Range of seconds since 1970, in the years 2001 to 2065.
@@ -64,7 +65,7 @@ pub fn propose_files(request: &ProposalRequest) -> Result<ManifestProposal, Vec<
     let mut errors = Vec::new();
     for path in request.files {
         let name = relative_path(path, &folder);
-        if let Err(error) = set.add_file(name, path) {
+        if let Err(error) = set.add_file(&name, path) {
             errors.push(refuse_file(path, &error.to_string()));
         }
     }
@@ -78,6 +79,16 @@ pub fn propose_files(request: &ProposalRequest) -> Result<ManifestProposal, Vec<
     set.shapes.iter_mut().for_each(|shape| shape.identify_all(request.given));
     set.settle_spans();
     Ok(set.into_proposal(request.ship))
+}
+
+fn several_trials(groups: &[Vec<&str>]) -> String {
+    let columns: Vec<String> = groups.iter().map(|group| group.join(", ")).collect();
+    format!(
+        "it holds {} trials side by side, each with its own time ({}); save each as a file, or a \
+         sheet of a workbook, of its own",
+        groups.len(),
+        columns.join("; ")
+    )
 }
 
 fn refuse_file(path: &Path, message: &str) -> FileError {
@@ -123,15 +134,23 @@ struct FileSet {
     shapes: Vec<ColumnSet>,
     /// Sample of each file, until the unit of its time is known.
     samples: Vec<FileSample>,
-    sheet: Option<String>,
 }
 
 impl FileSet {
-    fn add_file(&mut self, name: String, path: &Path) -> std::io::Result<()> {
-        let preview = preview_file(&name, path)?;
+    fn add_file(&mut self, name: &str, path: &Path) -> std::io::Result<()> {
+        for preview in preview_tables(name, path)? {
+            self.add_table(name, path, preview)?;
+        }
+        Ok(())
+    }
+
+    fn add_table(&mut self, name: &str, path: &Path, preview: FilePreview) -> std::io::Result<()> {
+        if let Some(groups) = find_groups(&preview.names) {
+            return Err(std::io::Error::other(several_trials(&groups)));
+        }
         // NMEA sentences are identified by their names, without a sample.
         let sample = match preview.sentences.is_empty() {
-            true => sample_file(&name, path, &preview)?,
+            true => sample_file(name, path, &preview)?,
             false => FileSample::default(),
         };
         let known = self.shapes.iter().position(|shape| shape.matches_preview(&preview));
@@ -141,9 +160,12 @@ impl FileSet {
         });
         self.shapes[shape].add_sample(&sample.recording);
         let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
+        let name = match &preview.sheet {
+            Some(sheet) => format!("{name}#sheet={sheet}"),
+            None => name.to_owned(),
+        };
         self.files.push(SetFile { name, folder, shape, span: None });
         self.samples.push(sample);
-        self.sheet = self.sheet.take().or(preview.sheet);
         Ok(())
     }
 
@@ -275,8 +297,7 @@ impl FileSet {
         let full = Maximum { value: FULL_COMMAND_RPS, unit: "rps".to_owned() };
         let commands = self.shapes.iter().any(|shape| shape.has_commands);
         let maximum = commands.then(|| ("n".to_owned(), full)).into_iter().collect();
-        let sheet = self.sheet.clone();
-        Declarations { derive, ignore, sheet, maximum, ..Declarations::default() }
+        Declarations { derive, ignore, maximum, ..Declarations::default() }
     }
 }
 

@@ -7,6 +7,7 @@ use std::path::Path;
 use sistership_columns::{ColumnData, RecordingSample};
 use sistership_model::manifest::MissingValues;
 
+use crate::cell_value::common_unit;
 use crate::findings::Findings;
 use crate::limits::FileLimits;
 use crate::mapping::{Mapping, WrittenTime};
@@ -51,7 +52,7 @@ pub(crate) fn sample_file(
         limits: FileLimits { rows: ROWS, ..FileLimits::default() },
         ..Mapping::with_canonical_names()
     };
-    mapping.declared.sheet.clone_from(&preview.sheet);
+    mapping.sheet.clone_from(&preview.sheet);
     mapping.conventions.missing = MissingValues::Bridge;
     // Findings are ignored here: they are reported when the trial is read with its manifest.
     let mut findings = Findings::default();
@@ -102,6 +103,13 @@ fn find_written_time(preview: &FilePreview) -> Option<(usize, &'static str)> {
     })
 }
 
+/// Returns the unit of a column that the file states: in a row of units, or in every cell.
+fn written_unit(preview: &FilePreview, at: usize) -> Option<String> {
+    let below = preview.units.get(at).filter(|unit| !unit.is_empty()).cloned();
+    let cells = preview.rows.iter().filter_map(|row| row.get(at)).map(String::as_str);
+    below.or_else(|| common_unit(cells))
+}
+
 fn recording_sample(
     table: Table,
     preview: &FilePreview,
@@ -118,7 +126,7 @@ fn recording_sample(
     };
     let columns = preview.names.iter().enumerate().map(|(at, header)| ColumnData {
         header: header.clone(),
-        below: preview.units.get(at).filter(|unit| !unit.is_empty()).cloned(),
+        below: written_unit(preview, at),
         // A column that is empty throughout is absent from the table: NaN takes its place.
         values: of_place(at).map_or_else(|| vec![f64::NAN; rows], |k| table.values[k].clone()),
         written_time: time.filter(|(written, _)| *written == at).map(|(_, unit)| unit),

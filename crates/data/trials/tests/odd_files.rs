@@ -6,6 +6,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use sistership_model::manifest::{FileTime, ManifestTrial};
 use sistership_model::trial::{Channel, Trial};
 use sistership_trials::{ProposalRequest, load_path, propose_files};
 
@@ -221,4 +222,176 @@ fn a_folder_with_a_file_a_sensor() {
         write("rudder.csv", run.table("time_s;rudder angle (deg, port positive)\n", rudder, ";")),
     ];
     run.check(&import(folder.path(), &files));
+}
+
+/// Degrees and minutes in one number, as in NMEA 0183.
+fn joined_minutes(degrees: f64, width: usize) -> String {
+    format!("{:0width$}{:08.5}", degrees.floor(), 60.0 * degrees.fract())
+}
+
+/// Position of a run off Cape Town, from which south and east count; deg.
+fn place_off_cape_town(run: &Zigzag, k: usize) -> (f64, f64) {
+    (33.9 - run.x[k] / 110_925.0, 18.3 + run.y[k] / 92_516.0)
+}
+
+fn check_track(run: &Zigzag, trial: &Trial) {
+    for (channel, truth) in [(Channel::X, &run.x), (Channel::Y, &run.y)] {
+        let read = trial.channel(channel).unwrap();
+        let made_good = read[ROWS - 1] - read[0];
+        let wanted = truth[ROWS - 1] - truth[0];
+        assert!((made_good - wanted).abs() < 2.0, "{channel:?}: {made_good} {wanted}");
+    }
+}
+
+#[test]
+fn units_and_hemispheres_in_every_cell() {
+    let run = Zigzag::new();
+    let row = |run: &Zigzag, k: usize| {
+        let (south, east) = place_off_cape_town(run, k);
+        let side = if run.delta[k] < 0.0 { "P" } else { "S" };
+        vec![
+            format!("{:.1}", run.t[k]),
+            format!("{:.2} kn", 5.0 / KNOT),
+            degrees(run.psi[k]) + "°",
+            degrees(60.0 * run.r[k]) + " °/min",
+            joined_minutes(south, 2) + " S",
+            joined_minutes(east, 3) + " E",
+            format!("{} {side}", degrees(run.delta[k].abs())),
+            "92 rpm".into(),
+        ]
+    };
+    let header = "Time,SOG,HDG,ROT,Latitude,Longitude,Rudder,RPM\n";
+    let trial = import_one(run.table(header, row, ",").as_bytes());
+    run.check(&trial);
+    check_track(&run, &trial);
+    assert!((trial.channel(Channel::R).unwrap()[100] - run.r[100]).abs() < 1e-5);
+    assert!((trial.channel(Channel::N).unwrap()[100] - 92.0 / 60.0).abs() < 1e-9);
+    assert!((trial.channel(Channel::U).unwrap()[100] - 5.0).abs() < 0.01);
+}
+
+#[test]
+fn hemispheres_in_columns_of_their_own() {
+    let run = Zigzag::new();
+    let row = |run: &Zigzag, k: usize| {
+        let (south, east) = place_off_cape_town(run, k);
+        vec![
+            format!("{:.1}", run.t[k]),
+            joined_minutes(south, 2),
+            "S".into(),
+            joined_minutes(east, 3),
+            "E".into(),
+            degrees(run.psi[k]),
+            degrees(run.delta[k]),
+        ]
+    };
+    let header = "Time (s),Lat,N/S,Lon,E/W,Heading (deg),Rudder (deg)\n";
+    let trial = import_one(run.table(header, row, ",").as_bytes());
+    run.check(&trial);
+    check_track(&run, &trial);
+}
+
+/// Workbook of sheets of lines with tabs, as an Excel file.
+fn workbook(sheets: &[(&str, String)]) -> Vec<u8> {
+    const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
+    const KINDS: &str = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
+    const PACKAGE: &str = "http://schemas.openxmlformats.org/package/2006/relationships";
+    let relation = |id: usize, kind: &str, target: &str| {
+        format!(r#"<Relationship Id="r{id}" Type="{KINDS}/{kind}" Target="{target}"/>"#)
+    };
+    let relations =
+        |all: String| format!(r#"<Relationships xmlns="{PACKAGE}">{all}</Relationships>"#);
+    let (mut listed, mut related) = (String::new(), String::new());
+    let mut files = vec![(
+        "_rels/.rels".to_owned(),
+        relations(relation(1, "officeDocument", "xl/workbook.xml")),
+    )];
+    for (id, (name, text)) in (1..).zip(sheets) {
+        listed += &format!(r#"<sheet name="{name}" sheetId="{id}" r:id="r{id}"/>"#);
+        related += &relation(id, "worksheet", &format!("sheet{id}.xml"));
+        let cell = |cell: &str| match cell.parse::<f64>() {
+            Ok(_) => format!("<c><v>{cell}</v></c>"),
+            Err(_) => format!(r#"<c t="inlineStr"><is><t>{cell}</t></is></c>"#),
+        };
+        let row =
+            |line: &str| format!("<row>{}</row>", line.split('\t').map(cell).collect::<String>());
+        let rows: String = text.lines().map(row).collect();
+        let sheet =
+            format!(r#"<worksheet xmlns="{MAIN}"><sheetData>{rows}</sheetData></worksheet>"#);
+        files.push((format!("xl/sheet{id}.xml"), sheet));
+    }
+    let book = format!(
+        r#"<workbook xmlns="{MAIN}" xmlns:r="{KINDS}"><sheets>{listed}</sheets></workbook>"#
+    );
+    files.push(("xl/workbook.xml".to_owned(), book));
+    files.push(("xl/_rels/workbook.xml.rels".to_owned(), relations(related)));
+    let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    for (name, text) in files {
+        zip.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
+        std::io::Write::write_all(&mut zip, text.as_bytes()).unwrap();
+    }
+    zip.finish().unwrap().into_inner()
+}
+
+#[test]
+fn each_sheet_with_a_table_is_a_trial() {
+    let run = Zigzag::new();
+    let row = |run: &Zigzag, k: usize| {
+        let angles = [run.psi[k], run.r[k], run.delta[k]].map(degrees);
+        [format!("{:.1}", run.t[k]), "5.0".into()].into_iter().chain(angles).collect()
+    };
+    let table = run.table(
+        "Time [s]\tSurge [m/s]\tHeading [deg]\tRate of turn [deg/s]\tRudder [deg]\n",
+        row,
+        "\t",
+    );
+    let sheets = [
+        ("About", "Item\tText\tBy\tSeen\n".to_owned() + &"Rudder\t35 deg\tyard\tyes\n".repeat(30)),
+        ("Zigzag 10", table.clone()),
+        ("Zigzag 20", table),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("trials.xlsx");
+    std::fs::write(&file, workbook(&sheets)).unwrap();
+    let proposal = propose_files(&ProposalRequest {
+        ship: "",
+        files: &[&file],
+        folder: Some(folder.path()),
+        given: &[],
+    });
+    let place = folder.path().join("trials.yaml");
+    std::fs::write(&place, proposal.unwrap().manifest.to_yaml().unwrap()).unwrap();
+    let trials = load_path(&place).unwrap().trials;
+    let trials: Vec<Trial> = trials.into_iter().map(|one| one.unwrap()).collect();
+    let names: Vec<&str> = trials.iter().map(|trial| trial.name.as_str()).collect();
+    assert_eq!(names, ["trials.xlsx#sheet=Zigzag 10", "trials.xlsx#sheet=Zigzag 20"]);
+    trials.iter().for_each(|trial| run.check(trial));
+}
+
+#[test]
+fn trials_side_by_side_are_refused_with_their_columns() {
+    let run = Zigzag::new();
+    let row = |run: &Zigzag, k: usize| {
+        let one = [format!("{:.1}", run.t[k]), degrees(run.psi[k]), degrees(run.delta[k])];
+        [one.clone(), one].concat()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("both.csv");
+    std::fs::write(&file, run.table("t_1,psi_1,delta_1,t_2,psi_2,delta_2\n", row, ",")).unwrap();
+    let request = ProposalRequest { ship: "", files: &[&file], folder: None, given: &[] };
+    let refused = propose_files(&request).unwrap_err();
+    let message = &refused[0].message;
+    assert!(
+        message.contains("2 trials side by side") && message.contains("t_2, psi_2"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_segment_of_a_sheet_is_named_by_both() {
+    let segment = ManifestTrial {
+        from: Some(FileTime::Seconds(60.0)),
+        ..ManifestTrial::from_file_name("a.xlsx#sheet=Run 2")
+    };
+    assert_eq!(segment.trial_label(), "a.xlsx#sheet=Run 2&t=60,");
+    assert_eq!(segment.file_path(), "a.xlsx");
 }

@@ -76,7 +76,7 @@ fn segment_file(
     // One pass over the rows: a log may be larger than the memory.
     let mut finder = SegmentFinder::new(length_m);
     let each = |steering: &SteeringSample| finder.push(&to_sample(steering));
-    scan_file(&folder.join(&trial.file), &manifest.trial_mapping(trial), each).ok()?;
+    scan_file(&folder.join(trial.file_path()), &manifest.trial_mapping(trial), each).ok()?;
     finder.finish().ok()
 }
 

@@ -1,11 +1,14 @@
-//! CSV files of ROS messages, a column for each field, as `rostopic echo -p`, bagpy, PlotJuggler and
-//! Foxglove write them: poses, twists and orientations become channels as in a bag.
+//! CSV files of ROS messages, a column for each field, as `rostopic echo -p`, bagpy and PlotJuggler
+//! write them: poses, twists and orientations become channels as in a bag.
 
 use std::io;
 
+use csv::ByteRecord;
+
 use super::message_log::{MessageLog, MessageValue};
-use super::ros_topics::{TopicMessage, TypeParts, motion_values};
+use super::ros_topics::{TopicMessage, TypeParts, is_command, motion_values};
 use crate::column_source::MemoryColumns;
+use crate::layout::likely_separator;
 use crate::limits::{FileLimits, too_many_rows};
 
 /// Paths of the parts of a message, the longest first.
@@ -63,7 +66,7 @@ enum TimeColumns {
 pub(crate) fn is_ros_header(start: &[u8]) -> bool {
     let Some(line) = start.split(|&byte| byte == b'\n').next() else { return false };
     let text = String::from_utf8_lossy(line);
-    let names = text.split(delimiter(&text));
+    let names = text.split(char::from(likely_separator(line)));
     let paths: Vec<String> = names.map(|name| field_path(name.trim().trim_matches('"'))).collect();
     let has = |path: String| paths.contains(&path);
     paths.iter().any(|path| match path.rsplit_once('.') {
@@ -83,11 +86,10 @@ pub(crate) fn is_ros_header(start: &[u8]) -> bool {
 /// Returns an error if there is no time, or more rows or numbers than the limits allow.
 pub(crate) fn read_ros_csv(text: &[u8], limits: FileLimits) -> io::Result<MemoryColumns> {
     let line = text.split(|&byte| byte == b'\n').next().unwrap_or_default();
-    let delimiter = delimiter(&String::from_utf8_lossy(line));
     let mut reader = csv::ReaderBuilder::new()
         .flexible(true)
         .trim(csv::Trim::All)
-        .delimiter(delimiter as u8)
+        .delimiter(likely_separator(line))
         .from_reader(text);
     let names: Vec<String> = reader.byte_headers()?.iter().map(lossy_text).collect();
     let header = RosHeader::from_names(&names)?;
@@ -96,7 +98,7 @@ pub(crate) fn read_ros_csv(text: &[u8], limits: FileLimits) -> io::Result<Memory
         if row == limits.rows {
             return Err(invalid(too_many_rows(limits.rows)));
         }
-        let cells: Vec<String> = record?.iter().map(lossy_text).collect();
+        let cells = record?;
         // A row without a time has no place in the log.
         if let Some(time) = header.time.read_seconds(&cells) {
             is_dated |= time > DATED_S;
@@ -117,11 +119,6 @@ fn lossy_text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-fn delimiter(line: &str) -> char {
-    let count = |one: char| line.matches(one).count();
-    [',', ';', '\t'].into_iter().max_by_key(|&one| count(one)).unwrap_or(',')
-}
-
 /// Returns the path of a field with dots, without the marks of the program that wrote it.
 fn field_path(name: &str) -> String {
     let name = name.trim_start_matches(['\u{feff}', '%', '/']).replace('/', ".");
@@ -132,8 +129,9 @@ fn last_segment(path: &str) -> &str {
     path.rsplit('.').next().unwrap_or_default()
 }
 
-fn read_number(cells: &[String], at: usize) -> Option<f64> {
-    cells.get(at)?.parse().ok().filter(|number: &f64| number.is_finite())
+fn read_number(cells: &ByteRecord, at: usize) -> Option<f64> {
+    let text = std::str::from_utf8(cells.get(at)?).ok()?;
+    text.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
 impl TimeColumns {
@@ -158,7 +156,7 @@ impl TimeColumns {
     }
 
     /// Returns the time of a row, s.
-    fn read_seconds(self, cells: &[String]) -> Option<f64> {
+    fn read_seconds(self, cells: &ByteRecord) -> Option<f64> {
         match self {
             Self::Two(seconds, rest) => {
                 Some(read_number(cells, seconds)? + 1e-9 * read_number(cells, rest)?)
@@ -198,7 +196,7 @@ impl RosHeader {
         Ok(Self { time, messages, others })
     }
 
-    fn add_row(&self, log: &mut MessageLog, time: f64, cells: &[String]) -> io::Result<()> {
+    fn add_row(&self, log: &mut MessageLog, time: f64, cells: &ByteRecord) -> io::Result<()> {
         for (source, message) in (0_u32..).zip(&self.messages) {
             for value in motion_values(&message.parts, &message.read_row(cells)) {
                 log.add_value(time, source, value)?;
@@ -220,7 +218,7 @@ fn plain_name(path: &str) -> String {
     topic.unwrap_or(path).to_owned()
 }
 
-/// Returns the messages that have a pose, an orientation or a twist.
+/// Returns the messages that measure a pose, an orientation or a twist.
 fn find_messages(paths: &[String]) -> Vec<MessageColumns> {
     let mut prefixes: Vec<&str> = Vec::new();
     let parts = POSITIONS.iter().chain(&ORIENTATIONS).chain(&LINEAR).chain(&ANGULAR);
@@ -231,7 +229,7 @@ fn find_messages(paths: &[String]) -> Vec<MessageColumns> {
         let longest = parts.iter().filter(|part| ends_with_path(base, part));
         if let Some(part) = longest.max_by_key(|part| part.len()) {
             let prefix = &base[..base.len() - part.len()];
-            if !prefixes.contains(&prefix) {
+            if !prefixes.contains(&prefix) && !is_command(prefix) {
                 prefixes.push(prefix);
             }
         }
@@ -270,14 +268,14 @@ impl MessageColumns {
         Self { parts, numbers: select(&is_number), frames: select(&is_frame) }
     }
 
-    fn read_row(&self, cells: &[String]) -> TopicMessage {
+    fn read_row(&self, cells: &ByteRecord) -> TopicMessage {
         let mut message = TopicMessage::default();
         let numbers = self.numbers.iter();
         message.numbers = numbers
             .filter_map(|(at, path)| Some((path.clone(), read_number(cells, *at)?)))
             .collect();
         for (at, path) in &self.frames {
-            message.set_frame(path, cells.get(*at).map_or("", String::as_str));
+            message.set_frame(path, &cells.get(*at).map(lossy_text).unwrap_or_default());
         }
         message
     }
@@ -351,8 +349,8 @@ mod tests {
              /odom/pose/pose/orientation/x,/odom/pose/pose/orientation/y,\
              /odom/pose/pose/orientation/z,/odom/pose/pose/orientation/w,\
              /odom/twist/twist/linear/x,/odom/twist/twist/linear/y,\
-             /odom/twist/twist/angular/z,/rudder/angle/data",
-            |t| format!("{t},{},7,0,0,0,1,2,0.1,0.1,\n{t},,,,,,,,,,12", 2.0 * t),
+             /odom/twist/twist/angular/z,/rudder/angle/data,/cmd_vel/linear/x",
+            |t| format!("{t},{},7,0,0,0,1,2,0.1,0.1,,\n{t},,,,,,,,,,12,9", 2.0 * t),
         );
         assert_eq!(columns.columns()[0].unit, "s");
         check(columns, "rudder.angle");

@@ -82,6 +82,16 @@ impl TopicMessage {
     }
 }
 
+/// Words of a topic that asks for a motion and does not measure it.
+const COMMANDS: [&str; 7] =
+    ["cmd", "command", "setpoint", "desired", "reference", "goal", "target"];
+
+/// Returns true if the motions of a topic are wanted ones, such as those of `/cmd_vel`.
+pub(crate) fn is_command(topic: &str) -> bool {
+    let topic = topic.to_lowercase();
+    COMMANDS.iter().any(|word| topic.contains(word))
+}
+
 /// Returns the values of a message: channels of a common type, and the plain numbers of any other.
 pub(crate) fn topic_values(topic: &str, kind: &str, message: &TopicMessage) -> Vec<MessageValue> {
     let kind = kind.rsplit(['/', '.']).next().unwrap_or_default();
@@ -89,8 +99,8 @@ pub(crate) fn topic_values(topic: &str, kind: &str, message: &TopicMessage) -> V
         return place_values(message);
     }
     match TYPES.iter().find(|parts| parts.kind == kind) {
-        Some(parts) => motion_values(parts, message),
-        None => plain_values(topic, message),
+        Some(parts) if !is_command(topic) => motion_values(parts, message),
+        _ => plain_values(topic, message),
     }
 }
 
@@ -196,6 +206,9 @@ mod tests {
         let plain =
             topic_values("/rudder/angle", "std_msgs/msg/Float64", &message("", &[("data", 0.1)]));
         assert_eq!((plain[0].name.as_str(), plain[0].number), ("rudder/angle", 0.1));
+        let wanted = message("", &[("linear.x", 2.0), ("angular.z", 0.1)]);
+        let wanted = topic_values("/cmd_vel", "geometry_msgs/msg/Twist", &wanted);
+        assert!(wanted.iter().all(|value| value.name.starts_with("cmd_vel.")), "{wanted:?}");
         let lost = message("", &[("status.status", -1.0), ("latitude", 1.0)]);
         assert!(topic_values("/fix", "sensor_msgs/msg/NavSatFix", &lost).is_empty());
     }

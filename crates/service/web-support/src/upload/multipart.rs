@@ -126,9 +126,10 @@ impl FormParts {
             Ok(files.len() - 1)
         };
         for (index, trial) in manifest.manifest.trials.iter().enumerate() {
-            let main = place(&mut self, format!("trials[{index}].file"), &trial.file)?;
+            let main = place(&mut self, format!("trials[{index}].file"), trial.file_path())?;
             let sensors = manifest.sensors[index].iter().enumerate().map(|(at, sensor)| {
-                place(&mut self, format!("trials[{index}].sensors[{at}].file"), &sensor.file)
+                let field = format!("trials[{index}].sensors[{at}].file");
+                place(&mut self, field, sensor.file_path())
             });
             places.push((main, sensors.collect::<Result<_>>()?));
         }
