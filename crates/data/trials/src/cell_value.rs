@@ -1,11 +1,9 @@
 //! Value of a cell of text in the unit of its column: a plain number, or one with a unit, a side or
 //! a point of the compass of its own.
 
-use std::borrow::Cow;
-
-use crate::layout::decode_latin_1;
 use crate::number::{CellFault, parse_degrees, parse_number, parse_sided, shown_text};
 use crate::table::{ColumnTarget, RawQuantity, TableColumn};
+use crate::text_decoder::decode_text;
 use crate::units::{UnitKind, is_unit, plain_unit};
 
 /// Digits before the decimal mark from which a latitude has degrees and minutes in one number, as
@@ -79,6 +77,7 @@ fn read_position(cell: &[u8]) -> Result<f64, CellFault> {
         true => (JOINED_DIGITS + 1, 180.0),
         false => (JOINED_DIGITS, 90.0),
     };
+    // Leading zeros tell degrees with minutes from degrees alone, near the equator and Greenwich too.
     let is_joined = whole_digits(number) >= digits || value > most;
     let (degrees, minutes) = ((value / 100.0).trunc(), value % 100.0);
     let size = match is_joined {
@@ -97,6 +96,7 @@ fn read_with_unit(cell: &[u8], column: &TableColumn) -> Option<Result<f64, CellF
     if matches!(column.target, ColumnTarget::Unidentified(_)) || plain_unit(&column.unit) == unit {
         return Some(Ok(value));
     }
+    // The cell knows better than the column what it holds.
     let factor = UnitKind::from_target(column.target).unit_to_si(&unit);
     Some(match factor {
         Ok(factor) => Ok(value * factor / column.to_si),
@@ -106,8 +106,7 @@ fn read_with_unit(cell: &[u8], column: &TableColumn) -> Option<Result<f64, CellF
 
 /// Splits a number from the unit after it, as in `11.7 kn` and `4,1°/min`; `None` without both.
 pub(crate) fn split_unit(cell: &[u8]) -> Option<(f64, String)> {
-    let text: Cow<str> =
-        std::str::from_utf8(cell).map_or_else(|_| decode_latin_1(cell).into(), Cow::from);
+    let text = decode_text(cell);
     let text = text.trim();
     let is_number = |at: char| at.is_ascii_digit() || matches!(at, '+' | '-' | '.' | ',');
     let (number, unit) = text.split_at(text.find(|at| !is_number(at))?);
@@ -118,6 +117,7 @@ pub(crate) fn split_unit(cell: &[u8]) -> Option<(f64, String)> {
 
 /// Returns the unit that every cell with text has; `None` if there is none.
 pub(crate) fn common_unit<'a>(cells: impl Iterator<Item = &'a str>) -> Option<String> {
+    // Empty cells are gaps of the recording, which have no unit.
     let mut units = cells
         .filter(|cell| !cell.trim().is_empty())
         .map(|cell| split_unit(cell.as_bytes()).map(|(_, unit)| unit));

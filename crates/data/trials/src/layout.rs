@@ -8,6 +8,7 @@ use crate::mapping::Mapping;
 use crate::names;
 use crate::number::parse_number;
 use crate::stamp::{DateOrder, parse_stamp};
+use crate::text_decoder::decode_text;
 use crate::units::{is_unit, plain_unit};
 
 /// Number of lines in which the header is searched.
@@ -331,14 +332,9 @@ fn split_cells(line: &[u8], separator: u8) -> Vec<String> {
     record.iter().map(header_text).collect()
 }
 
-/// Returns the text of a header; bytes that are not UTF-8 are read as Latin-1, where every byte is
-/// a character.
+/// Returns the text of a header.
 pub(crate) fn header_text(cell: &[u8]) -> String {
-    std::str::from_utf8(cell).map_or_else(|_| decode_latin_1(cell), str::to_owned).trim().to_owned()
-}
-
-pub(crate) fn decode_latin_1(bytes: &[u8]) -> String {
-    bytes.iter().map(|&byte| char::from(byte)).collect()
+    decode_text(cell).trim().to_owned()
 }
 
 /// Returns the number of cells of a line that name a column to be read.

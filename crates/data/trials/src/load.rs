@@ -119,6 +119,7 @@ impl ListedFile {
     /// Returns true if both are segments of one file, which is then read once.
     fn shares_file(&self, other: &Self) -> bool {
         let both = self.mapping.stretch.is_some() && other.mapping.stretch.is_some();
+        // Sheets of one workbook are tables of their own.
         let same = self.mapping.sheet == other.mapping.sheet;
         both && same && self.path.components().eq(other.path.components())
     }

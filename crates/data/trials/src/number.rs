@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::text_decoder::decode_text;
+
 /// Largest number of bytes of a cell in a message.
 const SHOWN: usize = 40;
 
@@ -62,9 +64,8 @@ pub(crate) fn parse_number(cell: &[u8]) -> Result<f64, CellFault> {
 /// `33-54.0S`, to degrees; south and west are negative, a comma is a decimal mark. `None` without a
 /// sign of degrees, or several numbers and a point of the compass.
 pub(crate) fn parse_degrees(cell: &[u8]) -> Option<f64> {
-    // Bytes that are not UTF-8 are Latin-1, where 0xb0 is the sign of degrees.
-    let text = std::str::from_utf8(cell)
-        .map_or_else(|_| cell.iter().map(|&byte| char::from(byte)).collect(), str::to_owned);
+    // In Latin-1 0xb0 is the sign of degrees.
+    let text = decode_text(cell);
     let compass = |letter: char| matches!(letter, 'N' | 'S' | 'E' | 'W');
     let letters: Vec<char> =
         text.chars().filter(|letter| letter.is_alphabetic() && *letter != 'º').collect();
@@ -76,7 +77,7 @@ pub(crate) fn parse_degrees(cell: &[u8]) -> Option<f64> {
     // Between the digits of `33-54.0S` a dash is no sign.
     let text = match (point, text.split_at_checked(1)) {
         (Some(_), Some((first, rest))) => format!("{first}{}", rest.replace('-', " ")),
-        _ => text,
+        _ => text.into_owned(),
     };
     let is_sign = |letter: char| matches!(letter, '°' | 'º' | '˚');
     let signed = text.contains(is_sign);
@@ -107,9 +108,7 @@ const SIDES: [(&[&str], f64); 2] = [
 /// comma is a decimal mark. `None` without exactly one side and one number without a sign.
 pub(crate) fn parse_sided(cell: &[u8]) -> Option<f64> {
     let is_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '.' | ',');
-    // Bytes that are not UTF-8 are Latin-1, as in degrees.
-    let text: String = std::str::from_utf8(cell)
-        .map_or_else(|_| cell.iter().map(|&byte| char::from(byte)).collect(), str::to_owned);
+    let text = decode_text(cell);
     let text = text.trim();
     let (first, last) = (text.find(is_number)?, text.rfind(is_number)?);
     let (before, after) = (&text[..first], &text[last + 1..]);

@@ -11,6 +11,7 @@ use crate::limits::FileLimits;
 use crate::nmea_file;
 use crate::parquet_footer;
 use crate::table::ColumnTarget;
+use crate::text_decoder::decode_text;
 use crate::trial_file::{InputContent, TrialFile};
 use crate::workbook::{self, ReadSeek};
 
@@ -60,6 +61,7 @@ fn preview_sheets(input: Box<dyn ReadSeek + '_>) -> io::Result<Vec<FilePreview>>
         row.iter().filter(|cell| layout::is_value(cell, b'\t')).count() >= SHEET_VALUES
     };
     let is_table = |one: &FilePreview| one.rows.iter().filter(has_values).count() >= SHEET_ROWS;
+    // Sheets of notes and particulars are left out where others hold recordings.
     if seen.iter().any(is_table) {
         return Ok(seen.into_iter().filter(is_table).collect());
     }
@@ -103,9 +105,7 @@ fn preview_content(content: InputContent) -> io::Result<FilePreview> {
 }
 
 fn normalise_text(text: Vec<u8>) -> Vec<u8> {
-    let text =
-        String::from_utf8(text).unwrap_or_else(|error| layout::decode_latin_1(error.as_bytes()));
-    text.replace("\r\n", "\n").replace('\r', "\n").into_bytes()
+    decode_text(&text).replace("\r\n", "\n").replace('\r', "\n").into_bytes()
 }
 
 fn preview_text(start: &[u8]) -> FilePreview {

@@ -81,6 +81,21 @@ pub fn propose_files(request: &ProposalRequest) -> Result<ManifestProposal, Vec<
     Ok(set.into_proposal(request.ship))
 }
 
+/// Returns the channels that must be derived where a file, or files together, have others.
+fn derivable_channels(one: &dyn Fn(&str) -> bool) -> Vec<Derivable> {
+    let has = |names: &[&str]| names.iter().all(|name| one(name));
+    let track = has(&["psi"]) && (has(&["x", "y"]) || has(&["latitude", "longitude"]));
+    // Course and speed, or velocities north and east, give `u` and `v` without derivation.
+    let ground = has(&["course", "speed", "psi"]) || has(&["v_north", "v_east", "psi"]);
+    let open = [
+        ("u", Derivable::U, track && !ground),
+        ("v", Derivable::V, track && !ground),
+        ("r", Derivable::R, has(&["psi"])),
+    ];
+    let missing = open.into_iter().filter(|(name, _, is_known)| *is_known && !one(name));
+    missing.map(|(_, channel, _)| channel).collect()
+}
+
 fn several_trials(groups: &[Vec<&str>]) -> String {
     let columns: Vec<String> = groups.iter().map(|group| group.join(", ")).collect();
     format!(
@@ -276,19 +291,15 @@ impl FileSet {
     /// Returns the columns to ignore, and the velocities to derive where positions and heading
     /// exist and velocities do not.
     fn proposed_declarations(&self) -> Declarations {
-        let one = |name: &str| self.shapes.iter().any(|shape| shape.has_channel(name));
-        let has = |names: &[&str]| names.iter().all(|name| one(name));
-        let track = has(&["psi"]) && (has(&["x", "y"]) || has(&["latitude", "longitude"]));
-        // Course and speed, or velocities north and east, give `u` and `v` without derivation.
-        let ground = has(&["course", "speed", "psi"]) || has(&["v_north", "v_east", "psi"]);
-        let mut derive = Vec::new();
-        if track && !ground {
-            let open = [("u", Derivable::U), ("v", Derivable::V)];
-            derive.extend(open.into_iter().filter(|(name, _)| !one(name)).map(|(_, one)| one));
-        }
-        if has(&["psi"]) && !has(&["r"]) {
-            derive.push(Derivable::R);
-        }
+        // A file that is a trial by itself has no channels of other files; sensors share theirs.
+        let complete = self.shapes.iter().filter(|shape| shape.is_complete());
+        let mut derive: Vec<Derivable> = complete
+            .flat_map(|shape| derivable_channels(&|name| shape.has_channel(name)))
+            .collect();
+        let any = |name: &str| self.shapes.iter().any(|shape| shape.has_channel(name));
+        derive.extend(derivable_channels(&any));
+        let order = [Derivable::U, Derivable::V, Derivable::R];
+        let derive = order.into_iter().filter(|one| derive.contains(one)).collect();
         let guesses = self.shapes.iter().flat_map(|shape| &shape.guesses);
         let left = guesses.filter(|guess| guess.channel.is_none() && !guess.column.is_empty());
         let mut ignore: Vec<String> = left.map(|guess| guess.column.clone()).collect();

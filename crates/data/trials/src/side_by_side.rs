@@ -17,6 +17,7 @@ pub(crate) fn find_groups(names: &[String]) -> Option<Vec<Vec<&str>>> {
     for name in names.iter().map(|name| name.trim()).filter(|name| !name.is_empty()) {
         let count = known.entry(name).or_default();
         *count += 1;
+        // A name that occurs again belongs to the next trial, as if it had a number.
         let (stem, number) = split_number(name).unwrap_or((name, *count));
         groups.entry(number).or_default().push((stem.to_lowercase(), name));
     }
@@ -25,6 +26,7 @@ pub(crate) fn find_groups(names: &[String]) -> Option<Vec<Vec<&str>>> {
         bare == "t" || names::is_time(bare)
     };
     let has_time = |group: &[(String, &str)]| group.iter().any(|(stem, _)| is_time(stem));
+    // Without a time of its own a group is a pair of rudders or propellers, and no trial.
     groups.retain(|_, group| has_time(group));
     let stems = |group: &[(String, &str)]| -> BTreeSet<String> {
         group.iter().map(|(stem, _)| stem.clone()).collect()

@@ -1,5 +1,6 @@
 //! Text in UTF-16, as Excel saves it, is decoded to UTF-8; other text is passed on as it is.
 
+use std::borrow::Cow;
 use std::io::{self, Cursor, Read};
 
 /// Number of bytes that are decoded at a time.
@@ -7,6 +8,12 @@ const PIECE: usize = 8 << 10;
 
 /// Decodes one code unit from its bytes.
 type DecodeUnit = fn([u8; 2]) -> u16;
+
+/// Returns text as it is, or as Latin-1, where every byte is a character, if it is not UTF-8.
+pub(crate) fn decode_text(bytes: &[u8]) -> Cow<'_, str> {
+    let latin_1 = || bytes.iter().map(|&byte| char::from(byte)).collect::<String>();
+    std::str::from_utf8(bytes).map_or_else(|_| latin_1().into(), Cow::from)
+}
 
 /// Reader of text whose first bytes, a byte order mark, show whether it is UTF-16.
 pub(crate) struct TextDecoder<R> {

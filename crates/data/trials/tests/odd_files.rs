@@ -395,3 +395,38 @@ fn a_segment_of_a_sheet_is_named_by_both() {
     assert_eq!(segment.trial_label(), "a.xlsx#sheet=Run 2&t=60,");
     assert_eq!(segment.file_path(), "a.xlsx");
 }
+
+#[test]
+fn each_file_derives_what_it_does_not_have() {
+    let run = Zigzag::new();
+    let row = |run: &Zigzag, k: usize| {
+        let place = [run.t[k], run.x[k], run.y[k]].map(|value| format!("{value:.3}"));
+        place.into_iter().chain([run.psi[k], run.delta[k]].map(degrees)).collect::<Vec<_>>()
+    };
+    let over_ground = |run: &Zigzag, k: usize| {
+        [row(run, k), vec![degrees(run.psi[k]), format!("{:.3}", 5.0 / KNOT)]].concat()
+    };
+    let header = "time [s],x [m],y [m],heading [deg],rudder [deg]";
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: String| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    let both = format!("{header},COG [deg],SOG [kn]\n");
+    let files = [
+        write("ground.csv", run.table(&both, over_ground, ",")),
+        write("track.csv", run.table(&format!("{header}\n"), row, ",")),
+    ];
+    let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
+    let request =
+        ProposalRequest { ship: "", files: &paths, folder: Some(folder.path()), given: &[] };
+    let place = folder.path().join("trials.yaml");
+    let manifest = propose_files(&request).unwrap().manifest;
+    std::fs::write(&place, manifest.to_yaml().unwrap()).unwrap();
+    for trial in load_path(&place).unwrap().trials {
+        let trial = trial.unwrap();
+        let u = trial.channel(Channel::U).unwrap_or_else(|| panic!("{}", trial.name));
+        assert!((u[300] - 5.0).abs() < 0.05, "{}: {}", trial.name, u[300]);
+    }
+}
