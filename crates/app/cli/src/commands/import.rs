@@ -186,8 +186,12 @@ pub fn run(zoo: &Zoo, arguments: &ImportArguments) -> Result<(), Failure> {
         logs,
         excluded,
         currents,
-        // The files of one manifest usually have the same channels: the first trial stands for all.
-        lacking: trials.first().map_or_else(Vec::new, |trial| law_needs(zoo, trial)),
+        // Laws are fitted to all trials together: the one that lacks most decides.
+        lacking: trials
+            .iter()
+            .map(|trial| law_needs(zoo, trial))
+            .max_by_key(|needs| needs.iter().map(|need| need.lacks.len()).sum::<usize>())
+            .unwrap_or_default(),
         trials: trials.into_iter().map(|trial| trial.name).collect(),
         errors,
         explain,
