@@ -20,7 +20,7 @@ pub struct ReadTrial {
     pub file: String,
     /// The file's path.
     pub path: PathBuf,
-    /// True if it is a segment of its file.
+    /// True if it is a segment of its file, or a sheet of it.
     pub is_stretch: bool,
     /// The ship that the manifest names.
     pub ship: Option<String>,
@@ -83,7 +83,11 @@ fn files_of(path: &Path, loaded: &LoadedTrials) -> Vec<(String, PathBuf, bool)> 
         Some(manifest) => manifest
             .trials
             .iter()
-            .map(|trial| (trial.trial_label(), folder.join(trial.file_path()), trial.is_segment()))
+            .map(|trial| {
+                // A sheet is a part of its workbook, as a segment is of a log.
+                let is_part = trial.is_segment() || trial.file_path() != trial.file;
+                (trial.trial_label(), folder.join(trial.file_path()), is_part)
+            })
             .collect(),
         None => vec![(path.display().to_string(), path.to_path_buf(), false)],
     }
@@ -189,6 +193,7 @@ pub fn remark_other_ship(read: &[ReadTrial], ship: &str) {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use sistership_model::manifest::{Manifest, ManifestTrial, TrialConventions, TrialsKind};
 
     #[test]
     fn equal_names_are_told_apart_and_equal_files_refused() {
@@ -207,6 +212,23 @@ mod tests {
         assert!(
             super::read_trials(&twice).unwrap_err().message().unwrap().contains("listed twice")
         );
+    }
+
+    #[test]
+    fn sheets_are_parts_of_their_workbook() {
+        let sheets = ["b.xlsx#sheet=A", "b.xlsx#sheet=B"].map(ManifestTrial::from_file_name);
+        let manifest = Manifest {
+            kind: TrialsKind::Trials,
+            ship: String::new(),
+            conventions: TrialConventions::default(),
+            columns: Default::default(),
+            trials: sheets.to_vec(),
+        };
+        let loaded = LoadedTrials { manifest: Some(manifest), trials: Vec::new() };
+        let files = files_of(Path::new("folder/trials.yaml"), &loaded);
+        let book = PathBuf::from("folder/b.xlsx");
+        let wanted = ["b.xlsx#sheet=A", "b.xlsx#sheet=B"];
+        assert_eq!(files, wanted.map(|label| (label.to_owned(), book.clone(), true)));
     }
 
     #[test]
