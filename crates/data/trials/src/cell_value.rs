@@ -17,7 +17,9 @@ pub(crate) fn read_value(
     next: Option<&[u8]>,
     column: &TableColumn,
 ) -> Result<f64, CellFault> {
+    // A gap of the recording stays one, whatever is beside it.
     if let Some(letter) = next.and_then(point_of_compass)
+        && whole_digits(cell) > 0
         && belongs_together(cell, column.target)
     {
         return read_position(&[cell.trim_ascii(), &[b' ', letter]].concat());
@@ -165,6 +167,7 @@ mod tests {
             assert!(read_value(text.as_bytes(), None, &latitude).is_err(), "{text}");
         }
         close(read_value(b"54.32", Some(b"12"), &latitude), 54.32);
+        assert_eq!(read_value(b" ", Some(b"N"), &latitude), Err(CellFault::Empty));
     }
 
     #[test]
