@@ -77,16 +77,21 @@ fn degrees(angle: f64) -> String {
     format!("{:.3}", angle.to_degrees())
 }
 
-/// Imports files of a folder as they are: the one trial that they give.
-fn import(folder: &Path, files: &[PathBuf]) -> Trial {
+/// Imports files of a folder as they are: the trials that they give.
+fn import_all(folder: &Path, files: &[PathBuf]) -> Vec<Trial> {
     let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
     let request = ProposalRequest { ship: "", files: &paths, folder: Some(folder), given: &[] };
     let proposal = propose_files(&request).unwrap();
     let place = folder.join("trials.yaml");
     std::fs::write(&place, proposal.manifest.to_yaml().unwrap()).unwrap();
-    let trials = load_path(&place).unwrap().trials;
+    load_path(&place).unwrap().trials.into_iter().map(|trial| trial.unwrap()).collect()
+}
+
+/// Imports files that are one trial.
+fn import(folder: &Path, files: &[PathBuf]) -> Trial {
+    let mut trials = import_all(folder, files);
     assert_eq!(trials.len(), 1);
-    trials.into_iter().next().unwrap().unwrap()
+    trials.remove(0)
 }
 
 fn import_one(bytes: &[u8]) -> Trial {
@@ -352,16 +357,7 @@ fn each_sheet_with_a_table_is_a_trial() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("trials.xlsx");
     std::fs::write(&file, workbook(&sheets)).unwrap();
-    let proposal = propose_files(&ProposalRequest {
-        ship: "",
-        files: &[&file],
-        folder: Some(folder.path()),
-        given: &[],
-    });
-    let place = folder.path().join("trials.yaml");
-    std::fs::write(&place, proposal.unwrap().manifest.to_yaml().unwrap()).unwrap();
-    let trials = load_path(&place).unwrap().trials;
-    let trials: Vec<Trial> = trials.into_iter().map(|one| one.unwrap()).collect();
+    let trials = import_all(folder.path(), &[file]);
     let names: Vec<&str> = trials.iter().map(|trial| trial.name.as_str()).collect();
     assert_eq!(names, ["trials.xlsx#sheet=Zigzag 10", "trials.xlsx#sheet=Zigzag 20"]);
     trials.iter().for_each(|trial| run.check(trial));
@@ -418,14 +414,9 @@ fn each_file_derives_what_it_does_not_have() {
         write("ground.csv", run.table(&both, over_ground, ",")),
         write("track.csv", run.table(&format!("{header}\n"), row, ",")),
     ];
-    let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
-    let request =
-        ProposalRequest { ship: "", files: &paths, folder: Some(folder.path()), given: &[] };
-    let place = folder.path().join("trials.yaml");
-    let manifest = propose_files(&request).unwrap().manifest;
-    std::fs::write(&place, manifest.to_yaml().unwrap()).unwrap();
-    for trial in load_path(&place).unwrap().trials {
-        let trial = trial.unwrap();
+    let trials = import_all(folder.path(), &files);
+    assert_eq!(trials.len(), 2);
+    for trial in trials {
         let u = trial.channel(Channel::U).unwrap_or_else(|| panic!("{}", trial.name));
         assert!((u[300] - 5.0).abs() < 0.05, "{}: {}", trial.name, u[300]);
     }
