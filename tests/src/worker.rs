@@ -50,9 +50,29 @@ impl TestWorker {
     /// # Panics
     /// Where it cannot be told.
     pub fn terminate(&mut self) -> std::process::ExitStatus {
-        let told = Command::new("kill").args(["-TERM", &self.id().to_string()]).status();
-        assert!(told.expect("a signal is sent").success());
+        self.signal("-TERM");
         self.0.wait().expect("the worker ends")
+    }
+
+    /// Halts it until [`TestWorker::resume`].
+    ///
+    /// # Panics
+    /// Where it cannot be told.
+    pub fn halt(&self) {
+        self.signal("-STOP");
+    }
+
+    /// Lets it go on.
+    ///
+    /// # Panics
+    /// Where it cannot be told.
+    pub fn resume(&self) {
+        self.signal("-CONT");
+    }
+
+    fn signal(&self, signal: &str) {
+        let told = Command::new("kill").args([signal, &self.id().to_string()]).status();
+        assert!(told.expect("a signal is sent").success());
     }
 
     /// Kills it without warning, as `kill -9` does.
