@@ -64,8 +64,9 @@ struct PropellerOrder {
     revolutions: f64,
     /// True if it begins in a turn.
     turning: bool,
-    /// Returns true if a speed, relative to that of the approach, ends the check.
-    arrived: fn(f64) -> bool,
+    /// Returns true if a speed ends the check, given with the speed that counts as rest, both
+    /// relative to that of the approach.
+    arrived: fn(f64, f64) -> bool,
 }
 
 const STRAIGHT: [PropellerOrder; 4] = [
@@ -74,28 +75,28 @@ const STRAIGHT: [PropellerOrder; 4] = [
         start: 1.0,
         revolutions: 0.0,
         turning: false,
-        arrived: |u| u < CHECK.rest,
+        arrived: |u, rest| u < rest,
     },
     PropellerOrder {
         name: "propeller reversed",
         start: 1.0,
         revolutions: -1.0,
         turning: false,
-        arrived: |u| u < -CHECK.rest,
+        arrived: |u, _| u < -CHECK.rest,
     },
     PropellerOrder {
         name: "astern from rest",
         start: 0.0,
         revolutions: -1.0,
         turning: false,
-        arrived: |u| u < -CHECK.rest,
+        arrived: |u, _| u < -CHECK.rest,
     },
     PropellerOrder {
         name: "ahead from rest",
         start: 0.0,
         revolutions: 1.0,
         turning: false,
-        arrived: |u| u > CHECK.ahead[0],
+        arrived: |u, _| u > CHECK.ahead[0],
     },
 ];
 
@@ -105,14 +106,14 @@ const TURNING: [PropellerOrder; 2] = [
         start: 1.0,
         revolutions: 0.0,
         turning: true,
-        arrived: |u| u < CHECK.rest,
+        arrived: |u, rest| u < rest,
     },
     PropellerOrder {
         name: "propeller reversed in a turn",
         start: 1.0,
         revolutions: -1.0,
         turning: true,
-        arrived: |u| u < 0.0,
+        arrived: |u, _| u < 0.0,
     },
 ];
 
@@ -162,7 +163,9 @@ fn stopping_time_s(ship: &Ship) -> Result<f64, PropulsionFault> {
 
 /// Speeds of a motion so far.
 struct SpeedMonitor {
-    /// Least speed relative to that of the approach.
+    /// Speed that counts as rest, relative to that of the approach.
+    rest: f64,
+    /// Least speed so far.
     least: f64,
     /// Last speed.
     last: f64,
@@ -189,8 +192,9 @@ fn simulate_order(
     };
     let turn = HelmOrder { delta_rad: CHECK.turn_deg.to_radians(), n_rps: ahead_rps };
     let ordered = HelmOrder { delta_rad: 0.0, n_rps: motion.revolutions * ahead_rps };
-    let mut watch =
-        SpeedMonitor { least: f64::INFINITY, last: motion.start, rises: false, arrived: false };
+    let rest = CHECK.rest * ship.greatest_speed_m_s() / speed;
+    let (least, last) = (f64::INFINITY, motion.start);
+    let mut watch = SpeedMonitor { rest, least, last, rises: false, arrived: false };
     let order = |t_s: f64, state: &StateVector| {
         if t_s < turn_s {
             return Some(turn);
@@ -217,6 +221,6 @@ impl SpeedMonitor {
         // A small rise is tolerated, as of a decaying drift.
         self.rises = too_fast || should_fall && share > self.least + CHECK.rise;
         (self.least, self.last) = (self.least.min(share), share);
-        self.arrived = (motion.arrived)(share);
+        self.arrived = (motion.arrived)(share, self.rest);
     }
 }

@@ -99,8 +99,8 @@ pub(crate) const WAVES: WaveThresholds = WaveThresholds {
 /// Constants of the checks.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CheckThresholds {
-    /// Speed that counts as rest, and astern, by that of the approach, dimensionless. Source:
-    /// chosen.
+    /// Speed that counts as rest, by the greatest of the trials, and as astern, by that of the
+    /// approach, dimensionless. Source: chosen; docs/evidence/propulsion.md has half and double.
     pub rest: f64,
     /// `T`: longest duration, in units of the speed over the deceleration with the propeller
     /// stopped, dimensionless. Source: derived: a resistance that goes with the square of the speed

@@ -4,7 +4,9 @@
 
 use std::collections::BTreeMap;
 
+use sistership_model::quantity::Quantity;
 use sistership_model::trial::{Channel, Trial};
+use sistership_model::validity::Region;
 use sistership_model::{Law, Model, Zoo};
 use sistership_propulsion::{PropulsionEvidence, PropulsionFault, check_straight, model_balance};
 use sistership_simulation::Ship;
@@ -193,6 +195,44 @@ fn a_law_without_revolutions_runs_on_for_ever() {
     assert!(surge(1.0, 0.0) < 0.0 && surge(1.0, -1.0) < surge(1.0, 0.0));
     assert!(surge(0.0, 0.0).abs() < 1e-6 && surge(-0.5, 0.0) > 0.0);
     assert!(surge(0.0, -1.0) < 0.0 && surge(0.0, 1.0) > -surge(0.0, -1.0));
+}
+
+/// A ship that creeps at a fifth of its approach with the propeller stopped.
+fn creeping(zoo: &Zoo) -> (Model, Law) {
+    let law = zoo.law("low-speed").unwrap().as_ref().clone();
+    let mut model = Model { law: law.name.clone(), ..zoo.find_model("mariner").unwrap() };
+    let [speed, n_rps] = [model.speed_m_s.unwrap(), 1.5];
+    let lpp_m = model.particulars["lpp_m"].value;
+    let unit = (9.81 * lpp_m).sqrt();
+    let quantities = |values: &[(&str, f64)]| {
+        let of = |(name, value): &(&str, f64)| ((*name).to_owned(), Quantity::new(*value, "made"));
+        values.iter().map(of).collect::<BTreeMap<_, _>>()
+    };
+    let inertia =
+        [("m", 8e-3), ("X_udot", -4e-4), ("Y_vdot", -7e-3), ("I_z", 5e-4), ("N_rdot", -4e-4)];
+    model.parameters =
+        law.parameters.keys().map(|name| (name.clone(), Quantity::new(0.0, "made"))).collect();
+    model.parameters.extend(quantities(&inertia));
+    let drag = 0.05 * 8.4e-3;
+    let [creep, full] = [0.2, 1.0].map(|share| drag * (share * speed / unit).powi(2));
+    let thrust = (full - creep) * unit / (n_rps * lpp_m);
+    model.coefficients = quantities(&[("X_0", creep), ("X_uu", -drag), ("X_n", thrust)]);
+    model.revolutions_rps = Some(n_rps);
+    (model, law)
+}
+
+#[test]
+fn what_counts_as_rest_goes_by_the_greatest_speed_of_the_trials() {
+    let (mut model, law) = creeping(&Zoo::load_embedded().unwrap());
+    let check = |model: &Model| check_straight(&Ship::new(model, &law).unwrap());
+    let late = |fault| matches!(fault, Err(PropulsionFault::Late { share, .. }) if share < 0.21);
+    assert!(late(check(&model)), "{:?}", check(&model));
+    let covered = |most| Region::from_samples(&BTreeMap::from([("u".to_owned(), vec![0.0, most])]));
+    let speed = model.speed_m_s.unwrap();
+    model.validity = covered(1.9 * speed);
+    assert!(late(check(&model)), "{:?}", check(&model));
+    model.validity = covered(2.3 * speed);
+    assert_eq!(check(&model), Ok(()));
 }
 
 #[test]

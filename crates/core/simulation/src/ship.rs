@@ -164,6 +164,12 @@ impl Ship {
         self.approach_speed_m_s
     }
 
+    /// Greatest speed ahead that the trials cover, at least that of the approach, m/s.
+    pub fn greatest_speed_m_s(&self) -> f64 {
+        let covered = self.validity.as_ref().and_then(|region| region.ranges.get("u"));
+        covered.map_or(self.approach_speed_m_s, |[_, most]| most.max(self.approach_speed_m_s))
+    }
+
     /// Revolutions of a steady approach at a speed, proportional to those of the model, 1/s.
     pub fn revolutions_at(&self, speed_m_s: f64) -> f64 {
         self.approach_n_rps * speed_m_s / self.approach_speed_m_s
