@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn sheets_are_parts_of_their_workbook() {
-        let sheets = ["b.xlsx#sheet=A", "b.xlsx#sheet=B"].map(ManifestTrial::from_file_name);
+        let sheets = ["b.xlsx#part=A", "b.xlsx#part=B"].map(ManifestTrial::from_file_name);
         let manifest = Manifest {
             kind: TrialsKind::Trials,
             ship: String::new(),
@@ -227,7 +227,7 @@ mod tests {
         let loaded = LoadedTrials { manifest: Some(manifest), trials: Vec::new() };
         let files = files_of(Path::new("folder/trials.yaml"), &loaded);
         let book = PathBuf::from("folder/b.xlsx");
-        let wanted = ["b.xlsx#sheet=A", "b.xlsx#sheet=B"];
+        let wanted = ["b.xlsx#part=A", "b.xlsx#part=B"];
         assert_eq!(files, wanted.map(|label| (label.to_owned(), book.clone(), true)));
     }
 

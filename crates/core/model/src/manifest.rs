@@ -64,7 +64,8 @@ fn is_false(value: &bool) -> bool {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ManifestTrial {
-    /// Path, relative to the manifest; of a workbook with several sheets `log.xlsx#sheet=NAME`.
+    /// Path, relative to the manifest; `log.xlsx#part=NAME` for a sheet of a workbook, a structure of a
+    /// MATLAB file or a group of an HDF5 file.
     pub file: String,
     /// Start of the segment to read; default: the file's first row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -110,7 +111,7 @@ impl ManifestTrial {
     /// (W3C 2012), `log.csv#t=3600,5400`.
     pub fn trial_label(&self) -> String {
         let text = |time: &Option<FileTime>| time.as_ref().map_or(String::new(), |t| t.to_string());
-        let mark = if split_sheet(&self.file).1.is_some() { '&' } else { '#' };
+        let mark = if split_part(&self.file).1.is_some() { '&' } else { '#' };
         match self.is_segment() {
             true => format!("{}{mark}t={},{}", self.file, text(&self.from), text(&self.to)),
             false => self.file.clone(),
@@ -119,14 +120,14 @@ impl ManifestTrial {
 
     /// Returns the path of the file itself.
     pub fn file_path(&self) -> &str {
-        split_sheet(&self.file).0
+        split_part(&self.file).0
     }
 }
 
-/// Separates a file from the sheet of a workbook, `log.xlsx#sheet=NAME`.
-pub fn split_sheet(file: &str) -> (&str, Option<&str>) {
-    match file.split_once("#sheet=") {
-        Some((path, sheet)) => (path, Some(sheet)),
+/// Separates a file from its part, a sheet of a workbook, a structure or a group: `log.xlsx#part=NAME`.
+pub fn split_part(file: &str) -> (&str, Option<&str>) {
+    match file.split_once("#part=") {
+        Some((path, part)) => (path, Some(part)),
         None => (file, None),
     }
 }

@@ -5,7 +5,8 @@ use std::io::{self, SeekFrom};
 
 use crate::clock::ColumnClock;
 use crate::column_formats::{ColumnFormat, open_columns};
-use crate::column_source::FileColumn;
+use crate::column_parts::{PartColumns, part_names};
+use crate::column_source::{ColumnSource, FileColumn};
 use crate::findings::Findings;
 use crate::limits::FileLimits;
 use crate::mapping::Mapping;
@@ -27,13 +28,13 @@ pub(crate) struct ColumnFile<'a> {
     pub input: Box<dyn ReadSeek + 'a>,
 }
 
-impl ColumnFile<'_> {
+impl<'a> ColumnFile<'a> {
     /// Reads the mapped columns; rows are counted from 1.
     pub(crate) fn read_table(self, mapping: &Mapping, findings: &mut Findings) -> Option<Table> {
         let format = self.format;
         let unreadable =
             |error: io::Error| format!("the {} cannot be read: {error}", format.name());
-        let opened = open_columns(format, self.input, mapping.limits).map_err(unreadable);
+        let opened = self.open_part(mapping).map_err(unreadable);
         let mut source = opened.map_err(|message| findings.error(None, None, message)).ok()?;
         let columns = mapped_columns(source.columns(), mapping, findings)?;
         let wanted: Vec<usize> = columns.iter().map(|column| column.index).collect();
@@ -48,13 +49,37 @@ impl ColumnFile<'_> {
         Some(build_table(columns, &data, mapping, findings))
     }
 
-    /// Returns the names and the units of the columns.
+    /// Returns the names and the units of the columns of each part, or of the whole file.
     ///
     /// # Errors
     /// Returns an error if the file cannot be read.
-    pub(crate) fn read_header(self, limits: FileLimits) -> io::Result<(Vec<String>, Vec<String>)> {
-        let source = open_columns(self.format, self.input, limits)?;
-        Ok(split_header(source.columns()))
+    pub(crate) fn read_headers(self, limits: FileLimits) -> io::Result<Vec<ColumnHeaders>> {
+        let nested = self.format.is_nested();
+        let mut source = open_columns(self.format, self.input, limits)?;
+        let parts = if nested { part_names(source.columns()) } else { Vec::new() };
+        if parts.is_empty() {
+            if nested {
+                source = Box::new(PartColumns::open(source, None)?);
+            }
+            return Ok(vec![ColumnHeaders::new(None, source.columns())]);
+        }
+        let mut headers = Vec::new();
+        for part in parts {
+            let columns = PartColumns::open(source, Some(&part))?;
+            headers.push(ColumnHeaders::new(Some(part), columns.columns()));
+            source = columns.into_whole();
+        }
+        Ok(headers)
+    }
+
+    /// Opens the declared part, or the whole file if it has none.
+    fn open_part(self, mapping: &Mapping) -> io::Result<Box<dyn ColumnSource + 'a>> {
+        let (nested, part) = (self.format.is_nested(), mapping.part.as_deref());
+        let source = open_columns(self.format, self.input, mapping.limits)?;
+        match nested {
+            true => Ok(Box::new(PartColumns::open(source, part)?)),
+            false => Ok(source),
+        }
     }
 
     /// Returns the bytes that the reader itself holds: the file, or its messages before they are on
@@ -72,11 +97,26 @@ impl ColumnFile<'_> {
     /// Returns the number of rows and of columns in memory at a time; `None` for a file that will
     /// be refused.
     pub(crate) fn measure_table(self, mapping: &Mapping) -> Option<(usize, usize)> {
-        let source = open_columns(self.format, self.input, mapping.limits).ok()?;
+        let source = self.open_part(mapping).ok()?;
         let columns = mapped_columns(source.columns(), mapping, &mut Findings::default())?;
         let rows = columns.iter().map(|column| source.columns()[column.index].length).max()?;
         // Each column is in memory twice: as read, and in the table.
         Some((rows, 2 * memory_columns(&columns)))
+    }
+}
+
+/// Names and units of the columns of a file, or of a part of it.
+#[derive(Debug)]
+pub(crate) struct ColumnHeaders {
+    pub part: Option<String>,
+    pub names: Vec<String>,
+    pub units: Vec<String>,
+}
+
+impl ColumnHeaders {
+    fn new(part: Option<String>, columns: &[FileColumn]) -> Self {
+        let (names, units) = split_header(columns);
+        Self { part, names, units }
     }
 }
 

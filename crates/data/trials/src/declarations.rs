@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use sistership_model::manifest::{ColumnMapping, split_sheet};
+use sistership_model::manifest::{ColumnMapping, split_part};
 
 use crate::currents::TrialCurrent;
 use crate::exclusion::Exclusion;
@@ -97,7 +97,8 @@ pub enum Derivable {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SensorFile {
-    /// Path, relative to the manifest; of a workbook with several sheets `log.xlsx#sheet=NAME`.
+    /// Path, relative to the manifest; `log.xlsx#part=NAME` for a sheet of a workbook, a structure of a
+    /// MATLAB file or a group of an HDF5 file.
     pub file: String,
     /// Columns of the file, as in the manifest.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -110,6 +111,6 @@ pub struct SensorFile {
 impl SensorFile {
     /// Returns the path of the file itself.
     pub fn file_path(&self) -> &str {
-        split_sheet(&self.file).0
+        split_part(&self.file).0
     }
 }

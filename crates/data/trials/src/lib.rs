@@ -18,6 +18,7 @@ mod cells;
 mod checks;
 mod clock;
 mod column_formats;
+mod column_parts;
 mod column_reader;
 mod column_set;
 mod column_source;

@@ -120,7 +120,7 @@ impl ListedFile {
     fn shares_file(&self, other: &Self) -> bool {
         let both = self.mapping.stretch.is_some() && other.mapping.stretch.is_some();
         // Sheets of one workbook are tables of their own.
-        let same = self.mapping.sheet == other.mapping.sheet;
+        let same = self.mapping.part == other.mapping.part;
         both && same && self.path.components().eq(other.path.components())
     }
 }

@@ -82,7 +82,8 @@ pub(crate) struct Written {
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct WrittenTrial {
-    /// Path, relative to the manifest; of a workbook with several sheets `log.xlsx#sheet=NAME`.
+    /// Path, relative to the manifest; `log.xlsx#part=NAME` for a sheet of a workbook, a structure of a
+    /// MATLAB file or a group of an HDF5 file.
     file: String,
     /// Start of the segment that is read; by default the first row of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]

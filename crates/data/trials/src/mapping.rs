@@ -1,7 +1,7 @@
 //! Knowledge of a file before it is opened.
 
 use sistership_model::manifest::{
-    ColumnMapping, Manifest, ManifestTrial, TrialConventions, split_sheet,
+    ColumnMapping, Manifest, ManifestTrial, TrialConventions, split_part,
 };
 
 use crate::currents::TrialCurrent;
@@ -25,8 +25,9 @@ pub struct Mapping {
     pub depth_m: Option<f64>,
     /// Revolutions held throughout where they were not recorded, 1/s.
     pub n_rps: Option<f64>,
-    /// Sheet of a workbook; by default the one with most known names.
-    pub sheet: Option<String>,
+    /// Sheet of a workbook, by default the one with most known names; structure of a MATLAB file, or
+    /// group of an HDF5 file.
+    pub part: Option<String>,
     /// Further declarations on the file.
     pub declared: Declarations,
     /// Segment of the file that is read; `None` for the whole file.
@@ -83,7 +84,7 @@ impl Mapping {
             manoeuvre: trial.manoeuvre.clone(),
             depth_m: trial.depth_m,
             n_rps: trial.n_rps,
-            sheet: split_sheet(&trial.file).1.map(str::to_owned),
+            part: split_part(&trial.file).1.map(str::to_owned),
             declared: Declarations::default(),
             stretch: FileSegment::from_trial(trial),
             limits: FileLimits::default(),
@@ -100,7 +101,7 @@ impl Mapping {
         let columns = sensor.columns.iter();
         Self {
             columns: columns.map(|(name, column)| (name.clone(), column.clone())).collect(),
-            sheet: split_sheet(&sensor.file).1.map(str::to_owned),
+            part: split_part(&sensor.file).1.map(str::to_owned),
             room: 0,
             stretch: None,
             exclude: Vec::new(),

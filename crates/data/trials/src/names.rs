@@ -43,6 +43,14 @@ pub(crate) fn is_time(header: &str) -> bool {
     TIMES.iter().any(|known| header.eq_ignore_ascii_case(known))
 }
 
+/// Returns true if the header is `t` or a common name of time, with or without its unit.
+pub(crate) fn begins_time(header: &str) -> bool {
+    let bare = header.split(['(', '[']).next().unwrap_or_default().trim();
+    let stem = bare.rsplit_once('_').filter(|(_, unit)| ["s", "sec", "ms", "us"].contains(unit));
+    let stem = stem.map_or(bare, |(stem, _)| stem);
+    stem.eq_ignore_ascii_case("t") || is_time(stem) || is_time(bare)
+}
+
 /// Returns the target and unit named by a header, such as `r_radps` or `wind_speed_kn`. The name of
 /// a channel followed by anything but a unit of its kind (`delta_ordered_rad`) is another quantity.
 pub(crate) fn canonical_target(header: &str) -> Option<(ColumnTarget, &'static str)> {
@@ -89,6 +97,16 @@ mod tests {
         assert_eq!(channel("u_km_h"), Some((Channel::U, "km/h")));
         assert_eq!(channel("wind_speed_kn"), Some((Channel::WindSpeed, "kn")));
         assert_eq!(channel("wind_dir_rad"), Some((Channel::WindFrom, "rad")));
+    }
+
+    #[test]
+    fn times_are_told_with_and_without_their_units() {
+        for header in ["t", "T", "t_s", "Time [s]", "time_ms", "time_stamp", "UTC", "t (s)"] {
+            assert!(begins_time(header), "{header}");
+        }
+        for header in ["", "u_m_s", "tide", "t_air", "time_constant", "s"] {
+            assert!(!begins_time(header), "{header}");
+        }
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::path::Path;
 use csv::{ByteRecord, ReaderBuilder};
 
 use crate::blanks::TabbedReader;
+use crate::column_reader::ColumnHeaders;
 use crate::layout;
 use crate::limits::FileLimits;
 use crate::nmea_file;
@@ -27,20 +28,30 @@ pub(crate) struct FilePreview {
     pub units: Vec<String>,
     /// Cells of the first rows; empty for files that contain no text.
     pub rows: Vec<Vec<String>>,
-    /// Sheet, if a workbook has several.
-    pub sheet: Option<String>,
+    /// Sheet, structure or group, if the file has several.
+    pub part: Option<String>,
     /// NMEA sentences, which need no mapping, and the content of each.
     pub sentences: Vec<(String, ColumnTarget)>,
 }
 
 /// Reads the preview of each table of a file: of each sheet of a workbook that has the rows of a
-/// trial, and of the only table of any other file.
+/// trial, of each structure or group with a time of its own, and of the only table of any other file.
 ///
 /// # Errors
 /// Returns an error if the file cannot be read or its format contains no table.
 pub(crate) fn preview_tables(name: &str, path: &Path) -> io::Result<Vec<FilePreview>> {
     match TrialFile::open(name, path)?.content {
         InputContent::Workbook(input) => preview_sheets(input),
+        InputContent::Columns(file) => {
+            let headers = file.read_headers(FileLimits::default())?;
+            let of = |ColumnHeaders { part, names, units }| FilePreview {
+                part,
+                names,
+                units,
+                ..FilePreview::default()
+            };
+            Ok(headers.into_iter().map(of).collect())
+        }
         other => Ok(vec![preview_content(other)?]),
     }
 }
@@ -53,7 +64,7 @@ fn preview_sheets(input: Box<dyn ReadSeek + '_>) -> io::Result<Vec<FilePreview>>
     let sheets = workbook::sheet_starts(input, FileLimits::default()).map_err(io::Error::other)?;
     let several = sheets.len() > 1;
     let seen = sheets.into_iter().map(|(sheet, start)| FilePreview {
-        sheet: several.then_some(sheet),
+        part: several.then_some(sheet),
         ..preview_text(&start)
     });
     let seen: Vec<FilePreview> = seen.collect();
@@ -78,10 +89,6 @@ fn preview_content(content: InputContent) -> io::Result<FilePreview> {
             input.take(START).read_to_end(&mut start)?;
             Ok(preview_text(&normalise_text(start)))
         }
-        InputContent::Columns(file) => {
-            let (names, units) = file.read_header(limits)?;
-            Ok(FilePreview { names, units, ..FilePreview::default() })
-        }
         InputContent::ParquetFile(file) => {
             // Segments are read of a long log, so that it may have any number of rows.
             let opened = parquet_footer::open_file(file, FileLimits { rows: usize::MAX, ..limits });
@@ -98,7 +105,7 @@ fn preview_content(content: InputContent) -> io::Result<FilePreview> {
             Ok(FilePreview { sentences, ..FilePreview::default() })
         }
         InputContent::Other(what) => Err(io::Error::other(format!("the file is {what}"))),
-        InputContent::Workbook(_) | InputContent::ParquetBytes(_) => {
+        InputContent::Workbook(_) | InputContent::Columns(_) | InputContent::ParquetBytes(_) => {
             Err(io::Error::other("the content is not a file that can be read"))
         }
     }

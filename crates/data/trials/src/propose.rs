@@ -175,8 +175,8 @@ impl FileSet {
         });
         self.shapes[shape].add_sample(&sample.recording);
         let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        let name = match &preview.sheet {
-            Some(sheet) => format!("{name}#sheet={sheet}"),
+        let name = match &preview.part {
+            Some(part) => format!("{name}#part={part}"),
             None => name.to_owned(),
         };
         self.files.push(SetFile { name, folder, shape, span: None });

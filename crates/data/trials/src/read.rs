@@ -168,6 +168,7 @@ pub(crate) fn each_row<V: RowsVisitor>(
     findings: &mut Findings,
     visit: V,
 ) -> Option<V::Output> {
+    check_part(&input, mapping, findings)?;
     match input {
         InputContent::Csv(reader) => {
             let file = CsvRows::open(reader, mapping, findings)?;
@@ -187,6 +188,16 @@ pub(crate) fn each_row<V: RowsVisitor>(
             Some(visit.visit_rows(TableRows::new(table), findings))
         }
     }
+}
+
+/// Refuses a part of a file that has none.
+fn check_part(input: &InputContent, mapping: &Mapping, findings: &mut Findings) -> Option<()> {
+    if mapping.part.is_none() || input.has_parts() {
+        return Some(());
+    }
+    let message = "a file of this format has no parts; remove `#part=NAME` behind its name";
+    findings.error(None, None, message);
+    None
 }
 
 /// Converts a table to a checked, smoothed recording with its findings.
@@ -251,6 +262,7 @@ fn read_content(
     mapping: &Mapping,
     findings: &mut Findings,
 ) -> Option<Table> {
+    check_part(&content, mapping, findings)?;
     match content {
         InputContent::Csv(reader) => csv_file::read_csv(reader, mapping, findings),
         InputContent::ParquetBytes(bytes) => parquet_file::read_parquet(bytes, mapping, findings),

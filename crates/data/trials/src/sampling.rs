@@ -52,7 +52,7 @@ pub(crate) fn sample_file(
         limits: FileLimits { rows: ROWS, ..FileLimits::default() },
         ..Mapping::with_canonical_names()
     };
-    mapping.sheet.clone_from(&preview.sheet);
+    mapping.part.clone_from(&preview.part);
     mapping.conventions.missing = MissingValues::Bridge;
     // Findings are ignored here: they are reported when the trial is read with its manifest.
     let mut findings = Findings::default();

@@ -21,11 +21,8 @@ pub(crate) fn find_groups(names: &[String]) -> Option<Vec<Vec<&str>>> {
         let (stem, number) = split_number(name).unwrap_or((name, *count));
         groups.entry(number).or_default().push((stem.to_lowercase(), name));
     }
-    let is_time = |stem: &str| {
-        let bare = stem.split(['(', '[']).next().unwrap_or_default().trim();
-        bare == "t" || names::is_time(bare)
-    };
-    let has_time = |group: &[(String, &str)]| group.iter().any(|(stem, _)| is_time(stem));
+    let has_time =
+        |group: &[(String, &str)]| group.iter().any(|(stem, _)| names::begins_time(stem));
     // Without a time of its own a group is a pair of rudders or propellers, and no trial.
     groups.retain(|_, group| has_time(group));
     let stems = |group: &[(String, &str)]| -> BTreeSet<String> {

@@ -39,6 +39,17 @@ pub(crate) enum InputContent<'a> {
     Other(&'static str),
 }
 
+impl InputContent<'_> {
+    /// Returns true if such a file may have parts: sheets, structures or groups.
+    pub(crate) fn has_parts(&self) -> bool {
+        match self {
+            Self::Workbook(_) => true,
+            Self::Columns(file) => file.format.is_nested(),
+            _ => false,
+        }
+    }
+}
+
 impl<'a> TrialFile<'a> {
     /// Creates an input file of CSV from any reader, streamed row by row.
     pub fn from_csv(name: impl Into<String>, reader: impl Read + 'a) -> Self {

@@ -45,9 +45,9 @@ pub(crate) fn read_workbook(
     }));
     match read.unwrap_or_else(|_| Err("it contradicts itself".into())) {
         Ok((table, sheet, others)) => {
-            if others > 0 && mapping.sheet.is_none() {
+            if others > 0 && mapping.part.is_none() {
                 let message = format!(
-                    "the sheet `{sheet}` is read; write `#sheet=NAME` after the file to read another"
+                    "the sheet `{sheet}` is read; write `#part=NAME` after the file to read another"
                 );
                 findings.warning(None, None, message);
             }
@@ -101,7 +101,7 @@ type XlsxBook<'a> = Xlsx<Box<dyn ReadSeek + 'a>>;
 
 fn find_sheet(book: &mut XlsxBook, looked_at: usize, mapping: &Mapping) -> Result<String, String> {
     let names = book.sheet_names();
-    if let Some(wanted) = &mapping.sheet {
+    if let Some(wanted) = &mapping.part {
         let listed = || names.iter().take(SHEETS).cloned().collect::<Vec<_>>().join(", ");
         let missing = || format!("there is no sheet `{wanted}`; there are {}", listed());
         return names.iter().find(|name| *name == wanted).cloned().ok_or_else(missing);

@@ -62,9 +62,9 @@ fn the_sheet_with_the_table_is_read_with_excels_rows() {
 #[test]
 fn a_declared_sheet_is_read_and_a_missing_one_told() {
     let mut mapping = Mapping::with_canonical_names();
-    mapping.sheet = Some("About".into());
+    mapping.part = Some("About".into());
     assert!(run(book(STRINGS, ROWS), &mapping).1.contains("no column for time"));
-    mapping.sheet = Some("Dat".into());
+    mapping.part = Some("Dat".into());
     assert!(run(book(STRINGS, ROWS), &mapping).1.contains("there are About, Data"));
 }
 

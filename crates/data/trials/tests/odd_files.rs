@@ -359,8 +359,70 @@ fn each_sheet_with_a_table_is_a_trial() {
     std::fs::write(&file, workbook(&sheets)).unwrap();
     let trials = import_all(folder.path(), &[file]);
     let names: Vec<&str> = trials.iter().map(|trial| trial.name.as_str()).collect();
-    assert_eq!(names, ["trials.xlsx#sheet=Zigzag 10", "trials.xlsx#sheet=Zigzag 20"]);
+    assert_eq!(names, ["trials.xlsx#part=Zigzag 10", "trials.xlsx#part=Zigzag 20"]);
     trials.iter().for_each(|trial| run.check(trial));
+}
+
+/// HDF5 file with a group of that name for each run.
+fn groups(names: &[&str], run: &Zigzag) -> Vec<u8> {
+    use hdf5_writer::{DatasetBuilder, Hdf5Builder, WriteOptions};
+    let speed = vec![5.0; ROWS];
+    let mut file = Hdf5Builder::new();
+    for name in names {
+        let columns = [
+            ("time", &run.t),
+            ("u", &speed),
+            ("x", &run.x),
+            ("y", &run.y),
+            ("psi", &run.psi),
+            ("r", &run.r),
+            ("rudder", &run.delta),
+        ];
+        for (column, values) in columns {
+            let path = format!("{name}/{column}");
+            file =
+                file.dataset(DatasetBuilder::typed_data(path, vec![ROWS as u64], values).unwrap());
+        }
+    }
+    file.into_plan().unwrap().encode(WriteOptions::default()).unwrap()
+}
+
+#[test]
+fn each_group_with_a_time_of_its_own_is_a_trial() {
+    let run = Zigzag::new();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("trials.h5");
+    std::fs::write(&file, groups(&["zigzag 10", "zigzag 20"], &run)).unwrap();
+    let trials = import_all(folder.path(), &[file]);
+    let names: Vec<&str> = trials.iter().map(|trial| trial.name.as_str()).collect();
+    assert_eq!(names, ["trials.h5#part=zigzag 10", "trials.h5#part=zigzag 20"]);
+    trials.iter().for_each(|trial| run.check(trial));
+}
+
+#[test]
+fn the_only_group_of_a_file_gives_no_column_its_name() {
+    let run = Zigzag::new();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("trial.h5");
+    // `log.u` is the speed over ground, not that of a log.
+    std::fs::write(&file, groups(&["log"], &run)).unwrap();
+    let trial = import(folder.path(), &[file]);
+    assert_eq!(trial.name, "trial.h5");
+    assert!(trial.channel(Channel::U).is_some(), "{:?}", trial.channels.keys());
+    run.check(&trial);
+}
+
+#[test]
+fn a_part_of_a_file_without_parts_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = "t_s,u_m_s,delta_rad\n0,1,0\n1,1,0\n";
+    std::fs::write(folder.path().join("a.csv"), csv).unwrap();
+    let manifest = "kind: trials\ntrials:\n  - { file: \"a.csv#part=Run 1\" }\n";
+    let place = folder.path().join("trials.yaml");
+    std::fs::write(&place, manifest).unwrap();
+    let read = load_path(&place).unwrap().trials.remove(0);
+    let text = format!("{:?}", read.unwrap_err());
+    assert!(text.contains("has no parts; remove `#part=NAME`"), "{text}");
 }
 
 #[test]
@@ -386,9 +448,9 @@ fn trials_side_by_side_are_refused_with_their_columns() {
 fn a_segment_of_a_sheet_is_named_by_both() {
     let segment = ManifestTrial {
         from: Some(FileTime::Seconds(60.0)),
-        ..ManifestTrial::from_file_name("a.xlsx#sheet=Run 2")
+        ..ManifestTrial::from_file_name("a.xlsx#part=Run 2")
     };
-    assert_eq!(segment.trial_label(), "a.xlsx#sheet=Run 2&t=60,");
+    assert_eq!(segment.trial_label(), "a.xlsx#part=Run 2&t=60,");
     assert_eq!(segment.file_path(), "a.xlsx");
 }
 

@@ -102,6 +102,53 @@ fn vectors_matrices_and_fields_are_columns() {
     assert_eq!(measured, (3, 8));
 }
 
+/// Structures with the fields `t_s`, `u_m_s` and `r_rad_s` of so many values, one for each given speed.
+fn structures(name: &str, speeds: &[f64]) -> Vec<u8> {
+    let mut fields = 5_u32.to_le_bytes().to_vec();
+    fields[2] = 4;
+    fields.extend(8_i32.to_le_bytes());
+    fields.extend(element(1, b"t_s\0\0\0\0\0u_m_s\0\0\0r_rad_s\0"));
+    let column = |of: &dyn Fn(usize) -> f64| {
+        matrix("", 6, 1, 20, &doubles(&(0..20).map(of).collect::<Vec<_>>()))
+    };
+    for speed in speeds {
+        fields.extend(column(&|k| k as f64));
+        fields.extend(column(&|_| *speed));
+        fields.extend(column(&|k| 0.01 * k as f64));
+    }
+    matrix(name, 2, 1, i32::try_from(speeds.len()).unwrap(), &fields)
+}
+
+fn speed_of(bytes: Vec<u8>, part: Option<&str>) -> (f64, String) {
+    let mapping = Mapping { part: part.map(str::to_owned), ..Mapping::with_canonical_names() };
+    let (table, text) = run(bytes, &mapping);
+    let speed = table.and_then(|table| {
+        let at = table.columns.iter().position(|column| column.header == "u_m_s")?;
+        table.values[at].first().copied()
+    });
+    (speed.unwrap_or(f64::NAN), text)
+}
+
+#[test]
+fn structures_of_an_array_and_of_a_cell_are_parts() {
+    let array = mat_file(&[packed(&structures("runs", &[3.0, 4.0, 5.0]))]);
+    assert_eq!(speed_of(array.clone(), Some("runs(2)")).0, 4.0);
+    let (_, refused) = speed_of(array, None);
+    assert!(refused.contains("3 tables") && refused.contains("runs(3)"), "{refused}");
+    let held = [structures("", &[6.0]), structures("", &[7.0])].concat();
+    let cell = mat_file(&[matrix("all", 1, 1, 2, &held)]);
+    assert_eq!(speed_of(cell.clone(), Some("all{2}")).0, 7.0);
+    assert!(speed_of(cell, Some("all{3}")).1.contains("no part `all{3}` (all{1}, all{2})"));
+    assert_eq!(speed_of(mat_file(&[structures("log", &[2.0])]), None).0, 2.0);
+    // Any number of structures without a field.
+    let mut none = 5_u32.to_le_bytes().to_vec();
+    none[2] = 4;
+    none.extend(2_i32.to_le_bytes());
+    none.extend(element(1, b""));
+    let many = matrix("many", 2, i32::MAX, i32::MAX, &none);
+    assert_eq!(speed_of(mat_file(&[many, structures("log", &[2.0])]), None).0, 2.0);
+}
+
 #[test]
 fn columns_on_different_time_bases_and_bombs_are_refused() {
     let mut uneven = example();

@@ -47,6 +47,11 @@ pub(crate) enum ColumnFormat {
 }
 
 impl ColumnFormat {
+    /// Returns true if columns may stand in structures or groups.
+    pub(crate) fn is_nested(self) -> bool {
+        matches!(self, Self::Matlab | Self::Hdf5)
+    }
+
     /// Returns the name of such a file for messages.
     pub(crate) fn name(self) -> &'static str {
         match self {

@@ -14,6 +14,7 @@ const SMALL: u64 = 64 << 10;
 
 const COMPRESSED: u32 = 15;
 const MATRIX: u32 = 14;
+const CELL: u8 = 1;
 const STRUCTURE: u8 = 2;
 const NUMERIC: std::ops::RangeInclusive<u8> = 6..=15;
 const COMPLEX: u8 = 0x08;
@@ -92,7 +93,7 @@ fn decode_number(kind: u32, big: bool, bytes: &[u8]) -> f64 {
 }
 
 /// Calls the visitor with every real array of the file; arrays within structures are named
-/// `structure.field`.
+/// `structure.field`, `structure(2).field` where there are several, and those of cells `cell{2}`.
 ///
 /// # Errors
 /// Returns an error if the file is damaged or unpacks to more than `most` bytes, and the error of
@@ -228,8 +229,13 @@ impl ElementParser<'_> {
         // Arrays of more than two dimensions are skipped by the caller.
         let &[rows, columns] = dimensions.as_slice() else { return Ok(()) };
         match class {
-            STRUCTURE if (rows, columns) == (1, 1) && depth < DEPTH => {
-                self.read_structure(input, &name, depth)
+            STRUCTURE if depth < DEPTH => {
+                self.read_structures(input, &name, (rows.saturating_mul(columns), depth))
+            }
+            CELL if depth < DEPTH => {
+                let count = rows.saturating_mul(columns);
+                (1..=count)
+                    .try_for_each(|k| self.read_field(input, &format!("{name}{{{k}}}"), depth))
             }
             class if NUMERIC.contains(&class) && flags & COMPLEX == 0 => {
                 let tag = self.read_tag(input)?;
@@ -245,22 +251,38 @@ impl ElementParser<'_> {
         }
     }
 
-    fn read_structure(&mut self, input: &mut dyn Read, name: &str, depth: usize) -> io::Result<()> {
+    fn read_structures(
+        &mut self,
+        input: &mut dyn Read,
+        name: &str,
+        (count, depth): (usize, usize),
+    ) -> io::Result<()> {
         // Names of fields have a fixed length, padded by zeros; the fields follow in the same
         // order.
         let length = self.read_small(input)?;
         let length = length.first_chunk().map_or(0, |bytes| self.decode_word(*bytes) as usize);
         let names = self.read_small(input)?;
-        for field in names.chunks(length.max(1)) {
-            let field: Vec<u8> = field.iter().copied().take_while(|byte| *byte != 0).collect();
-            let field = format!("{name}.{}", String::from_utf8_lossy(&field));
-            let tag = self.read_tag(input)?;
-            if tag.kind != MATRIX || tag.inside.is_some() {
-                return Err(invalid_data("a field is not an array"));
+        let single = count == 1;
+        // Structures without fields may claim to be any number.
+        let count = if names.is_empty() { 0 } else { count };
+        for k in 1..=count {
+            let name = if single { name.to_owned() } else { format!("{name}({k})") };
+            for field in names.chunks(length.max(1)) {
+                let field: Vec<u8> = field.iter().copied().take_while(|byte| *byte != 0).collect();
+                let field = format!("{name}.{}", String::from_utf8_lossy(&field));
+                self.read_field(input, &field, depth)?;
             }
-            self.read_matrix(input, tag.size, &field, depth + 1)?;
         }
         Ok(())
+    }
+
+    /// Reads an array within another.
+    fn read_field(&mut self, input: &mut dyn Read, name: &str, depth: usize) -> io::Result<()> {
+        let tag = self.read_tag(input)?;
+        if tag.kind != MATRIX || tag.inside.is_some() {
+            return Err(invalid_data("a field is not an array"));
+        }
+        self.read_matrix(input, tag.size, name, depth + 1)
     }
 }
 
