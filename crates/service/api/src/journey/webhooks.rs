@@ -127,20 +127,26 @@ async fn told(database: TestDatabase) {
     }
 
     // Events that were acknowledged while the receiver was down are sent by the next server.
-    *receiver.refuses.lock().unwrap() = 1;
+    *receiver.refuses.lock().unwrap() = usize::MAX;
     move_champion(&harness, "another").await;
-    until("the third attempt", || receiver.seen.lock().unwrap().len() == 3).await;
+    until("the third attempt", || receiver.seen.lock().unwrap().len() >= 3).await;
     let Harness { server, database, .. } = harness;
     server.stop().await;
     let harness = started(database, true).await;
     let due = deliveries(&harness, &id).await[0].clone();
-    // On a slow machine the next server has sent it by itself before it is asked for it.
-    if due["delivered_us"].is_null() {
-        let again = format!("/v1/webhooks/{id}/deliveries/{}/retry", due["id"].as_str().unwrap());
-        assert_eq!(harness.post(&again, &json!({})).await.0, 200);
+    assert!(due["delivered_us"].is_null(), "{due}");
+    *receiver.refuses.lock().unwrap() = 0;
+    let again = format!("/v1/webhooks/{id}/deliveries/{}/retry", due["id"].as_str().unwrap());
+    while deliveries(&harness, &id).await[0]["delivered_us"].is_null() {
+        // The server may have sent it meanwhile, and is not asked to send it twice then.
+        harness.post(&again, &json!({})).await;
+        tokio::time::sleep(Duration::from_millis(100)).await;
     }
-    until("the fourth attempt", || receiver.seen.lock().unwrap().len() >= 4).await;
-    assert_eq!(receiver.seen.lock().unwrap()[3][1], due["id"].as_str().unwrap());
+    let last = receiver.seen.lock().unwrap().last().unwrap().clone();
+    assert_eq!(
+        (last[1].as_str(), last[3].contains("another")),
+        (due["id"].as_str().unwrap(), true)
+    );
 
     // An ended webhook gets no further events.
     let ended = harness.client.delete(harness.url(&format!("/v1/webhooks/{id}"))).send().await;
