@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use sistership_model::trial::{Finding, Trial};
-use sistership_trials::{LoadedTrials, load_path};
+use sistership_trials::{LoadedTrials, load_path, split_path};
 
 use crate::failure::Failure;
 use crate::output::{format_count, print_note};
@@ -69,7 +69,8 @@ pub fn read_trials(paths: &[PathBuf]) -> Result<Vec<ReadTrial>, Failure> {
 
 /// Advice on recordings that are read without a manifest; `None` if there is none.
 fn import_hint(recordings: &[PathBuf]) -> Option<String> {
-    let first = recordings.first()?.display();
+    let (first, _) = split_path(recordings.first()?);
+    let first = first.display();
     let more = if recordings.len() > 1 { " ..." } else { "" };
     Some(format!(
         "`sistership import {first}{more}` identifies the columns and units of a recording and \
@@ -89,7 +90,10 @@ fn files_of(path: &Path, loaded: &LoadedTrials) -> Vec<(String, PathBuf, bool)> 
                 (trial.trial_label(), folder.join(trial.file_path()), is_part)
             })
             .collect(),
-        None => vec![(path.display().to_string(), path.to_path_buf(), false)],
+        None => {
+            let (file, part) = split_path(path);
+            vec![(path.display().to_string(), file, part.is_some())]
+        }
     }
 }
 

@@ -101,7 +101,7 @@ pub use exclusion::{Exclusion, RowRanges};
 pub use file_segments::FileSegment;
 pub use guess::ColumnGuess;
 pub use limits::FileLimits;
-pub use load::{CleanedTrials, LoadedTrials, check_path, load_cleaned, load_path};
+pub use load::{CleanedTrials, LoadedTrials, check_path, load_cleaned, load_path, split_path};
 pub use manifest::read_manifest_file;
 pub use manifest_file::ManifestFile;
 pub use mapping::Mapping;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use sistership_model::FileError;
-use sistership_model::manifest::Manifest;
+use sistership_model::manifest::{Manifest, split_part};
 use sistership_model::trial::{Finding, Trial};
 
 use crate::declarations::SensorFile;
@@ -195,9 +195,10 @@ fn examine_group(group: &[&ListedFile]) -> Vec<io::Result<CheckedRecording>> {
 fn list_files(path: &Path) -> Result<(Option<Manifest>, Vec<ListedFile>), FileError> {
     let shown = path.display().to_string();
     if !is_manifest(path) {
-        std::fs::metadata(path).map_err(|error| unreadable_file(&shown, &error))?;
-        let (mapping, sensors) = (Mapping::with_canonical_names(), Vec::new());
-        let alone = ListedFile { name: shown, path: path.to_owned(), mapping, sensors };
+        let (file, part) = split_path(path);
+        std::fs::metadata(&file).map_err(|error| unreadable_file(&shown, &error))?;
+        let (mapping, sensors) = (Mapping { part, ..Mapping::with_canonical_names() }, Vec::new());
+        let alone = ListedFile { name: shown, path: file, mapping, sensors };
         return Ok((None, vec![alone]));
     }
     let text = std::fs::read_to_string(path).map_err(|error| unreadable_file(&shown, &error))?;
@@ -215,6 +216,16 @@ fn list_files(path: &Path) -> Result<(Option<Manifest>, Vec<ListedFile>), FileEr
         });
     let listed = listed.collect();
     Ok((Some(written.manifest), listed))
+}
+
+/// Separates a file from the part that is named behind it, `log.xlsx#part=NAME`, unless there is a
+/// file of that whole name.
+pub fn split_path(path: &Path) -> (PathBuf, Option<String>) {
+    let shown = path.display().to_string();
+    match split_part(&shown) {
+        (file, Some(part)) if !path.exists() => (PathBuf::from(file), Some(part.to_owned())),
+        _ => (path.to_owned(), None),
+    }
 }
 
 /// Returns true for the endings of YAML, and of JSON, which is YAML as well.

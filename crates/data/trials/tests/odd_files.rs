@@ -397,6 +397,10 @@ fn each_group_with_a_time_of_its_own_is_a_trial() {
     let names: Vec<&str> = trials.iter().map(|trial| trial.name.as_str()).collect();
     assert_eq!(names, ["trials.h5#part=zigzag 10", "trials.h5#part=zigzag 20"]);
     trials.iter().for_each(|trial| run.check(trial));
+    // A part is named on the command line as in a manifest.
+    let part = folder.path().join("trials.h5#part=zigzag 11");
+    let text = format!("{:?}", load_path(&part).unwrap().trials.remove(0).unwrap_err());
+    assert!(text.contains("no part `zigzag 11` (zigzag 10, zigzag 20)"), "{text}");
 }
 
 #[test]
