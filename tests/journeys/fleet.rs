@@ -67,6 +67,7 @@ impl Fleet {
                     self.workers.swap_remove(place).kill();
                     return self.hire();
                 }
+                // It held nothing, or what it must not lose once more.
                 self.workers[place].resume();
             }
             tokio::time::sleep(Duration::from_millis(5)).await;

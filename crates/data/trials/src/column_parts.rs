@@ -85,7 +85,9 @@ pub(crate) fn part_names(columns: &[FileColumn]) -> Vec<String> {
         let (part, name) = split_name(&column.name);
         parts.entry(part).or_default().push((name, column.length));
     }
+    // Structures of notes and of single numbers are no tables.
     parts.retain(|_, columns| is_table(columns));
+    // A table outside of all structures is what such a file is about.
     if parts.len() < 2 || parts.contains_key("") {
         return Vec::new();
     }
@@ -115,6 +117,7 @@ fn common_prefix(columns: &[FileColumn]) -> &str {
             column.name.strip_prefix(prefix).is_some_and(|name| name.starts_with('.'))
         })
     };
+    // From the innermost structure of the first column outwards.
     while !prefix.is_empty() && !inside(prefix) {
         prefix = split_name(prefix).0;
     }

@@ -46,6 +46,7 @@ pub(crate) fn is_time(header: &str) -> bool {
 /// Returns true if the header is `t` or a common name of time, with or without its unit.
 pub(crate) fn begins_time(header: &str) -> bool {
     let bare = header.split(['(', '[']).next().unwrap_or_default().trim();
+    // `t_s` and `time_ms`, but not `time_constant`.
     let stem = bare.rsplit_once('_').filter(|(_, unit)| ["s", "sec", "ms", "us"].contains(unit));
     let stem = stem.map_or(bare, |(stem, _)| stem);
     stem.eq_ignore_ascii_case("t") || is_time(stem) || is_time(bare)
