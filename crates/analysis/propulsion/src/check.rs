@@ -192,7 +192,8 @@ fn simulate_order(
     };
     let turn = HelmOrder { delta_rad: CHECK.turn_deg.to_radians(), n_rps: ahead_rps };
     let ordered = HelmOrder { delta_rad: 0.0, n_rps: motion.revolutions * ahead_rps };
-    let rest = CHECK.rest * ship.greatest_speed_m_s() / speed;
+    // A ship that begins far slower than its trials went must still lose half of its speed.
+    let rest = (CHECK.rest * ship.greatest_speed_m_s() / speed).min(CHECK.rest_most);
     let (least, last) = (f64::INFINITY, motion.start);
     let mut watch = SpeedMonitor { rest, least, last, rises: false, arrived: false };
     let order = |t_s: f64, state: &StateVector| {

@@ -102,6 +102,9 @@ pub(crate) struct CheckThresholds {
     /// Speed that counts as rest, by the greatest of the trials, and as astern, by that of the
     /// approach, dimensionless. Source: chosen; docs/evidence/propulsion.md has half and double.
     pub rest: f64,
+    /// Greatest speed that counts as rest, by that of the approach, dimensionless. Source: chosen, as
+    /// a fall by half cannot be the trace of a creep.
+    pub rest_most: f64,
     /// `T`: longest duration, in units of the speed over the deceleration with the propeller
     /// stopped, dimensionless. Source: derived: a resistance that goes with the square of the speed
     /// leaves a tenth after nine times that; twice as much is allowed.
@@ -129,6 +132,7 @@ pub(crate) struct CheckThresholds {
 /// The values.
 pub(crate) const CHECK: CheckThresholds = CheckThresholds {
     rest: 0.1,
+    rest_most: 0.5,
     patience: 18.0,
     rise: 0.02,
     stopping: [0.5, 120.0],

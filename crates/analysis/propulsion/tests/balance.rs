@@ -197,8 +197,8 @@ fn a_law_without_revolutions_runs_on_for_ever() {
     assert!(surge(0.0, -1.0) < 0.0 && surge(0.0, 1.0) > -surge(0.0, -1.0));
 }
 
-/// A ship that creeps at a fifth of its approach with the propeller stopped.
-fn creeping(zoo: &Zoo) -> (Model, Law) {
+/// A ship that creeps at a share of its approach with the propeller stopped.
+fn creeping(zoo: &Zoo, creep: f64) -> (Model, Law) {
     let law = zoo.law("low-speed").unwrap().as_ref().clone();
     let mut model = Model { law: law.name.clone(), ..zoo.find_model("mariner").unwrap() };
     let [speed, n_rps] = [model.speed_m_s.unwrap(), 1.5];
@@ -214,7 +214,7 @@ fn creeping(zoo: &Zoo) -> (Model, Law) {
         law.parameters.keys().map(|name| (name.clone(), Quantity::new(0.0, "made"))).collect();
     model.parameters.extend(quantities(&inertia));
     let drag = 0.05 * 8.4e-3;
-    let [creep, full] = [0.2, 1.0].map(|share| drag * (share * speed / unit).powi(2));
+    let [creep, full] = [creep, 1.0].map(|share| drag * (share * speed / unit).powi(2));
     let thrust = (full - creep) * unit / (n_rps * lpp_m);
     model.coefficients = quantities(&[("X_0", creep), ("X_uu", -drag), ("X_n", thrust)]);
     model.revolutions_rps = Some(n_rps);
@@ -223,7 +223,7 @@ fn creeping(zoo: &Zoo) -> (Model, Law) {
 
 #[test]
 fn what_counts_as_rest_goes_by_the_greatest_speed_of_the_trials() {
-    let (mut model, law) = creeping(&Zoo::load_embedded().unwrap());
+    let (mut model, law) = creeping(&Zoo::load_embedded().unwrap(), 0.2);
     let check = |model: &Model| check_straight(&Ship::new(model, &law).unwrap());
     let late = |fault| matches!(fault, Err(PropulsionFault::Late { share, .. }) if share < 0.21);
     assert!(late(check(&model)), "{:?}", check(&model));
@@ -233,6 +233,16 @@ fn what_counts_as_rest_goes_by_the_greatest_speed_of_the_trials() {
     assert!(late(check(&model)), "{:?}", check(&model));
     model.validity = covered(2.3 * speed);
     assert_eq!(check(&model), Ok(()));
+}
+
+#[test]
+fn a_ship_that_loses_less_than_half_of_its_speed_is_never_at_rest() {
+    let (mut model, law) = creeping(&Zoo::load_embedded().unwrap(), 0.6);
+    let speed = model.speed_m_s.unwrap();
+    let columns = BTreeMap::from([("u".to_owned(), vec![0.0, 20.0 * speed])]);
+    model.validity = Region::from_samples(&columns);
+    let fault = check_straight(&Ship::new(&model, &law).unwrap()).unwrap_err();
+    assert!(matches!(fault, PropulsionFault::Late { .. }), "{fault}");
 }
 
 #[test]
