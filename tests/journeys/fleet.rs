@@ -18,8 +18,8 @@ use super::sea_trials::NAME;
 const JOBS: usize = 6;
 const WORKERS: usize = 4;
 const KILLED: usize = 3;
-// Long enough that a busy machine makes no heartbeat late: a job that loses one worker by that and one by the
-// test would be failed as the cause of both.
+// Long enough that a busy machine makes no heartbeat late: a job that loses one worker by that and
+// one by the test would be failed as the cause of both.
 const LEASE_S: &str = "8";
 const BETWEEN: Duration = Duration::from_millis(300);
 const PATIENCE: Duration = Duration::from_secs(300);

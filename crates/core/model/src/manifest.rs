@@ -124,7 +124,8 @@ impl ManifestTrial {
     }
 }
 
-/// Separates a file from its part, a sheet of a workbook, a structure or a group: `log.xlsx#part=NAME`.
+/// Separates a file from its part, a sheet of a workbook, a structure or a group:
+/// `log.xlsx#part=NAME`.
 pub fn split_part(file: &str) -> (&str, Option<&str>) {
     match file.split_once("#part=") {
         Some((path, part)) => (path, Some(part)),

@@ -29,7 +29,8 @@ impl<'a> PartColumns<'a> {
     /// of them have in common.
     ///
     /// # Errors
-    /// Returns an error if there is no column or no such part, or if the file has several and none is given.
+    /// Returns an error if there is no column or no such part, or if the file has several and none
+    /// is given.
     pub(crate) fn open(whole: Box<dyn ColumnSource + 'a>, part: Option<&str>) -> io::Result<Self> {
         let columns = whole.columns();
         if columns.is_empty() {
@@ -44,20 +45,22 @@ impl<'a> PartColumns<'a> {
             Some((at, FileColumn { name, ..column.clone() }))
         });
         let (places, named): (Vec<usize>, Vec<FileColumn>) = own.unzip();
-        let parts = part_names(columns);
-        match part {
-            Some(part) if places.is_empty() => {
-                Err(io::Error::other(format!("there is no part `{part}`{}", list_parts(&parts))))
-            }
-            None if !parts.is_empty() => {
-                let listed = list_parts(&parts);
-                Err(io::Error::other(format!(
-                    "it has {} tables, each with its own time{listed}; write `#part=NAME` after the file",
-                    parts.len()
-                )))
-            }
-            _ => Ok(Self { whole, columns: named, places }),
+        if let Some(part) = part
+            && places.is_empty()
+        {
+            let listed = list_parts(&part_names(columns));
+            return Err(io::Error::other(format!("there is no part `{part}`{listed}")));
         }
+        // A part that is given needs no search for others.
+        let parts = if part.is_none() { part_names(columns) } else { Vec::new() };
+        if !parts.is_empty() {
+            let (count, listed) = (parts.len(), list_parts(&parts));
+            return Err(io::Error::other(format!(
+                "it has {count} tables, each with its own time{listed}; write `#part=NAME` after \
+                 the file"
+            )));
+        }
+        Ok(Self { whole, columns: named, places })
     }
 
     /// Returns the whole file.

@@ -35,7 +35,8 @@ pub(crate) struct FilePreview {
 }
 
 /// Reads the preview of each table of a file: of each sheet of a workbook that has the rows of a
-/// trial, of each structure or group with a time of its own, and of the only table of any other file.
+/// trial, of each structure or group with a time of its own, and of the only table of any other
+/// file.
 ///
 /// # Errors
 /// Returns an error if the file cannot be read or its format contains no table.

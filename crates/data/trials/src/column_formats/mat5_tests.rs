@@ -102,7 +102,7 @@ fn vectors_matrices_and_fields_are_columns() {
     assert_eq!(measured, (3, 8));
 }
 
-/// Structures with the fields `t_s`, `u_m_s` and `r_rad_s` of so many values, one for each given speed.
+/// Structures with the fields `t_s`, `u_m_s` and `r_rad_s`, one for each given speed.
 fn structures(name: &str, speeds: &[f64]) -> Vec<u8> {
     let mut fields = 5_u32.to_le_bytes().to_vec();
     fields[2] = 4;
