@@ -58,26 +58,22 @@ fn search_settings(search: &CandidateSearch<'_>) -> RefinementSettings {
 }
 
 /// The longer restart interval, at which a bias shows: longer than every trial, so that each is
-/// simulated as a whole; or the length of parts if some laws have trials held out in parts, so that
-/// all candidates have the same interval.
+/// simulated as a whole. There is none where some laws have trials held out in parts, since all
+/// candidates have the same interval and parts are hardly longer than the shortest one.
 fn longer_restarts_s(
     search: &CandidateSearch<'_>,
     lengths_s: &dyn Fn(f64) -> Option<f64>,
 ) -> Vec<f64> {
     let (settings, fitted) = (search.settings, search.fitted_trials());
-    if !settings.longer_restarts_s.is_empty()
-        || settings.hold_out_parts
+    let has_roll = search.entrants.iter().any(|entrant| entrant.law.has_roll());
+    let in_parts = settings.hold_out_parts
         || fitted.len() < SEARCH.few
-    {
+        || has_roll && fitted.len() < settings.folds;
+    if !settings.longer_restarts_s.is_empty() || in_parts {
         return settings.longer_restarts_s.clone();
     }
     let longest_s = fitted.iter().map(|trial| trial.duration_s()).fold(0.0, f64::max);
-    let has_roll = search.entrants.iter().any(|entrant| entrant.law.has_roll());
-    let longer_s = match has_roll && fitted.len() < settings.folds {
-        true => lengths_s(SEARCH.part),
-        false => lengths_s(1.0).map(|length_s| longest_s + length_s),
-    };
-    longer_s.into_iter().collect()
+    lengths_s(1.0).map(|length_s| longest_s + length_s).into_iter().collect()
 }
 
 /// Passes the candidates through the stages and selects one.
@@ -314,12 +310,18 @@ mod tests {
         let (zoo, (model, law)) = (Zoo::load_embedded().unwrap(), mariner_model());
         let sailed = simulated_trials(&model, &law, 0.0);
         let target = zoo.vessel("mariner").unwrap();
-        let intervals = |count: usize| {
+        let rolling = SelectionCandidate {
+            source: model.clone(),
+            source_law: None,
+            law: zoo.law("abkowitz-roll").unwrap().clone(),
+            held_by: CandidatePrior::Source,
+        };
+        let intervals = |count: usize, entrants: &[SelectionCandidate]| {
             let trials: Vec<&Trial> = sailed.iter().take(count).collect();
             let settings = &RefinementSettings::default();
             let search = CandidateSearch {
                 target,
-                entrants: &[],
+                entrants,
                 trials: &trials,
                 population: &[],
                 settings,
@@ -328,10 +330,11 @@ mod tests {
             let searched = search_settings(&search);
             (searched.restart_s.unwrap(), searched.longer_restarts_s)
         };
-        let (shortest_s, longer_s) = intervals(4);
+        let (shortest_s, longer_s) = intervals(4, &[]);
         let longest_s = sailed.iter().map(Trial::duration_s).fold(0.0, f64::max);
         assert!(longer_s.len() == 1 && longer_s[0] > longest_s, "{longer_s:?}");
         assert!(longest_s > shortest_s);
-        assert_eq!(intervals(2).1, Vec::<f64>::new(), "parts of two trials");
+        assert_eq!(intervals(2, &[]).1, Vec::<f64>::new(), "parts of two trials");
+        assert_eq!(intervals(4, &[rolling]).1, Vec::<f64>::new(), "parts of laws with roll");
     }
 }

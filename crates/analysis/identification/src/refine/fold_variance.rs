@@ -18,10 +18,10 @@ use super::simulated::sister_coefficients;
 use super::thresholds::HELM;
 use sistership_priors::transfer::prepare_sister_ships;
 
-/// Jackknife variance of simulated states under rudder orders that no trial had, standardised and
-/// summed over channels as errors on held-out trials are. Infinite if a fold's model cannot be
-/// simulated to the end; `None` if fewer than two folds have models, or if the records lack an
-/// input of the law.
+/// Jackknife variance of simulated states under rudder orders that no trial had, at the speed of the
+/// trials, standardised and summed over channels as errors on held-out trials are. Infinite if a
+/// fold's model cannot be simulated to the end, at half the speed either; `None` if fewer than two
+/// folds have models, or if the records lack an input of the law.
 pub(super) fn fold_variance(problem: &RefinementProblem<'_>, folds: &[Model]) -> Option<f64> {
     let first = folds.first().filter(|_| folds.len() > 1)?;
     let asked = RudderOrder::random_orders(HELM.records);
@@ -43,7 +43,9 @@ pub(super) fn fold_variance(problem: &RefinementProblem<'_>, folds: &[Model]) ->
         return Some(f64::INFINITY);
     }
     let mut about_mean = SquaredError::default();
-    for (helm, runs) in helms.iter().zip(runs.chunks(folds.len())) {
+    // At half the speed a law of many coefficients scatters by what no trial there is about, which
+    // says nothing of its errors at the trials' own (docs/evidence/selection.md).
+    for (helm, runs) in helms.iter().zip(runs.chunks(folds.len())).take(asked.len()) {
         let mean = mean_record(helm, runs);
         runs.iter().for_each(|run| about_mean.add(&SquaredError::from_trial(&mean, run)));
     }

@@ -70,9 +70,10 @@ pub struct RecordStart {
     pub angle_rad: f64,
 }
 
-/// Returns a record for each order and speed of [`SPEED_SCALES`], `lengths` ship lengths long, from
-/// straight ahead at that share of the speed and revolutions of the trials' approach, in their
-/// depth and without wind. `None` if the approach or the length is not known.
+/// Returns a record for each speed of [`SPEED_SCALES`] and order, those at full speed first,
+/// `lengths` ship lengths long, from straight ahead at that share of the speed and revolutions of
+/// the trials' approach, in their depth and without wind. `None` if the approach or the length is
+/// not known.
 pub fn rudder_records(
     of: (&Model, &Law),
     trials: &[&Trial],
@@ -167,12 +168,29 @@ fn radical_inverse(mut number: usize, base: usize) -> f64 {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::testing::{mariner_model, simulated_trials};
 
     #[test]
     fn digits_are_reversed() {
         let eighths: Vec<f64> = (1..8).map(|k| 8.0 * radical_inverse(k, 2)).collect();
         assert_eq!(eighths, [4.0, 2.0, 6.0, 1.0, 5.0, 3.0, 7.0]);
         assert!((radical_inverse(5, 3) - 7.0 / 9.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn records_at_full_speed_come_first() {
+        let (model, law) = mariner_model();
+        let trials = simulated_trials(&model, &law, 0.0);
+        let trials: Vec<&Trial> = trials.iter().collect();
+        let orders = RudderOrder::random_orders(3);
+        let records = rudder_records((&model, &law), &trials, (&orders, 2.0)).unwrap();
+        let first = |record: &Trial| record.channel(Channel::U).unwrap()[0];
+        let (full, slower) = records.split_at(orders.len());
+        assert_eq!(slower.len(), orders.len());
+        for (full, slower) in full.iter().zip(slower) {
+            assert!((first(slower) / first(full) - SPEED_SCALES[1]).abs() < 1e-9);
+            assert!((slower.duration_s() / full.duration_s() * SPEED_SCALES[1] - 1.0).abs() < 0.1);
+        }
     }
 
     #[test]

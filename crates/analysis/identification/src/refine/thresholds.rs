@@ -173,7 +173,7 @@ pub(super) const SOURCE: SourceThresholds = SourceThresholds {
 };
 
 /// Speeds and revolutions, by those of the approach, at which sources are asked and models are
-/// compared and checked, dimensionless. Trials at one speed do not tell a force in its square from
+/// checked, dimensionless. Trials at one speed do not tell a force in its square from
 /// one in another power. Source: one half is between half and slow ahead, at which harbours are
 /// entered; without it and with it in docs/evidence/foreign_ships.md.
 pub(super) const SPEED_SCALES: [f64; 2] = [1.0, 0.5];
