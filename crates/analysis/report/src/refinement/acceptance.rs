@@ -13,6 +13,8 @@ use crate::tables::{ReportTable, TableCell, TableColumn, TableRow};
 
 /// Knots in a metre per second.
 const KNOTS: f64 = 3600.0 / 1852.0;
+/// Share of the drawn models from which a criterion is met without a reservation: that of the bands.
+const CERTAIN: f64 = 0.95;
 
 /// Acceptance summary.
 #[derive(Debug)]
@@ -34,8 +36,7 @@ pub(crate) struct SummaryFact {
 impl AcceptanceSummary {
     pub fn from_input(input: &RefinementInput<'_>, content: &RefinementContent<'_>) -> Self {
         let imo = &content.manoeuvres.imo;
-        let verdicts: Vec<_> = imo.iter().map(|one| (one.criterion, one.refined_pass)).collect();
-        let (verdict, verdict_class) = imo_verdict(&verdicts);
+        let (verdict, verdict_class) = uncertain_verdict(imo);
         let facts = ship_facts(input).into_iter().chain(condition_facts(input.trials));
         Self {
             verdict,
@@ -75,6 +76,23 @@ pub fn imo_verdict(imo: &[(&str, Option<bool>)]) -> (String, &'static str) {
         ),
         _ => ("The model meets all criteria of MSC.137(76).".to_owned(), "good"),
     }
+}
+
+/// The same with the criteria that the model meets, but too many of the models that are drawn from its
+/// posterior do not: the class is then `open`.
+fn uncertain_verdict(imo: &[CriterionComparison<'_>]) -> (String, &'static str) {
+    let verdicts: Vec<_> = imo.iter().map(|one| (one.criterion, one.refined_pass)).collect();
+    let (sentence, class) = imo_verdict(&verdicts);
+    let uncertain = |one: &CriterionComparison<'_>| {
+        let share = one.pass_share.filter(|share| *share < CERTAIN)?;
+        let met = one.refined_pass == Some(true);
+        met.then(|| format!("{} ({} %)", one.criterion, format_fixed(100.0 * share, 0)))
+    };
+    let uncertain: Vec<String> = imo.iter().filter_map(uncertain).collect();
+    if class == "bad" || uncertain.is_empty() {
+        return (sentence, class);
+    }
+    (format!("{sentence} With less than 95 % probability: {}.", join_words(&uncertain)), "open")
 }
 
 /// Ship, speed and loading.
@@ -240,6 +258,19 @@ mod tests {
         let (text, class) = imo_verdict(&[("turn", Some(false)), ("stop", None)]);
         assert!(text.contains("does not meet MSC.137(76): turn.") && class == "bad", "{text}");
         assert_eq!(imo_verdict(&[("stop", None)]).1, "open");
+    }
+
+    #[test]
+    fn a_criterion_that_many_drawn_models_fail_is_named() {
+        let unsure = criterion("advance", Some(true));
+        let sure = CriterionComparison { pass_share: Some(0.95), ..criterion("stop", Some(true)) };
+        let (text, class) = uncertain_verdict(&[unsure, sure]);
+        assert!(text.ends_with("With less than 95 % probability: advance (93 %)."), "{text}");
+        assert_eq!(class, "open");
+        let sure = CriterionComparison { pass_share: None, ..criterion("stop", Some(true)) };
+        assert_eq!(uncertain_verdict(&[sure]).1, "good");
+        let failed = uncertain_verdict(&[criterion("turn", Some(false))]);
+        assert_eq!(failed, imo_verdict(&[("turn", Some(false))]));
     }
 
     #[test]
