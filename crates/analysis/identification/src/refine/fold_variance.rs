@@ -43,8 +43,8 @@ pub(super) fn fold_variance(problem: &RefinementProblem<'_>, folds: &[Model]) ->
         return Some(f64::INFINITY);
     }
     let mut about_mean = SquaredError::default();
-    // At half the speed a law of many coefficients scatters by what no trial there is about, which
-    // says nothing of its errors at the trials' own (docs/evidence/selection.md).
+    // Scatter at half the speed, where there are no trials, says nothing of errors at theirs
+    // (docs/evidence/selection.md).
     for (helm, runs) in helms.iter().zip(runs.chunks(folds.len())).take(asked.len()) {
         let mean = mean_record(helm, runs);
         runs.iter().for_each(|run| about_mean.add(&SquaredError::from_trial(&mean, run)));
