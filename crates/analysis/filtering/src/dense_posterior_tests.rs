@@ -11,7 +11,7 @@ use sistership_model::uncertainty::Discrepancy;
 use super::super::filter::{column_responses, prediction_errors, whiten_part};
 use super::super::filter_gains::FilterGains;
 use super::super::likelihood::part_deviances;
-use super::super::linearised::LinearisationSizes;
+use super::super::linearised::{LinearisationSizes, RateResponse};
 use super::super::noise::NoiseLevel;
 use super::super::thresholds::RESIDUAL;
 use super::*;
@@ -365,10 +365,20 @@ fn discrepancies_of_another_model_are_refused() {
     assert!(refusal.contains("discrepancies of 1 accelerations, but the model has 2"), "{refusal}");
 }
 
+/// The same with a second reading, and what a column does to the first, that follow rates.
+fn late(part: LinearisedPart) -> LinearisedPart {
+    let by = |seed: u64| numbers(part.samples.len(), 0.6, seed);
+    let by_rate = vec![
+        RateResponse { channel: 1, column: None, state: 0, by: by(21) },
+        RateResponse { channel: 0, column: Some(1), state: 2, by: by(22) },
+    ];
+    LinearisedPart { by_rate, ..part }
+}
+
 /// Strips of columns by known gains are the rows of the filter, to the last bit.
 #[test]
 fn known_gains_whiten_as_the_filter_does() {
-    for part in records() {
+    for part in records().into_iter().chain(records().into_iter().map(late)) {
         let (rows, log_variance) = whiten_part(&part, &noise(), &discrepancies()).unwrap();
         let gains = FilterGains::new(&part, &noise(), &discrepancies()).unwrap();
         let columns = gains.whiten_columns(&part, COLUMNS);
@@ -407,6 +417,9 @@ fn segments_and_their_free_movements_are_the_column() {
         let starts = [FilterGains::input_place(2, true), FilterGains::input_place(4, false)];
         let cut = gains.whiten_segments(&part, &[0, 1], &starts);
         let whole = gains.whiten_columns(&part, COLUMNS);
+        let limits: Vec<usize> = cut.readings.iter().map(|readings| readings.end).collect();
+        assert!(limits.len() == 3 && limits.is_sorted() && limits[0] > 0, "{limits:?}");
+        assert_eq!((cut.ends.len(), limits[2]), (3, whole.reading_count()));
         let mut unit = vec![0.0; cut.columns.column_count()];
         for column in 0..COLUMNS {
             let mut whole_unit = [0.0; 1 + COLUMNS];

@@ -57,3 +57,39 @@ impl InputResponse {
         if figure > 0.0 { RESIDUAL.lag_share * figure + least } else { start.max(least) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_running_mean_is_shorter_at_the_ends() {
+        let mean = running_mean(&[3.0, 9.0, 0.0, 6.0, 30.0], 3);
+        assert_eq!(mean, [6.0, 4.0, 5.0, 12.0, 18.0]);
+    }
+
+    /// A play moves the mean of the record and keeps its noise.
+    #[test]
+    fn a_play_keeps_what_the_mean_has_not() {
+        let recorded: Vec<f64> = (0..60).map(|k| (f64::from(k) * 0.2).sin()).collect();
+        let mean = running_mean(&recorded, RESIDUAL.band_mean);
+        let held = apply_dead_band(&mean, 0.3);
+        for (k, followed) in apply_play(&recorded, 0.3).into_iter().enumerate() {
+            assert!((followed - held[k] - (recorded[k] - mean[k])).abs() < 1e-15, "{k}");
+        }
+        assert_eq!(apply_play(&recorded, 0.0), recorded);
+    }
+
+    /// A lag steps by a share of itself beside the least step; at zero by that of the search.
+    #[test]
+    fn steps_grow_with_the_figure() {
+        for (way, least) in [
+            (InputResponse::Late, RESIDUAL.lag_step_s),
+            (InputResponse::WithinBand, RESIDUAL.band_step),
+        ] {
+            assert_eq!(way.derivative_step(2.0, 0.5), 2.0 * RESIDUAL.lag_share + least);
+            assert_eq!(way.derivative_step(0.0, 10.0 * least), 10.0 * least);
+            assert_eq!(way.derivative_step(0.0, 0.1 * least), least);
+        }
+    }
+}

@@ -128,6 +128,16 @@ mod tests {
         );
     }
 
+    /// Columns are counted from 0 beside the residual, and one may be selected twice.
+    #[test]
+    fn selected_columns_have_the_products_of_their_rows() {
+        let rows = [1.0, 2.0, 3.0, 5.0, -1.0, 4.0, 0.5, 7.0];
+        let selected = [1.0, 5.0, 5.0, 2.0, -1.0, 7.0, 7.0, 4.0];
+        let gram = GramMatrix::from_rows(&rows, 4, 0.5).select_columns(&[2, 2, 0]);
+        assert_eq!(gram.products, GramMatrix::from_rows(&selected, 4, 0.5).products);
+        assert_eq!((gram.log_variance, gram.count), (0.5, 2));
+    }
+
     #[test]
     fn products_are_those_of_blocks_to_the_last_bit() {
         let reading = |k: usize| (k as f64 * 0.7).sin() * 10_f64.powi(k as i32 % 5);

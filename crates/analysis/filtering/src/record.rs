@@ -90,3 +90,22 @@ pub fn smooth_parabolic(values: &[f64]) -> Vec<f64> {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A parabola is its own, an impulse has the weights of Savitzky and Golay (1964), the two
+    /// samples at each end are kept.
+    #[test]
+    fn five_samples_are_smoothed_by_a_parabola() {
+        let parabola: Vec<f64> = (0..9).map(|k| 2.0 - f64::from(k) + f64::from(k * k)).collect();
+        for (own, exact) in smooth_parabolic(&parabola).iter().zip(&parabola) {
+            assert!((own - exact).abs() < 1e-12, "{own} {exact}");
+        }
+        let impulse = smooth_parabolic(&[0.0, 0.0, 0.0, 0.0, 35.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(impulse, [0.0, 0.0, -3.0, 12.0, 17.0, 12.0, -3.0, 0.0, 0.0]);
+        let ends = smooth_parabolic(&[35.0, 0.0, 0.0, 0.0, 0.0, 7.0]);
+        assert_eq!((ends[0], ends[1], ends[4], ends[5]), (35.0, 0.0, 0.0, 7.0));
+    }
+}

@@ -93,3 +93,83 @@ pub fn standardised_mse(error: &SquaredError, deviations: &BTreeMap<Channel, f64
     };
     RECORDED_CHANNELS[..6].iter().filter_map(term).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::{StateVector, at};
+
+    const TURN: f64 = std::f64::consts::TAU;
+
+    /// A trial with headings and roll, and a simulation of its second and fourth sample.
+    fn compared(has_roll: bool) -> (Trial, TrialReplay) {
+        let channels = [
+            (Channel::U, vec![9.0, 2.0, 9.0, 4.0]),
+            (Channel::Psi, vec![0.0, 0.1, 0.0, TURN - 0.2]),
+            (Channel::Phi, vec![0.0, 0.3, 0.0, 0.3]),
+        ];
+        let t_s = vec![0.0, 1.0, 2.0, 3.0];
+        let trial = Trial { t_s, channels: channels.into_iter().collect(), ..Trial::default() };
+        let mut replay = TrialReplay::without_samples(has_roll);
+        for (k, u, psi) in [(1, 5.0, 0.5), (3, 0.0, 0.1)] {
+            let mut state = StateVector::zeros();
+            (state[at::U], state[at::PSI]) = (u, psi);
+            replay.track.push(trial.t_s[k], state, 1.0);
+            replay.samples.push(k);
+        }
+        (trial, replay)
+    }
+
+    fn assert_near(own: Option<f64>, exact: f64) {
+        assert!(own.is_some_and(|own| (own - exact).abs() < 1e-12), "{own:?} not {exact}");
+    }
+
+    #[test]
+    fn differences_are_those_of_the_samples_with_headings_wrapped() {
+        let (trial, replay) = compared(true);
+        let error = SquaredError::from_trial(&trial, &replay);
+        assert_near(error.channel_rmse(Channel::U), 12.5_f64.sqrt());
+        assert_near(error.channel_rmse(Channel::Psi), 0.125_f64.sqrt());
+        assert_near(error.channel_rmse(Channel::Phi), 0.3);
+        assert_eq!(error.channel_rmse(Channel::R), None);
+        let named = error.rmse_by_channel();
+        assert_eq!(named.keys().collect::<Vec<_>>(), ["phi", "psi", "u"]);
+        assert_near(named.get("u").copied(), 12.5_f64.sqrt());
+        let without = SquaredError::from_trial(&trial, &compared(false).1).rmse_by_channel();
+        assert_eq!(without.keys().collect::<Vec<_>>(), ["psi", "u"]);
+    }
+
+    #[test]
+    fn sums_of_trials_weigh_by_their_samples() {
+        let (trial, replay) = compared(true);
+        let mut error = SquaredError::from_trial(&trial, &replay);
+        let mut exact = replay;
+        exact.track.states.iter_mut().zip([2.0, 4.0]).for_each(|(state, u)| state[at::U] = u);
+        (0..2).for_each(|_| error.add(&SquaredError::from_trial(&trial, &exact)));
+        assert_near(error.channel_rmse(Channel::U), (25.0 / 6.0_f64).sqrt());
+    }
+
+    /// By hand: squares 12.5 and 0.125 by variances of 4 and 0.5; what does not vary has no scale.
+    #[test]
+    fn an_error_is_standardised_by_the_deviations() {
+        let (trial, replay) = compared(true);
+        let error = SquaredError::from_trial(&trial, &replay);
+        let scales = [(Channel::U, 2.0), (Channel::Psi, 0.5_f64.sqrt()), (Channel::Phi, 0.1)];
+        let mse = standardised_mse(&error, &scales.into_iter().collect());
+        assert_near(Some(mse), 3.125 + 0.25);
+        let still = [(Channel::U, 2.0), (Channel::Psi, 0.0)].into_iter().collect();
+        assert_near(Some(standardised_mse(&error, &still)), 3.125);
+    }
+
+    #[test]
+    fn deviations_are_those_of_all_samples() {
+        let trial = |u: &[f64]| Trial {
+            t_s: (0..u.len()).map(|k| k as f64).collect(),
+            channels: [(Channel::U, u.to_vec())].into_iter().collect(),
+            ..Trial::default()
+        };
+        let scales = standard_deviations(&[&trial(&[1.0, 3.0]), &trial(&[5.0, 7.0])]);
+        assert_near(scales.get(&Channel::U).copied(), 5.0_f64.sqrt());
+        assert_eq!(scales.len(), 1);
+    }
+}

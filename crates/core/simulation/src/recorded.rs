@@ -109,3 +109,67 @@ fn simulation_parts(trial: &Trial, restart_s: Option<f64>) -> Vec<std::ops::Rang
     };
     trial.segments().into_iter().flat_map(cut).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use sistership_model::Zoo;
+    use sistership_model::trial::Channel;
+
+    use super::*;
+    use crate::manoeuvre::{ManoeuvreSettings, simulate_zigzag};
+    use crate::state::{RECORDED_CHANNELS, at};
+
+    /// A zigzag of the Mariner, and its record.
+    fn recorded() -> (Ship, Trial) {
+        let zoo = Zoo::load_embedded().unwrap();
+        let model = zoo.find_model("mariner").unwrap();
+        let ship = Ship::new(&model, zoo.law(&model.law).unwrap()).unwrap();
+        let track =
+            simulate_zigzag(&ship, 20.0, 20.0, &ManoeuvreSettings::default()).unwrap().track;
+        let places = RECORDED_CHANNELS[..6].iter().chain(&[(Channel::Delta, at::DELTA)]);
+        let samples = |place: usize| track.states.iter().map(|state| state[place]).collect();
+        let mut channels: std::collections::BTreeMap<_, _> =
+            places.map(|&(channel, place)| (channel, samples(place))).collect();
+        channels.insert(Channel::N, track.n_rps.clone());
+        (ship, Trial { t_s: track.t_s, channels, ..Trial::default() })
+    }
+
+    fn heading_errors(replay: &TrialReplay, trial: &Trial) -> Vec<f64> {
+        let psi = trial.channel(Channel::Psi).unwrap();
+        let errors = replay.track.states.iter().zip(&replay.samples);
+        errors.map(|(state, &k)| (state[at::PSI] - psi[k]).abs()).collect()
+    }
+
+    #[test]
+    fn a_replay_is_the_motion_that_was_recorded() {
+        let (ship, trial) = recorded();
+        let replay = replay_trial(&ship, &trial, &ReplaySettings::default()).unwrap();
+        assert!(replay.samples.iter().copied().eq(0..trial.len()), "{:?}", replay.stopped);
+        assert_eq!(replay.track.t_s, trial.t_s);
+        let largest = heading_errors(&replay, &trial).into_iter().fold(0.0, f64::max);
+        assert!(largest < 2e-3, "{largest} rad");
+    }
+
+    /// A gyro that jumps by 0.1 rad is followed from the next restart on.
+    #[test]
+    fn a_restart_begins_from_the_recorded_state() {
+        let (ship, mut trial) = recorded();
+        let restart_s = Some(0.25 * trial.duration_s());
+        let places: Vec<usize> =
+            simulation_parts(&trial, restart_s).iter().map(|part| part.start).collect();
+        assert_eq!((places.len(), places[0]), (4, 0), "{places:?}");
+        let jump = places[2] - 7;
+        trial.channels.get_mut(&Channel::Psi).unwrap()[jump..]
+            .iter_mut()
+            .for_each(|psi| *psi += 0.1);
+        let settings = ReplaySettings { restart_s, ..ReplaySettings::default() };
+        let errors = heading_errors(&replay_trial(&ship, &trial, &settings).unwrap(), &trial);
+        assert_eq!(errors.len(), trial.len());
+        let near = |part: std::ops::Range<usize>, exact: f64| {
+            errors[part].iter().all(|error| (error - exact).abs() < 2e-3)
+        };
+        assert!(near(0..jump, 0.0) && near(jump..places[2], 0.1), "{errors:?}");
+        assert!(near(places[2]..trial.len(), 0.0), "{errors:?}");
+    }
+}

@@ -119,3 +119,68 @@ impl TurnFrame {
         Some(before + w * (after - before))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    const RADIUS: f64 = 250.0;
+
+    /// A circle that begins off the origin on a course of 0.4 rad, in uneven steps; the speed falls
+    /// from 8 m/s by 0.5 m/s in a radian.
+    fn circle(side: f64) -> Trajectory {
+        let (sin, cos) = 0.4_f64.sin_cos();
+        let mut track = Trajectory::default();
+        let mut turned = 0.0_f64;
+        for k in 0..400 {
+            let (along, across) = (RADIUS * turned.sin(), side * RADIUS * (1.0 - turned.cos()));
+            let mut state = StateVector::zeros();
+            state[at::U] = 8.0 - 0.5 * turned;
+            state[at::R] = side * state[at::U] / RADIUS;
+            state[at::PSI] = 0.4 + side * turned;
+            state[at::X] = 70.0 + along * cos - across * sin;
+            state[at::Y] = -30.0 + along * sin + across * cos;
+            track.push(f64::from(k), state, 1.5);
+            turned += if k % 2 == 0 { 0.007 } else { 0.013 };
+        }
+        track
+    }
+
+    /// The chord of a step of 0.013 rad is 3e-5 of the radius from its arc at most.
+    fn assert_near(own: Option<f64>, exact: f64) {
+        assert!((own.unwrap() - exact).abs() < 3e-5 * RADIUS, "{own:?} not {exact}");
+    }
+
+    #[test]
+    fn a_circle_has_the_metrics_of_its_radius() {
+        for side in [1.0, -1.0] {
+            let track = circle(side);
+            let turn = TurningMetrics::from_track(&track, 35.0 * side).unwrap();
+            assert_eq!(turn.rudder_deg, 35.0 * side);
+            assert_near(turn.advance_m, RADIUS);
+            assert_near(turn.transfer_m, RADIUS);
+            assert_near(turn.tactical_diameter_m, 2.0 * RADIUS);
+            assert_near(turn.steady_radius_m, RADIUS);
+            assert_near(Some(turn.max_advance_m), RADIUS);
+            assert_near(Some(turn.max_transfer_m), 2.0 * RADIUS);
+            let turned = (track.last().unwrap()[at::PSI] - 0.4).abs();
+            assert!((turn.speed_loss_m_s - 0.5 * turned).abs() < 1e-12, "{turn:?}");
+            let initial = initial_turning_distance(&track, 35.0 * side, 10.0);
+            assert_near(initial, RADIUS * 10_f64.to_radians());
+        }
+    }
+
+    #[test]
+    fn what_a_track_does_not_reach_is_unknown() {
+        let mut track = circle(1.0);
+        track.states.truncate(170);
+        let turn = TurningMetrics::from_track(&track, 35.0).unwrap();
+        assert!(turn.advance_m.is_some() && turn.tactical_diameter_m.is_none(), "{turn:?}");
+        // Turned to the other side it has not changed its heading yet.
+        assert_eq!(initial_turning_distance(&track, -35.0, 10.0), None);
+        track.states.iter_mut().for_each(|state| state[at::R] = 0.0);
+        assert_eq!(TurningMetrics::from_track(&track, 35.0).unwrap().steady_radius_m, None);
+        assert_eq!(TurningMetrics::from_track(&Trajectory::default(), 35.0), None);
+    }
+}

@@ -58,3 +58,51 @@ impl ZigzagMetrics {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::state::StateVector;
+
+    /// Headings of straight legs between these times (s) and changes (deg), once a second.
+    fn track(side: f64, corners: &[(f64, f64)]) -> Trajectory {
+        let mut track = Trajectory::default();
+        for pair in corners.windows(2) {
+            let [(from, start), (until, end)] = [pair[0], pair[1]];
+            for t in from as usize..until as usize {
+                let done = (t as f64 - from) / (until - from);
+                let mut state = StateVector::zeros();
+                state[at::PSI] = 1.2 + side * (start + done * (end - start)).to_radians();
+                track.push(t as f64, state, 1.5);
+            }
+        }
+        track
+    }
+
+    const SWINGS: [(f64, f64); 5] =
+        [(0.0, 0.0), (30.0, 15.0), (70.0, -18.0), (110.0, 14.0), (120.0, 10.0)];
+    const REVERSALS: [f64; 3] = [20.0, 60.0, 104.0];
+
+    #[test]
+    fn swings_beyond_the_angle_are_overshoots_to_both_sides() {
+        for side in [1.0, -1.0] {
+            let track = track(side, &SWINGS);
+            let zigzag = ZigzagMetrics::from_track(&track, side * 10.0, 10.0, &REVERSALS).unwrap();
+            assert!((zigzag.first_overshoot_deg.unwrap() - 5.0).abs() < 1e-9, "{zigzag:?}");
+            assert!((zigzag.second_overshoot_deg.unwrap() - 8.0).abs() < 1e-9, "{zigzag:?}");
+            assert_eq!(zigzag.initial_turning_time_s, Some(20.0));
+            assert_eq!(zigzag.period_s, Some(84.0));
+        }
+    }
+
+    /// A heading that still grows at the end has no overshoot, a reversal that is missing no period.
+    #[test]
+    fn what_a_track_does_not_reach_is_unknown() {
+        let ended = track(1.0, &SWINGS[..3]);
+        let zigzag = ZigzagMetrics::from_track(&ended, 10.0, 10.0, &REVERSALS[..2]).unwrap();
+        assert!((zigzag.first_overshoot_deg.unwrap() - 5.0).abs() < 1e-9, "{zigzag:?}");
+        assert_eq!((zigzag.second_overshoot_deg, zigzag.period_s), (None, None));
+        assert_eq!(ZigzagMetrics::from_track(&Trajectory::default(), 10.0, 10.0, &[]), None);
+    }
+}

@@ -15,6 +15,7 @@ mod source;
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
 use shape::{Shape, Truth, shape};
 use sistership_columns::{IdentifiedColumn, Role, identify_columns};
 
@@ -85,13 +86,14 @@ fn judged(shape: &Shape) -> Score {
 
 fn table(seeds: std::ops::Range<u64>, with_names: bool) -> Option<BTreeMap<&'static str, Score>> {
     let sources = source::sources()?;
-    let mut by_kind: BTreeMap<&str, Score> = BTreeMap::new();
-    for seed in seeds {
+    let shapes = seeds.into_par_iter().map(|seed| {
         let shape = shape(&sources, seed, with_names);
         let score = judged(&shape);
-        by_kind.entry(shape.kind).or_default().add(score);
-        by_kind.entry(shape.source).or_default().add(score);
-        by_kind.entry("all").or_default().add(score);
+        [(shape.kind, score), (shape.source, score), ("all", score)]
+    });
+    let mut by_kind: BTreeMap<&str, Score> = BTreeMap::new();
+    for (kind, score) in shapes.collect::<Vec<_>>().into_iter().flatten() {
+        by_kind.entry(kind).or_default().add(score);
     }
     for (kind, score) in &by_kind {
         println!(
