@@ -122,9 +122,9 @@ mod tests {
             Some(2)
         );
         let scattering = evaluation(28, &[0.9, 4.1, 0.8, 2.2]);
-        let unsure = CandidateEvaluation { variance: Some(5.3), ..many.clone() };
+        let unsure = CandidateEvaluation { variance: Some(3.1), ..many.clone() };
         assert_eq!(defensible_place(&[(&unsure, false), (&scattering, true)], 0), Some(1));
-        let surer = CandidateEvaluation { variance: Some(4.0), ..many.clone() };
+        let surer = CandidateEvaluation { variance: Some(2.9), ..many.clone() };
         assert_eq!(defensible_place(&[(&surer, false), (&scattering, true)], 0), None);
         // Significantly greater on held-out trials.
         let unsurest = CandidateEvaluation { variance: Some(50.0), ..many.clone() };

@@ -85,7 +85,7 @@ pub(super) const SEARCH: SearchThresholds = SearchThresholds {
     kept: 1e9,
     sources: 5,
     population: 48,
-    surer: 3.0,
+    surer: 2.0,
     elsewhere: 5.0,
     unsafe_ratio: 3.0,
     restart: 5.0,
