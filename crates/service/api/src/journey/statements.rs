@@ -88,9 +88,9 @@ on_both_databases!(
 async fn ships_are_on_the_map(database: TestDatabase) {
     let harness = Harness::on(database).await;
     let trial = harness.upload_placed().await;
-    // Positions are facts of the search index, which follows within seconds, beside other tests later.
+    // Positions are facts of the search index, which follows within seconds.
     let mut fleet = String::new();
-    for _ in 0..1200 {
+    for _ in 0..200 {
         fleet = harness.page("/").await;
         if fleet.contains("Where the ships are") {
             break;
